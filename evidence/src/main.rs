@@ -1,0 +1,2 @@
+//! `safety-case`.
+fn main() {}

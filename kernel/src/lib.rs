@@ -1,0 +1,49 @@
+//! The verified kernel of an automatic train control (ATC) system.
+//!
+//! Every module is one part of the railway, written as a small *pure* state machine:
+//! `step(state, input) -> (state, output)` by value, total, without heap, clock, floating point,
+//! panic path or dependency. What is claimed of a machine stands as a sentence in `spec/`, above the
+//! line that keeps it, and as a theorem in `proofs/`.
+//!
+//! | module | part | patent |
+//! |---|---|---|
+//! | [`aspect`] | on-board aspect acceptance with the shortened operate time | JP3886280B2 |
+//! | [`supervision`] | speed against permitted speed: the brake | JP3886280B2 \[0009\] |
+//! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
+//! | [`time`], [`speed`] | the units that all of them share | |
+//!
+//! Three principles:
+//!
+//! * **Parse, don't validate.** A parameter type has one constructor, which checks; `step` never meets an
+//!   invalid one.
+//! * **One invariant.** Every state has one `is_valid`; every proof assumes it before a step and shows it after.
+//!   The initial state is valid and the most restrictive.
+//! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
+//!   a lower [`aspect::Display`], a higher [`supervision::Brake`].
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod aspect;
+pub mod duplex;
+pub mod speed;
+pub mod supervision;
+pub mod time;
+
+/// A pure, total state machine. The machine itself is its (checked) parameters.
+pub trait Machine {
+    /// What the machine remembers from one logic cycle to the next.
+    type State: Copy + Eq;
+    /// What it reads in one logic cycle.
+    type Input: Copy;
+    /// What it commands in one logic cycle.
+    type Output: Copy + Eq;
+
+    /// The output that is safe whatever the circumstances.
+    const SAFE: Self::Output;
+
+    /// The valid and most restrictive state in which the machine starts.
+    fn initial(&self) -> Self::State;
+
+    /// One logic cycle.
+    fn step(&self, state: Self::State, input: Self::Input) -> (Self::State, Self::Output);
+}

@@ -1,0 +1,2 @@
+//! `atc-prover`.
+fn main() {}

@@ -1,0 +1,92 @@
+//! T-ACC-8: the invariant is inductive, the display is a function of the state; and the step is total.
+
+use super::{BOUND, any_cycle, any_parts, any_set, any_times, has, lowest, ranks, satisfied};
+use crate::ASPECTS;
+use atc_kernel::aspect::{AspectSet, Display, State, lowest_member, step};
+
+harness! {
+    /// Validity is inductive, the initial state is valid and displays nothing, and the display is a function of
+    /// the state.
+    t_acc_8(e)
+    theorem "T-ACC-8";
+    requirements ["GEN-1"];
+    assumptions [];
+    bound BOUND;
+    claims {
+        Inductive: "the state after a cycle is valid",
+        Initial: "the initial state is valid and displays nothing",
+        Function: "the display is the lowest satisfied aspect if that is not above the last display, else nothing",
+        Accessor: "the state tells its own display",
+    }
+    covers {
+        Displayed: "an aspect is displayed",
+        Crowded: "every aspect is accepted",
+    }
+    {
+        let Some(cycle) = any_cycle::<ASPECTS, E>(e) else { return };
+        e.claim(Claim::Inductive as u32, cycle.next.is_valid(cycle.asked.times));
+        let initial = State::<ASPECTS>::INITIAL;
+        e.claim(Claim::Initial as u32, initial.is_valid(cycle.asked.times) && initial.display() == Display::NOTHING);
+        let shown = lowest(satisfied(&cycle.after));
+        let expected = if shown <= cycle.after.last { shown } else { 0 };
+        e.claim(Claim::Function as u32, cycle.display.bits() == expected);
+        e.claim(Claim::Accessor as u32, cycle.next.display() == cycle.display);
+        e.cover(Cover::Displayed as u32, expected != 0);
+        e.cover(Cover::Crowded as u32, cycle.after.accepted == ranks::<ASPECTS>());
+    }
+}
+
+harness! {
+    /// The step is total: from any bits whatever, a corrupted state included, it ends without a panic, an overflow
+    /// or an index out of bounds, and displays at most one aspect.
+    total(e)
+    theorem "T-ACC-8";
+    requirements ["GEN-2"];
+    assumptions [];
+    bound BOUND;
+    claims {
+        One: "at most one aspect is displayed, and it is satisfied",
+    }
+    covers {
+        Corrupted: "the state is not valid",
+    }
+    {
+        let Some(asked) = any_times(e) else { return };
+        let parts = any_parts::<ASPECTS, E>(e, &asked);
+        let state = State::from_parts(parts);
+        let detected = any_set::<ASPECTS, E>(e);
+        let (next, display) = step(asked.times, state, detected);
+        let bits = display.bits();
+        e.claim(Claim::One as u32, lowest(bits) == bits && satisfied(&next.parts()) & bits == bits);
+        e.cover(Cover::Corrupted as u32, !state.is_valid(asked.times));
+    }
+}
+
+harness! {
+    /// The lowest aspect of a set by the bit trick is the lowest by looking at one after the other.
+    set_1(e)
+    theorem "T-ACC-8";
+    requirements ["ACC-2"];
+    assumptions [];
+    bound "";
+    claims {
+        Same: "the two ways give the same aspect, for all sets of 16",
+    }
+    covers {
+        Highest: "the lowest is the highest of all",
+        Empty: "the set is empty",
+    }
+    {
+        let bits = e.word(0..=u16::MAX);
+        let flags: [bool; 16] = core::array::from_fn(|rank| has(bits, rank));
+        let slow = lowest_member(&flags);
+        let fast = AspectSet::from_bits(bits).lowest();
+        let same = match slow {
+            Some(rank) => rank < 16 && u32::from(fast.bits()) == 1 << rank,
+            None => fast.is_empty(),
+        };
+        e.claim(Claim::Same as u32, same);
+        e.cover(Cover::Highest as u32, slow == Some(15));
+        e.cover(Cover::Empty as u32, slow.is_none());
+    }
+}

@@ -1,0 +1,143 @@
+//! Two channels: DUP-1 and DUP-2.
+
+use crate::aspect::{BOUND, any_machine_state};
+use crate::{ASPECTS, Harness};
+use atc_kernel::Machine;
+use atc_kernel::aspect::{AspectSet, Parts, State};
+use atc_kernel::duplex::{Channel, Duplex, TRIPPED, output};
+use core::cell::Cell;
+
+/// The harnesses of this module.
+pub const ALL: &[Harness] = &[dup_1::HARNESS, dup_2::HARNESS];
+
+/// Flips bit `bit` of the state in `channel`: its words in order, then the trip word.
+fn flip<const N: usize>(channel: Channel<State<N>>, word: usize, bit: u16) -> Channel<State<N>> {
+    let mask = 1 << (bit & 15);
+    let mut parts: Parts<N> = channel.state.parts();
+    for rank in 0..N {
+        parts.run[rank] ^= if word == rank { mask } else { 0 };
+        parts.age[rank] ^= if word == N + rank { mask } else { 0 };
+    }
+    parts.accepted ^= if word == 2 * N { mask } else { 0 };
+    parts.dropped ^= if word == 2 * N + 1 { mask } else { 0 };
+    parts.credited ^= if word == 2 * N + 2 { mask } else { 0 };
+    parts.last ^= if word == 2 * N + 3 { mask } else { 0 };
+    let trip = channel.trip ^ if word == 2 * N + 4 { mask.to_le_bytes()[0] } else { 0 };
+    Channel { state: State::from_parts(parts), trip }
+}
+
+harness! {
+    /// Any single corrupted bit of one channel's state leads to the safe output in the same cycle or leaves the
+    /// output as it is, and no difference between the channels outlives the cycle unseen; without a fault the two
+    /// channels do what one would do.
+    dup_1(e)
+    theorem "DUP-1";
+    requirements ["DUP-1"];
+    assumptions ["single-fault", "same-input"];
+    bound BOUND;
+    claims {
+        SafeOrSame: "with one bit flipped the output is the safe one or the one without the fault",
+        NoneLatent: "after the cycle the two channels are equal, or the safe output is latched",
+        Latched: "once tripped, also with one bit flipped, the output stays the safe one",
+        Transparent: "without a fault the output is that of one machine, and nothing trips",
+    }
+    covers {
+        Trips: "a flipped bit trips the comparison",
+        Displaying: "an aspect is displayed without the fault",
+    }
+    {
+        let Some((machine, state)) = any_machine_state::<ASPECTS, E>(e) else { return };
+        let input = AspectSet::from_bits(e.word(0..=u16::MAX));
+        let word = usize::from(e.word(0..=2 * u16::try_from(ASPECTS).unwrap_or(0) + 4));
+        let bit = e.word(0..=15);
+        let in_a = e.word(0..=1) & 1 == 0;
+
+        let sound = Channel { state, trip: 0 };
+        let (alone, expected) = machine.step(state, input);
+        let (pair, agreed) = Duplex { a: sound, b: sound }.step(&machine, input);
+        let unchanged = pair == Duplex { a: Channel { state: alone, trip: 0 }, b: Channel { state: alone, trip: 0 } };
+        e.claim(
+            Claim::Transparent as u32,
+            unchanged && agreed.is_some_and(|output| output.get() == expected) && !pair.is_tripped(),
+        );
+
+        let corrupt = |channel| if in_a {
+            Duplex { a: flip(channel, word, bit), b: channel }
+        } else {
+            Duplex { a: channel, b: flip(channel, word, bit) }
+        };
+        let faulty = corrupt(sound);
+        let (pair, agreed) = faulty.step(&machine, input);
+        e.claim(Claim::SafeOrSame as u32, agreed.is_none_or(|output| output.get() == expected));
+        let equal = pair.a.state == pair.b.state && pair.a.trip == pair.b.trip;
+        e.claim(Claim::NoneLatent as u32, pair.is_tripped() && agreed.is_none() || equal && agreed.is_some());
+
+        let tripped = corrupt(Channel { state, trip: TRIPPED });
+        let (still, none) = tripped.step(&machine, input);
+        let safe = <atc_kernel::aspect::Acceptance<ASPECTS> as Machine>::SAFE;
+        let is_safe = output::<atc_kernel::aspect::Acceptance<ASPECTS>>(none) == safe;
+        e.claim(Claim::Latched as u32, none.is_none() && still.is_tripped() && is_safe);
+        e.cover(Cover::Trips as u32, pair.is_tripped());
+        e.cover(Cover::Displaying as u32, expected.bits() != 0);
+    }
+}
+
+/// A machine that may do anything: two arbitrary results, the first call gets the first.
+struct Anything {
+    results: [(u16, u16); 2],
+    calls: Cell<usize>,
+}
+
+impl Machine for Anything {
+    type State = u16;
+    type Input = ();
+    type Output = u16;
+
+    const SAFE: u16 = 0;
+
+    fn initial(&self) -> u16 {
+        0
+    }
+
+    fn step(&self, _: u16, (): ()) -> (u16, u16) {
+        let call = self.calls.get();
+        self.calls.set(call + 1);
+        if call == 0 { self.results[0] } else { self.results[1] }
+    }
+}
+
+harness! {
+    /// Whatever the two channels compute, an output comes out only if they agree in the state before, in the state
+    /// after and in the output, and it is the one that they agree on; otherwise the safe output is latched.
+    dup_2(e)
+    theorem "DUP-2";
+    requirements ["DUP-1", "DUP-2"];
+    assumptions [];
+    bound "";
+    claims {
+        Agreement: "there is an output if and only if both channels agree in all three and neither has tripped",
+        Value: "it is the output of both",
+        Latch: "without an output both channels are tripped",
+        Once: "each channel computes exactly once",
+    }
+    covers {
+        Agree: "the channels agree",
+        OutputsOnly: "the channels agree in their outputs and not in their states",
+    }
+    {
+        let mut any = || e.word(0..=1);
+        let machine = Anything { results: [(any(), any()), (any(), any())], calls: Cell::new(0) };
+        let [trip_a, trip_b] = [any(), any()].map(|word| word.to_le_bytes()[0]);
+        let before = Duplex { a: Channel { state: any(), trip: trip_a }, b: Channel { state: any(), trip: trip_b } };
+        let (after, agreed) = before.step(&machine, ());
+        let [(state_a, output_a), (state_b, output_b)] = machine.results;
+        let agree = before.a.state == before.b.state && state_a == state_b && output_a == output_b;
+        let sound = trip_a == 0 && trip_b == 0;
+        e.claim(Claim::Agreement as u32, agreed.is_some() == (agree && sound));
+        e.claim(Claim::Value as u32, agreed.is_none_or(|value| value.get() == output_a && value.get() == output_b));
+        e.claim(Claim::Latch as u32, agreed.is_some() || after.a.trip == TRIPPED && after.b.trip == TRIPPED);
+        e.claim(Claim::Once as u32, machine.calls.get() == 2);
+        e.cover(Cover::Agree as u32, agreed.is_some());
+        e.cover(Cover::OutputsOnly as u32, output_a == output_b && !agree && sound);
+    }
+}

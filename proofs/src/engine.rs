@@ -1,0 +1,116 @@
+//! What a harness may ask of a prover.
+
+use core::ops::RangeInclusive;
+
+/// A prover, or a tester that stands in for one.
+pub trait Engine {
+    /// An arbitrary value: all 65 536. `likely` is a hint to testers, where interesting values lie; no prover looks at it.
+    fn word(&mut self, likely: RangeInclusive<u16>) -> u16;
+
+    /// Goes on only with the values for which this holds.
+    fn assume(&mut self, holds: bool);
+
+    /// Claim number `number` of the harness: must hold for all values.
+    fn claim(&mut self, number: u32, holds: bool);
+
+    /// Cover point number `number` of the harness: must be reached for some values.
+    fn cover(&mut self, number: u32, reached: bool);
+}
+
+/// An arbitrary 32-bit value; `likely` as in [`Engine::word`], for its low half.
+pub fn any_u32<E: Engine + ?Sized>(engine: &mut E, likely: RangeInclusive<u16>) -> u32 {
+    let high = engine.word(0..=0);
+    u32::from(high) << 16 | u32::from(engine.word(likely))
+}
+
+/// CBMC, on the crate compiled to WebAssembly: the four primitives are imports.
+#[cfg(engine = "cbmc")]
+#[allow(unsafe_code)]
+pub(crate) mod cbmc {
+    use super::{Engine, RangeInclusive};
+
+    mod import {
+        #[link(wasm_import_module = "prover")]
+        unsafe extern "C" {
+            pub safe fn word() -> u32;
+            pub safe fn assume(holds: u32);
+            pub safe fn claim(number: u32, holds: u32);
+            pub safe fn cover(number: u32, reached: u32);
+        }
+    }
+
+    pub struct Cbmc;
+
+    impl Engine for Cbmc {
+        #[inline(always)]
+        fn word(&mut self, _: RangeInclusive<u16>) -> u16 {
+            // The import returns 16 bits; the cast says so to the optimiser.
+            (import::word() & 0xFFFF) as u16
+        }
+
+        #[inline(always)]
+        fn assume(&mut self, holds: bool) {
+            import::assume(u32::from(holds));
+        }
+
+        #[inline(always)]
+        fn claim(&mut self, number: u32, holds: bool) {
+            import::claim(number, u32::from(holds));
+        }
+
+        #[inline(always)]
+        fn cover(&mut self, number: u32, reached: bool) {
+            import::cover(number, u32::from(reached));
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo) -> ! {
+        core::arch::wasm32::unreachable()
+    }
+}
+
+/// Kani, on MIR.
+#[cfg(kani)]
+pub(crate) mod model {
+    use super::{Engine, RangeInclusive};
+
+    pub struct Kani;
+
+    /// A constant place for each number, so that each has a verdict of its own.
+    macro_rules! each {
+        ($number:ident: $($constant:literal)* => $check:ident!($holds:ident, $kind:literal)) => {
+            match $number {
+                $($constant => kani_check!($check, $holds, concat!($kind, " ", $constant)),)*
+                _ => unreachable!("a harness has at most 8 claims and 8 cover points"),
+            }
+        };
+    }
+
+    macro_rules! kani_check {
+        (assert, $holds:ident, $text:expr) => {
+            kani::assert($holds, $text)
+        };
+        (cover, $reached:ident, $text:expr) => {
+            kani::cover!($reached, $text)
+        };
+    }
+
+    impl Engine for Kani {
+        fn word(&mut self, _: RangeInclusive<u16>) -> u16 {
+            kani::any()
+        }
+
+        fn assume(&mut self, holds: bool) {
+            kani::assume(holds);
+        }
+
+        fn claim(&mut self, number: u32, holds: bool) {
+            each!(number: 0 1 2 3 4 5 6 7 => assert!(holds, "claim"));
+        }
+
+        fn cover(&mut self, number: u32, reached: bool) {
+            each!(number: 0 1 2 3 4 5 6 7 => cover!(reached, "cover"));
+        }
+    }
+}

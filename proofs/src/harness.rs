@@ -1,0 +1,108 @@
+//! What a harness is: its theorem, its claims and cover points by name, and its body.
+
+use crate::Engine;
+
+/// One harness, as the provers, the mutants and the safety case know it.
+#[derive(Clone, Copy)]
+pub struct Harness {
+    /// The function's name, unique in the crate.
+    pub name: &'static str,
+    /// The theorem that it proves or is part of, as in `spec/`.
+    pub theorem: &'static str,
+    /// The theorem in plain English.
+    pub statement: &'static str,
+    /// The requirements that it proves, as in `spec/`.
+    pub requirements: &'static [&'static str],
+    /// What it assumes, by the ids of `spec/assumptions.toml`.
+    pub assumptions: &'static [&'static str],
+    /// The bound of the proof in words; empty if there is none.
+    pub bound: &'static str,
+    /// Its claims, by number.
+    pub claims: &'static [Point],
+    /// Its cover points, by number.
+    pub covers: &'static [Point],
+    /// The body, for engines that are chosen at run time.
+    pub run: fn(&mut dyn Engine),
+}
+
+/// A claim or a cover point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Point {
+    /// Its name in the source of the harness.
+    pub name: &'static str,
+    /// What it says.
+    pub text: &'static str,
+}
+
+/// Defines a harness as a module with `run` (its body), `HARNESS` and, for the provers, an entry point.
+///
+/// Claims and cover points are enums: one that the body never names is a compiler warning (an error in `ci/test`).
+macro_rules! harness {
+    (
+        $(#[doc = $statement:literal])+
+        $name:ident($engine:ident)
+        theorem $theorem:literal;
+        requirements [$($requirement:literal),* $(,)?];
+        assumptions [$($assumption:literal),* $(,)?];
+        bound $bound:expr;
+        claims { $($claim:ident: $claim_text:literal,)+ }
+        covers { $($cover:ident: $cover_text:literal,)+ }
+        $body:block
+    ) => {
+        $(#[doc = $statement])+
+        pub mod $name {
+            use super::*;
+            use $crate::harness::{Harness, Point};
+
+            #[derive(Clone, Copy)]
+            enum Claim { $($claim,)+ }
+
+            #[derive(Clone, Copy)]
+            enum Cover { $($cover,)+ }
+
+            /// What this harness is.
+            pub const HARNESS: Harness = Harness {
+                name: stringify!($name),
+                theorem: $theorem,
+                statement: concat!($($statement),+),
+                requirements: &[$($requirement),*],
+                assumptions: &[$($assumption),*],
+                bound: $bound,
+                claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
+                covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
+                run: |engine| run(engine),
+            };
+
+            /// The body, for any engine.
+            #[inline(always)]
+            pub fn run<E: $crate::Engine + ?Sized>($engine: &mut E) $body
+
+            #[cfg(kani)]
+            #[kani::proof]
+            #[kani::unwind(18)]
+            fn kani() {
+                run(&mut $crate::engine::model::Kani);
+            }
+
+            #[cfg(engine = "cbmc")]
+            #[unsafe(no_mangle)]
+            extern "C" fn $name() {
+                run(&mut $crate::engine::cbmc::Cbmc);
+            }
+        }
+    };
+}
+
+/// A decimal number of one or two digits; anything else stops the compiler.
+pub(crate) const fn decimal(text: &str) -> usize {
+    let digits = text.as_bytes();
+    assert!(!digits.is_empty() && digits.len() <= 2, "a number of one or two digits");
+    let mut number = 0;
+    let mut place = 0;
+    while place < digits.len() {
+        assert!(digits[place].is_ascii_digit(), "a decimal number");
+        number = number * 10 + (digits[place] - b'0') as usize;
+        place += 1;
+    }
+    number
+}

@@ -1,0 +1,32 @@
+//! The theorems of the kernel, each as one harness that every engine runs.
+//!
+//! A harness draws arbitrary values, assumes what the theorem assumes, runs **one** step of the real kernel and
+//! claims what the theorem says. What "arbitrary" means is the [`Engine`]'s business: all values at once (CBMC on
+//! compiled code, Kani on MIR), or many chosen ones (the native tests, which also replay counterexamples).
+//!
+//! A theorem is stated on the fields of the state ([`atc_kernel::aspect::Parts`]) and on ghosts, never with the
+//! kernel's own helpers: those may be wrong.
+#![no_std]
+#![cfg_attr(not(engine = "cbmc"), forbid(unsafe_code))]
+
+#[macro_use]
+mod harness;
+mod engine;
+
+pub mod aspect;
+pub mod duplex;
+pub mod supervision;
+pub mod time;
+
+pub use engine::{Engine, any_u32};
+pub use harness::{Harness, Point};
+
+/// The ranks of the aspect machine in the harnesses whose size is a parameter; 4 unless the environment variable
+/// `ATC_ASPECTS` says otherwise (1 to 16) when this crate is compiled.
+pub const ASPECTS: usize = match option_env!("ATC_ASPECTS") {
+    Some(number) => harness::decimal(number),
+    None => 4,
+};
+
+/// All harnesses, module by module.
+pub const HARNESSES: &[&[Harness]] = &[time::ALL, aspect::ALL, supervision::ALL, duplex::ALL];
