@@ -8,7 +8,7 @@ use atc_kernel::duplex::{Channel, Duplex, TRIPPED, output};
 use core::cell::Cell;
 
 /// The harnesses of this module.
-pub const ALL: &[Harness] = &[dup_1::HARNESS, dup_2::HARNESS];
+pub const ALL: &[Harness] = &[dup_1::HARNESS, dup_1_any::HARNESS, dup_2::HARNESS];
 
 /// Flips bit `bit` of the state in `channel`: its words in order, then the trip word.
 fn flip<const N: usize>(channel: Channel<State<N>>, word: usize, bit: u16) -> Channel<State<N>> {
@@ -28,8 +28,7 @@ fn flip<const N: usize>(channel: Channel<State<N>>, word: usize, bit: u16) -> Ch
 
 harness! {
     /// Any single corrupted bit of one channel's state leads to the safe output in the same cycle or leaves the
-    /// output as it is, and no difference between the channels outlives the cycle unseen; without a fault the two
-    /// channels do what one would do.
+    /// output as it is, and no difference between the channels outlives the cycle unseen.
     dup_1(e)
     theorem "DUP-1";
     requirements ["DUP-1"];
@@ -38,51 +37,37 @@ harness! {
     claims {
         SafeOrSame: "with one bit flipped the output is the safe one or the one without the fault",
         NoneLatent: "after the cycle the two channels are equal, or the safe output is latched",
-        Latched: "once tripped, also with one bit flipped, the output stays the safe one",
-        Transparent: "without a fault the output is that of one machine, and nothing trips",
     }
     covers {
         Trips: "a flipped bit trips the comparison",
         Displaying: "an aspect is displayed without the fault",
+        TripWord: "the flipped bit is in the trip word",
     }
     {
         let Some((machine, state)) = any_machine_state::<ASPECTS, E>(e) else { return };
         let input = AspectSet::from_bits(e.word(0..=u16::MAX));
-        let word = usize::from(e.word(0..=2 * u16::try_from(ASPECTS).unwrap_or(0) + 4));
+        let words = 2 * ASPECTS + 5;
+        let word = usize::from(e.word(0..=u16::try_from(words).unwrap_or(1) - 1));
         let bit = e.word(0..=15);
+        // Every bit there is: 16 in each word of the state, 8 in the trip word.
+        e.assume(word < words && bit < if word == words - 1 { 8 } else { 16 });
         let in_a = e.word(0..=1) & 1 == 0;
 
         let sound = Channel { state, trip: 0 };
-        let (alone, expected) = machine.step(state, input);
-        let (pair, agreed) = Duplex { a: sound, b: sound }.step(&machine, input);
-        let unchanged = pair == Duplex { a: Channel { state: alone, trip: 0 }, b: Channel { state: alone, trip: 0 } };
-        e.claim(
-            Claim::Transparent as u32,
-            unchanged && agreed.is_some_and(|output| output.get() == expected) && !pair.is_tripped(),
-        );
-
-        let corrupt = |channel| if in_a {
-            Duplex { a: flip(channel, word, bit), b: channel }
-        } else {
-            Duplex { a: channel, b: flip(channel, word, bit) }
-        };
-        let faulty = corrupt(sound);
-        let (pair, agreed) = faulty.step(&machine, input);
+        let faulty = flip(sound, word, bit);
+        let pair = if in_a { Duplex { a: faulty, b: sound } } else { Duplex { a: sound, b: faulty } };
+        let (_, expected) = machine.step(state, input);
+        let (pair, agreed) = pair.step(&machine, input);
         e.claim(Claim::SafeOrSame as u32, agreed.is_none_or(|output| output.get() == expected));
-        let equal = pair.a.state == pair.b.state && pair.a.trip == pair.b.trip;
-        e.claim(Claim::NoneLatent as u32, pair.is_tripped() && agreed.is_none() || equal && agreed.is_some());
-
-        let tripped = corrupt(Channel { state, trip: TRIPPED });
-        let (still, none) = tripped.step(&machine, input);
-        let safe = <atc_kernel::aspect::Acceptance<ASPECTS> as Machine>::SAFE;
-        let is_safe = output::<atc_kernel::aspect::Acceptance<ASPECTS>>(none) == safe;
-        e.claim(Claim::Latched as u32, none.is_none() && still.is_tripped() && is_safe);
+        let equal = pair.a == pair.b && !pair.is_tripped();
+        e.claim(Claim::NoneLatent as u32, if agreed.is_some() { equal } else { pair.is_tripped() });
         e.cover(Cover::Trips as u32, pair.is_tripped());
         e.cover(Cover::Displaying as u32, expected.bits() != 0);
+        e.cover(Cover::TripWord as u32, word == words - 1);
     }
 }
 
-/// A machine that may do anything: two arbitrary results, the first call gets the first.
+/// A machine that may do anything, not even the same thing twice: the first call gets the first result.
 struct Anything {
     results: [(u16, u16); 2],
     calls: Cell<usize>,
@@ -139,5 +124,42 @@ harness! {
         e.claim(Claim::Once as u32, machine.calls.get() == 2);
         e.cover(Cover::Agree as u32, agreed.is_some());
         e.cover(Cover::OutputsOnly as u32, output_a == output_b && !agree && sound);
+    }
+}
+
+harness! {
+    /// For any machine: without a fault the two channels do what one would do and nothing trips; once tripped, with
+    /// or without one more flipped bit, the output stays the safe one.
+    dup_1_any(e)
+    theorem "DUP-1";
+    requirements ["DUP-1"];
+    assumptions ["same-input"];
+    bound "";
+    claims {
+        Transparent: "without a fault the output and the state are those of one machine",
+        Latched: "once tripped, also with one bit flipped, the output stays the safe one and the channels stay tripped",
+        Reset: "a maintenance reset, and the start, are two equal channels in the initial state, not tripped",
+    }
+    covers {
+        NotSafe: "the output without a fault is not the safe one",
+    }
+    {
+        let mut any = || e.word(0..=3);
+        let result = (any(), any());
+        let machine = Anything { results: [result; 2], calls: Cell::new(0) };
+        let state = any();
+        let sound = Channel { state, trip: 0 };
+        let (pair, agreed) = Duplex { a: sound, b: sound }.step(&machine, ());
+        let after = Channel { state: result.0, trip: 0 };
+        let unchanged = pair == Duplex { a: after, b: after } && !pair.is_tripped();
+        let (bit, in_a) = (any() & 7, any() & 1 == 0);
+        let tripped = |flips: bool| Channel { state, trip: TRIPPED ^ if flips { 1 << bit } else { 0 } };
+        let (still, none) = Duplex { a: tripped(in_a), b: tripped(!in_a) }.step(&machine, ());
+        let is_safe = none.is_none() && output::<Anything>(none) == Anything::SAFE;
+        let start = Duplex::initial(&machine);
+        e.claim(Claim::Transparent as u32, unchanged && output::<Anything>(agreed) == result.1 && agreed.is_some());
+        e.claim(Claim::Latched as u32, is_safe && still.a.trip == TRIPPED && still.b.trip == TRIPPED);
+        e.claim(Claim::Reset as u32, start.a == start.b && start.a.state == machine.initial() && !start.is_tripped());
+        e.cover(Cover::NotSafe as u32, output::<Anything>(agreed) != Anything::SAFE);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{Harness, any_u32};
 use atc_kernel::aspect::{Times, TimesError, TimesMs};
-use atc_kernel::time::{Millis, Ticks};
+use atc_kernel::time::{Cycle, Millis, Ticks};
 
 /// The harnesses of this module.
 pub const ALL: &[Harness] = &[time_rounding::HARNESS, time_constructor::HARNESS];
@@ -19,35 +19,50 @@ harness! {
     assumptions ["cycle-10ms"];
     bound "cycle 10 ms; other cycles are tested";
     claims {
-        OperateUp: "T1 and T5 last at least what was asked, and less than a cycle more",
-        RestDown: "T2+T3 and T4 last at most what was asked, and T2 is less than a cycle short",
+        Up: "rounded up, a time lasts at least what was asked, and less than a cycle more",
+        Down: "rounded down, it lasts at most what was asked, and less than a cycle less",
+        Refused: "it is refused if and only if it lasts more than 60 000 cycles",
+        Directions: "T1 and T5 are rounded up, T2, T3 and T4 down",
     }
     covers {
-        Inexact: "a time that is no whole number of cycles is accepted",
+        Inexact: "a time that is no whole number of cycles",
+        Accepted: "times that are accepted",
     }
     {
-        let [operate, recovery, mask, interruption, shortened] =
-            [300..=300, 400..=400, 400..=400, 800..=800, 100..=100].map(|likely| any_u32(e, likely));
-        let asked = TimesMs {
-            operate: Millis(operate),
-            recovery: Millis(recovery),
-            mask: Millis(mask),
-            interruption: Millis(interruption),
-            shortened_operate: Millis(shortened),
-        };
-        let Ok(times) = Times::from_millis(Millis(CYCLE_MS), asked) else { return e.assume(false) };
-        let lasts = |ticks: Ticks| u32::from(ticks.0) * CYCLE_MS;
-        let up = |ticks: Ticks, ms: u32| lasts(ticks) >= ms && lasts(ticks) < ms + CYCLE_MS;
-        let down = |ticks: Ticks, ms: u32| lasts(ticks) <= ms && lasts(ticks) + CYCLE_MS > ms;
-        e.claim(Claim::OperateUp as u32, up(times.operate(), operate) && up(times.shortened_operate(), shortened));
-        e.claim(
-            Claim::RestDown as u32,
-            down(times.recovery(), recovery)
-                && lasts(times.expiry()) <= recovery + mask
-                && lasts(times.expiry()) + 2 * CYCLE_MS > recovery + mask
-                && lasts(times.interruption()) <= interruption,
+        // Drawn, so that the compiler leaves the division to the prover, which knows it better than its bit tricks.
+        let cycle_ms = u32::from(e.word(10..=10));
+        e.assume(cycle_ms == CYCLE_MS);
+        let Some(cycle) = Cycle::new(Millis(cycle_ms)) else { return e.assume(false) };
+        let asked = any_u32(e, 0..=2000);
+        let most = 60_000 * CYCLE_MS;
+        let lasts = |ticks: Ticks| u64::from(ticks.0) * u64::from(CYCLE_MS);
+        let (time, unit) = (u64::from(asked), u64::from(CYCLE_MS));
+        let up = cycle.at_least(Millis(asked));
+        let down = cycle.at_most(Millis(asked));
+        e.claim(Claim::Up as u32, up.is_none_or(|up| lasts(up) >= time && lasts(up) < time + unit));
+        e.claim(Claim::Down as u32, down.is_none_or(|down| lasts(down) <= time && lasts(down) + unit > time));
+        e.claim(Claim::Refused as u32, up.is_none() == (asked > most) && down.is_none() == (asked >= most + CYCLE_MS));
+        e.cover(Cover::Inexact as u32, up != down && up.is_some());
+
+        let ms = [300..=300, 400..=400, 400..=400, 800..=800, 100..=100].map(|likely| Millis(any_u32(e, likely)));
+        let [operate, recovery, mask, interruption, shortened_operate] = ms;
+        let times = Times::from_millis(
+            Millis(cycle_ms),
+            TimesMs { operate, recovery, mask, interruption, shortened_operate },
         );
-        e.cover(Cover::Inexact as u32, lasts(times.operate()) != operate && lasts(times.recovery()) != recovery);
+        let rounded = [
+            cycle.at_least(operate),
+            cycle.at_most(recovery),
+            cycle.at_most(mask),
+            cycle.at_most(interruption),
+            cycle.at_least(shortened_operate),
+        ];
+        let expected = match rounded {
+            [Some(t1), Some(t2), Some(t3), Some(t4), Some(t5)] => Times::from_ticks(t1, t2, t3, t4, t5).ok(),
+            _ => None,
+        };
+        e.claim(Claim::Directions as u32, times.ok() == expected);
+        e.cover(Cover::Accepted as u32, times.is_ok());
     }
 }
 

@@ -83,15 +83,18 @@ impl<const N: usize> State<N> {
                 run >= times.shortened_operate && !dropped
             } else if accepted {
                 // Lost: the run began after the loss, and would have been accepted if it were long enough.
-                age < times.expiry && run < age && run < awaited(times, has_credit(times, run, age))
+                age < times.expiry
+                    && run < age
+                    && run < awaited(times, has_credit(times, run, age))
                     && (!dropped || age >= times.recovery)
             } else {
                 age.0 == 0 && run < awaited(times, credited) && (!credited || run.0 > 0)
             };
         }
-        // ACC-9: what is satisfied and not displayed has no evidence at or above it.
+        // ACC-9: the lowest satisfied aspect is the last one displayed, or it may not be displayed for want of evidence.
         let lowest = Display::lowest_of(self.satisfied());
-        valid && (lowest <= self.last || self.evident(times).bits() < lowest.bits())
+        let forbidden = lowest > self.last && self.evident(times).bits() < lowest.bits();
+        valid && (lowest == Display::NOTHING || lowest == self.last || forbidden)
     }
 
     /// What is displayed in this state (T-ACC-8): the lowest satisfied aspect, if it is no rise above the last one.
@@ -205,8 +208,7 @@ fn advance<const N: usize>(times: Times, next: &mut State<N>, rank: usize, heard
     };
     let lost = accepted && (next.age[rank].0 > 0 || !heard);
     let age = if lost { Ticks(next.age[rank].0.saturating_add(1)) } else { Ticks(0) };
-    let credited =
-        heard && if lost { has_credit(times, run, age) } else { !next.credited.and(this).is_empty() };
+    let credited = heard && if lost { has_credit(times, run, age) } else { !next.credited.and(this).is_empty() };
 
     next.run[rank] = run;
     next.credited = next.credited.without(this);

@@ -26,8 +26,8 @@ fn not_less_safe<const N: usize>(new: &Parts<N>, conventional: &Parts<N>) -> boo
     let mut related = witnessed(conventional, new, None);
     for rank in 0..N {
         related &= new.run[rank] == conventional.run[rank];
-        related &= !has(conventional.accepted, rank)
-            || has(new.accepted, rank) && new.age[rank] <= conventional.age[rank];
+        related &=
+            !has(conventional.accepted, rank) || has(new.accepted, rank) && new.age[rank] <= conventional.age[rank];
     }
     related
 }
@@ -116,7 +116,7 @@ harness! {
     }
     covers {
         Added: "the added aspect is displayed, and nothing without it",
-        Lowered: "the added detections lower the display to another aspect",
+        Raised: "the added detections drop a masked aspect, and the display rises",
         Silenced: "the added detections put the display out",
     }
     {
@@ -138,7 +138,7 @@ harness! {
         let initial = State::<ASPECTS>::INITIAL.parts();
         e.claim(Claim::Start as u32, more_heard(&asked, &initial, &initial, extra));
         e.cover(Cover::Added as u32, shows == 0 && shows_more == 1 << extra);
-        e.cover(Cover::Lowered as u32, shows_more != 0 && shows_more < shows && shows_more != 1 << extra);
+        e.cover(Cover::Raised as u32, shows != 0 && shows_more > shows);
         e.cover(Cover::Silenced as u32, shows != 0 && shows_more == 0);
     }
 }

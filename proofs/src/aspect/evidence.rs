@@ -21,8 +21,8 @@ impl History {
 
     fn heard(self, asked: &Asked, heard: bool) -> Self {
         Self {
-            run: if heard { (self.run + 1).min(asked.operate) } else { 0 },
-            since: if self.ever { (self.since + 1).min(asked.expiry) } else { 0 },
+            run: if heard { self.run.saturating_add(1).min(asked.operate) } else { 0 },
+            since: if self.ever { self.since.saturating_add(1).min(asked.expiry) } else { 0 },
             gap: if heard && self.run == 0 { self.since } else { self.gap },
             ..self
         }
@@ -44,7 +44,9 @@ impl History {
             && if firm {
                 self.ever && self.since == 0
             } else if lane.accepted {
-                self.ever && self.since == lane.age && (self.run == 0 || self.gap + self.run == self.since)
+                self.ever
+                    && self.since == lane.age
+                    && (self.run == 0 || u32::from(self.gap) + u32::from(self.run) == u32::from(self.since))
             } else {
                 lane.credited == self.has_credit(asked) && (!self.ever || self.since == asked.expiry)
             }

@@ -1,7 +1,8 @@
 //! T-ACC-4: the shortened operate time never drops an aspect, in its exact form.
 
-use super::{Asked, any_rank, any_times};
-use atc_kernel::aspect::{AspectSet, MAX_ASPECTS, Parts, State, step};
+use super::{Asked, BOUND, any_rank, any_times, same};
+use crate::ASPECTS;
+use atc_kernel::aspect::{AspectSet, Parts, State, step};
 
 /// The operate time that counts after an interruption of `gap` cycles, alone on the line.
 fn needed(asked: &Asked, gap: u16) -> u16 {
@@ -15,23 +16,18 @@ fn is_displayed(asked: &Asked, gap: u16, heard: u16) -> bool {
 
 /// The state after an aspect, accepted and heard, was silent for `gap` cycles and then heard for `heard`, alone on
 /// the line: the closed form, with every field in it. `run` is its run before the interruption.
-fn closed_form(asked: &Asked, rank: usize, run: u16, gap: u16, heard: u16) -> Parts<MAX_ASPECTS> {
+fn closed_form(asked: &Asked, rank: usize, run: u16, gap: u16, heard: u16) -> Parts<ASPECTS> {
     let accepted_again = heard >= needed(asked, gap);
     let intact = gap == 0 && heard == 0;
     let lost_for = u32::from(gap) + u32::from(heard);
     let lost = !accepted_again && !intact && lost_for < u32::from(asked.expiry);
     let bit = 1 << rank;
     let mut parts = Parts {
-        run: [0; MAX_ASPECTS],
-        age: [0; MAX_ASPECTS],
+        run: [0; ASPECTS],
+        age: [0; ASPECTS],
         accepted: if accepted_again || intact || lost { bit } else { 0 },
         dropped: 0,
-        credited: if !accepted_again
-            && !intact
-            && !lost
-            && heard > 0
-            && gap <= asked.interruption
-            && gap < asked.expiry
+        credited: if !accepted_again && !intact && !lost && heard > 0 && gap <= asked.interruption && gap < asked.expiry
         {
             bit
         } else {
@@ -39,7 +35,7 @@ fn closed_form(asked: &Asked, rank: usize, run: u16, gap: u16, heard: u16) -> Pa
         },
         last: bit,
     };
-    for place in 0..MAX_ASPECTS {
+    for place in 0..ASPECTS {
         if place == rank {
             parts.run[place] = if intact { run } else { heard.min(asked.operate) };
             // Below T2+T3, so it fits.
@@ -47,6 +43,32 @@ fn closed_form(asked: &Asked, rank: usize, run: u16, gap: u16, heard: u16) -> Pa
         }
     }
     parts
+}
+
+/// What one step from the closed form leads to.
+struct Steps {
+    /// A silent cycle leads to the closed form of one more silent cycle.
+    silent: bool,
+    /// A heard cycle leads to the closed form of one more heard cycle.
+    heard: bool,
+    /// The closed form is valid.
+    valid: bool,
+}
+
+#[inline]
+fn steps_of<const RANK: usize>(asked: &Asked, run: u16, gap: u16, heard: u16) -> Steps {
+    let state = State::from_parts(closed_form(asked, RANK, run, gap, heard));
+    let alone = AspectSet::from_bits(1 << RANK);
+    let as_formula = |detected, gap, heard| {
+        let (next, display) = step(asked.times, state, detected);
+        let shown = if is_displayed(asked, gap, heard) { alone.bits() } else { 0 };
+        same(&next.parts(), &closed_form(asked, RANK, run, gap, heard)) && display.bits() == shown
+    };
+    Steps {
+        silent: as_formula(AspectSet::EMPTY, gap + 1, 0),
+        heard: as_formula(alone, gap, heard + 1),
+        valid: state.is_valid(asked.times),
+    }
 }
 
 harness! {
@@ -57,7 +79,7 @@ harness! {
     theorem "T-ACC-4";
     requirements ["ACC-1", "ACC-4", "ACC-6", "ACC-8"];
     assumptions ["alone-on-the-line", "detected-throughout"];
-    bound "";
+    bound BOUND;
     claims {
         Silent: "one more silent cycle leads from the closed form of g to that of g + 1",
         Heard: "one more heard cycle leads from the closed form of k heard cycles to that of k + 1",
@@ -74,29 +96,31 @@ harness! {
     }
     {
         let Some(asked) = any_times(e) else { return };
-        let rank = any_rank::<MAX_ASPECTS, E>(e);
+        let rank = any_rank::<ASPECTS, E>(e);
         let run = e.word(asked.shortened..=asked.operate);
         let gap = e.word(0..=asked.expiry);
         let heard = e.word(0..=asked.operate);
         e.assume(asked.shortened <= run && run <= asked.operate);
         e.assume(gap <= 60_000 && heard <= 60_000 && (heard == 0 || gap > 0));
-        let state = State::from_parts(closed_form(&asked, rank, run, gap, heard));
-        let alone = AspectSet::from_bits(1 << rank);
-        let shown = |gap, heard| if is_displayed(&asked, gap, heard) { alone.bits() } else { 0 };
-
-        let (silent, display) = step(asked.times, state, AspectSet::EMPTY);
-        let as_formula = silent.parts() == closed_form(&asked, rank, run, gap + 1, 0) && display.bits() == shown(gap + 1, 0);
-        e.claim(Claim::Silent as u32, heard > 0 || as_formula);
-        let (again, display) = step(asked.times, state, alone);
-        let as_formula = again.parts() == closed_form(&asked, rank, run, gap, heard + 1) && display.bits() == shown(gap, heard + 1);
-        e.claim(Claim::Heard as u32, gap == 0 || as_formula);
+        // One rank after the other, so that the rest of the state is constant.
+        macro_rules! at_each {
+            ($($place:literal)*) => {
+                match rank {
+                    $($place if $place < ASPECTS => steps_of::<$place>(&asked, run, gap, heard),)*
+                    _ => Steps { silent: false, heard: false, valid: false },
+                }
+            };
+        }
+        let steps = at_each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+        e.claim(Claim::Silent as u32, heard > 0 || steps.silent);
+        e.claim(Claim::Heard as u32, gap == 0 || steps.heard);
+        e.claim(Claim::Valid as u32, steps.valid);
 
         let sum = u32::from(gap) + u32::from(needed(&asked, gap));
         let tolerated = sum <= u32::from(asked.expiry);
         e.claim(Claim::NoGap as u32, !tolerated || is_displayed(&asked, gap, heard));
         let shows_gap = !is_displayed(&asked, gap, needed(&asked, gap) - 1) || !is_displayed(&asked, gap, 0);
         e.claim(Claim::Gap as u32, tolerated || gap == 0 || shows_gap);
-        e.claim(Claim::Valid as u32, state.is_valid(asked.times));
         let credited = gap > 0 && gap <= asked.interruption && gap < asked.expiry;
         e.cover(Cover::Exact as u32, credited && sum == u32::from(asked.expiry));
         e.cover(Cover::OneOver as u32, credited && sum == u32::from(asked.expiry) + 1);

@@ -167,6 +167,18 @@ fn lane<const N: usize>(parts: &Parts<N>, rank: usize) -> Lane {
     found
 }
 
+/// Whether two states are the same, field by field. (`==` on arrays compiles to a loop over bytes, which no prover likes.)
+fn same<const N: usize>(one: &Parts<N>, other: &Parts<N>) -> bool {
+    let mut same = one.accepted == other.accepted
+        && one.dropped == other.dropped
+        && one.credited == other.credited
+        && one.last == other.last;
+    for rank in 0..N {
+        same &= one.run[rank] == other.run[rank] && one.age[rank] == other.age[rank];
+    }
+    same
+}
+
 /// Whether a set of bits has `rank`.
 fn has(set: u16, rank: usize) -> bool {
     set >> rank & 1 == 1

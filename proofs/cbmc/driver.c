@@ -1,0 +1,125 @@
+/* The CBMC driver of one harness: what the generated C (wasm2c, HARNESS_C) asks for.
+
+   -DHARNESS=name      the exported function to run
+   -DMEMORY=bytes      linear memory: the stack and the constant data, a multiple of 4
+   -DREACH             replaces every claim by false: each one that can be reached must then FAIL
+
+   Claims and cover points have numbers; each number is an assertion of its own, so that it has a verdict of its own.
+   A trap (panic, overflow check, index out of bounds, division by zero, unreachable) is an assertion too.
+
+   Linear memory is an array of 32-bit words with typed, aligned accesses, because wasm2c's own go through
+   __builtin_memcpy, which CBMC does not see into; an access that is not aligned or out of bounds is an assertion. */
+#include "harness.h"
+
+static u32 words[MEMORY / 4];
+
+#define AT(a, n) \
+  (__CPROVER_assert((a) + (n) <= MEMORY, "trap: out of bounds (memory, or the stack has run out)"), \
+   __CPROVER_assume((a) + (n) <= MEMORY), \
+   __CPROVER_assert(((a) & ((n) - 1)) == 0, "trap: unaligned access"), \
+   words[(a) / 4])
+static inline u32 i32_load(wasm_rt_memory_t *m, u64 a) { return AT(a, 4); }
+static inline u32 i32_load16_u(wasm_rt_memory_t *m, u64 a) { return (u16)(AT(a, 2) >> (8 * (a & 2))); }
+static inline u32 i32_load16_s(wasm_rt_memory_t *m, u64 a) { return (u32)(s32)(s16)i32_load16_u(m, a); }
+static inline u32 i32_load8_u(wasm_rt_memory_t *m, u64 a) { return (u8)(AT(a, 1) >> (8 * (a & 3))); }
+static inline u32 i32_load8_s(wasm_rt_memory_t *m, u64 a) { return (u32)(s32)(s8)i32_load8_u(m, a); }
+static inline u64 i64_load32_u(wasm_rt_memory_t *m, u64 a) { return i32_load(m, a); }
+static inline u64 i64_load32_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s32)i32_load(m, a); }
+static inline u64 i64_load16_u(wasm_rt_memory_t *m, u64 a) { return i32_load16_u(m, a); }
+static inline u64 i64_load16_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s16)i32_load16_u(m, a); }
+static inline u64 i64_load8_u(wasm_rt_memory_t *m, u64 a) { return i32_load8_u(m, a); }
+static inline u64 i64_load8_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s8)i32_load8_u(m, a); }
+/* 64 bits wide, but the stack's arrays of 16 and 32 bits are copied so: aligned to 2 is enough. */
+static inline u64 i64_load(wasm_rt_memory_t *m, u64 a) {
+  return (u64)i32_load16_u(m, a) | (u64)i32_load16_u(m, a + 2) << 16 | (u64)i32_load16_u(m, a + 4) << 32
+    | (u64)i32_load16_u(m, a + 6) << 48;
+}
+static inline void i32_store16(wasm_rt_memory_t *m, u64 a, u32 v) {
+  u32 s = 8 * (a & 2), w = AT(a, 2);
+  words[a / 4] = (w & ~(0xffffu << s)) | (v & 0xffff) << s;
+}
+static inline void i32_store8(wasm_rt_memory_t *m, u64 a, u32 v) {
+  u32 s = 8 * (a & 3), w = AT(a, 1);
+  words[a / 4] = (w & ~(0xffu << s)) | (v & 0xff) << s;
+}
+static inline void i32_store(wasm_rt_memory_t *m, u64 a, u32 v) { AT(a, 4); words[a / 4] = v; }
+static inline void i64_store8(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store8(m, a, (u32)v); }
+static inline void i64_store16(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store16(m, a, (u32)v); }
+static inline void i64_store32(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store(m, a, (u32)v); }
+static inline void i64_store(wasm_rt_memory_t *m, u64 a, u64 v) {
+  i32_store16(m, a, (u32)v);
+  i32_store16(m, a + 2, (u32)(v >> 16));
+  i32_store16(m, a + 4, (u32)(v >> 32));
+  i32_store16(m, a + 6, (u32)(v >> 48));
+}
+
+/* A data segment, byte by byte. The runner unwinds this loop as far as the data reach. */
+static void load_bytes(u32 to, const u8 *from, u32 count) {
+  for (u32 k = 0; k < count; k++) i32_store8(0, to + k, from[k]);
+}
+#define LOAD_DATA(m, o, i, s) load_bytes(o, i, s)
+
+#include "harness.c"
+
+void wasm_rt_trap(wasm_rt_trap_t code) {
+  __CPROVER_assert(code != WASM_RT_TRAP_UNREACHABLE, "trap: panic");
+  __CPROVER_assert(code == WASM_RT_TRAP_UNREACHABLE, "trap: other");
+  __CPROVER_assume(0);
+  while (1) {}
+}
+
+bool wasm_rt_is_initialized(void) { return true; }
+
+void wasm_rt_allocate_memory(wasm_rt_memory_t *m, uint64_t pages, uint64_t max, bool is64) {
+  m->data = 0;
+  m->pages = pages;
+  m->max_pages = max;
+  m->size = MEMORY;
+  m->is64 = is64;
+}
+
+struct w2c_prover { u32 unused; };
+
+u32 nondet_u32(void);
+
+u32 w2c_prover_word(struct w2c_prover *p) {
+  u32 drawn = nondet_u32() & 0xffff;
+  return drawn;
+}
+
+void w2c_prover_assume(struct w2c_prover *p, u32 holds) { __CPROVER_assume(holds != 0); }
+
+#ifdef REACH
+#define HOLDS(holds) 0
+#define COVERED(reached) ((reached) == 0)
+#else
+#define HOLDS(holds) ((holds) != 0)
+#define COVERED(reached) 1
+#endif
+#define CLAIM(n) case n: __CPROVER_assert(HOLDS(holds), "claim " #n); break;
+#define COVER(n) case n: __CPROVER_assert(COVERED(reached), "cover " #n); break;
+
+void w2c_prover_claim(struct w2c_prover *p, u32 number, u32 holds) {
+  switch (number) {
+    CLAIM(0) CLAIM(1) CLAIM(2) CLAIM(3) CLAIM(4) CLAIM(5) CLAIM(6) CLAIM(7)
+    default: __CPROVER_assert(0, "trap: number of a claim");
+  }
+}
+
+void w2c_prover_cover(struct w2c_prover *p, u32 number, u32 reached) {
+  switch (number) {
+    COVER(0) COVER(1) COVER(2) COVER(3) COVER(4) COVER(5) COVER(6) COVER(7)
+    default: __CPROVER_assert(0, "trap: number of a cover point");
+  }
+}
+
+#define JOIN2(a, b) a##b
+#define JOIN(a, b) JOIN2(a, b)
+static struct w2c_prover prover;
+static w2c_h instance;
+
+int main(void) {
+  wasm2c_h_instantiate(&instance, &prover);
+  JOIN(w2c_h_, HARNESS)(&instance);
+  return 0;
+}
