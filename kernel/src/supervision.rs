@@ -1,6 +1,6 @@
 //! Speed supervision: the brake from the train's speed and the permitted one (JP3886280B2 \[0009\]).
 //!
-//! Requirements: `spec/supervision.md`, SUP-1 and SUP-2. The only thing remembered is the previous brake command,
+//! Requirements: `spec/supervision.md`, SUP-1 to SUP-3. The only thing remembered is the previous brake command,
 //! and only a release margin makes it matter.
 
 use crate::Machine;

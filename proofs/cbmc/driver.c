@@ -1,6 +1,7 @@
 /* The CBMC driver of one harness: what the generated C (wasm2c, HARNESS_C) asks for.
 
    -DHARNESS=name      the exported function to run
+   -DCASE=n -DCASES=m  the case to prove, of a harness that is split into cases
    -DMEMORY=bytes      linear memory: the stack and the constant data, a multiple of 4
    -DREACH             replaces every claim by false: each one that can be reached must then FAIL
 
@@ -85,6 +86,12 @@ u32 nondet_u32(void);
 u32 w2c_prover_word(struct w2c_prover *p) {
   u32 drawn = nondet_u32() & 0xffff;
   return drawn;
+}
+
+/* The case of a harness that is proven case by case: -DCASE=number of -DCASES. */
+u32 w2c_prover_choose(struct w2c_prover *p, u32 cases) {
+  __CPROVER_assert(cases == CASES, "trap: number of cases");
+  return CASE;
 }
 
 void w2c_prover_assume(struct w2c_prover *p, u32 holds) { __CPROVER_assume(holds != 0); }

@@ -34,6 +34,7 @@ harness! {
     requirements ["DUP-1"];
     assumptions ["single-fault", "same-input"];
     bound BOUND;
+    cases 1;
     claims {
         SafeOrSame: "with one bit flipped the output is the safe one or the one without the fault",
         NoneLatent: "after the cycle the two channels are equal, or the safe output is latched",
@@ -45,13 +46,13 @@ harness! {
     }
     {
         let Some((machine, state)) = any_machine_state::<ASPECTS, E>(e) else { return };
-        let input = AspectSet::from_bits(e.word(0..=u16::MAX));
+        let input = AspectSet::from_bits(e.word("detected (bits)", 0..=u16::MAX));
         let words = 2 * ASPECTS + 5;
-        let word = usize::from(e.word(0..=u16::try_from(words).unwrap_or(1) - 1));
-        let bit = e.word(0..=15);
+        let word = usize::from(e.word("word with the fault", 0..=u16::try_from(words).unwrap_or(1) - 1));
+        let bit = e.word("bit with the fault", 0..=15);
         // Every bit there is: 16 in each word of the state, 8 in the trip word.
         e.assume(word < words && bit < if word == words - 1 { 8 } else { 16 });
-        let in_a = e.word(0..=1) & 1 == 0;
+        let in_a = e.word("channel with the fault (even: A)", 0..=1) & 1 == 0;
 
         let sound = Channel { state, trip: 0 };
         let faulty = flip(sound, word, bit);
@@ -99,6 +100,7 @@ harness! {
     requirements ["DUP-1", "DUP-2"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Agreement: "there is an output if and only if both channels agree in all three and neither has tripped",
         Value: "it is the output of both",
@@ -110,7 +112,7 @@ harness! {
         OutputsOnly: "the channels agree in their outputs and not in their states",
     }
     {
-        let mut any = || e.word(0..=1);
+        let mut any = || e.word("of any machine", 0..=1);
         let machine = Anything { results: [(any(), any()), (any(), any())], calls: Cell::new(0) };
         let [trip_a, trip_b] = [any(), any()].map(|word| word.to_le_bytes()[0]);
         let before = Duplex { a: Channel { state: any(), trip: trip_a }, b: Channel { state: any(), trip: trip_b } };
@@ -135,6 +137,7 @@ harness! {
     requirements ["DUP-1"];
     assumptions ["same-input"];
     bound "";
+    cases 1;
     claims {
         Transparent: "without a fault the output and the state are those of one machine",
         Latched: "once tripped, also with one bit flipped, the output stays the safe one and the channels stay tripped",
@@ -144,7 +147,7 @@ harness! {
         NotSafe: "the output without a fault is not the safe one",
     }
     {
-        let mut any = || e.word(0..=3);
+        let mut any = || e.word("of any machine", 0..=3);
         let result = (any(), any());
         let machine = Anything { results: [result; 2], calls: Cell::new(0) };
         let state = any();

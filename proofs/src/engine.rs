@@ -4,8 +4,13 @@ use core::ops::RangeInclusive;
 
 /// A prover, or a tester that stands in for one.
 pub trait Engine {
-    /// An arbitrary value: all 65 536. `likely` is a hint to testers, where interesting values lie; no prover looks at it.
-    fn word(&mut self, likely: RangeInclusive<u16>) -> u16;
+    /// An arbitrary value: all 65 536. `what` names it for whoever reads a counterexample, and `likely` hints to
+    /// testers where interesting values lie; no prover looks at either.
+    fn word(&mut self, what: &'static str, likely: RangeInclusive<u16>) -> u16;
+
+    /// An arbitrary value below `cases`, asked for at most once: a prover may take one after the other, each as a
+    /// constant, which is much less work where the value is an index.
+    fn choose(&mut self, what: &'static str, cases: usize) -> usize;
 
     /// Goes on only with the values for which this holds.
     fn assume(&mut self, holds: bool);
@@ -17,10 +22,10 @@ pub trait Engine {
     fn cover(&mut self, number: u32, reached: bool);
 }
 
-/// An arbitrary 32-bit value; `likely` as in [`Engine::word`], for its low half.
-pub fn any_u32<E: Engine + ?Sized>(engine: &mut E, likely: RangeInclusive<u16>) -> u32 {
-    let high = engine.word(0..=0);
-    u32::from(high) << 16 | u32::from(engine.word(likely))
+/// An arbitrary 32-bit value: its high half, then its low half. `likely` is for the low half.
+pub fn any_u32<E: Engine + ?Sized>(engine: &mut E, what: &'static str, likely: RangeInclusive<u16>) -> u32 {
+    let high = engine.word(what, 0..=0);
+    u32::from(high) << 16 | u32::from(engine.word(what, likely))
 }
 
 /// CBMC, on the crate compiled to WebAssembly: the four primitives are imports.
@@ -33,6 +38,7 @@ pub(crate) mod cbmc {
         #[link(wasm_import_module = "prover")]
         unsafe extern "C" {
             pub safe fn word() -> u32;
+            pub safe fn choose(cases: u32) -> u32;
             pub safe fn assume(holds: u32);
             pub safe fn claim(number: u32, holds: u32);
             pub safe fn cover(number: u32, reached: u32);
@@ -43,9 +49,14 @@ pub(crate) mod cbmc {
 
     impl Engine for Cbmc {
         #[inline(always)]
-        fn word(&mut self, _: RangeInclusive<u16>) -> u16 {
+        fn word(&mut self, _: &'static str, _: RangeInclusive<u16>) -> u16 {
             // The import returns 16 bits; the cast says so to the optimiser.
             (import::word() & 0xFFFF) as u16
+        }
+
+        #[inline(always)]
+        fn choose(&mut self, _: &'static str, cases: usize) -> usize {
+            import::choose(cases as u32) as usize
         }
 
         #[inline(always)]
@@ -92,13 +103,19 @@ pub(crate) mod model {
             kani::assert($holds, $text)
         };
         (cover, $reached:ident, $text:expr) => {
-            kani::cover!($reached, $text)
+            kani::cover($reached, $text)
         };
     }
 
     impl Engine for Kani {
-        fn word(&mut self, _: RangeInclusive<u16>) -> u16 {
+        fn word(&mut self, _: &'static str, _: RangeInclusive<u16>) -> u16 {
             kani::any()
+        }
+
+        fn choose(&mut self, _: &'static str, cases: usize) -> usize {
+            let choice: usize = kani::any();
+            kani::assume(choice < cases);
+            choice
         }
 
         fn assume(&mut self, holds: bool) {

@@ -17,6 +17,8 @@ pub struct Harness {
     pub assumptions: &'static [&'static str],
     /// The bound of the proof in words; empty if there is none.
     pub bound: &'static str,
+    /// How many cases [`Engine::choose`] splits it into; 1 if it does not.
+    pub cases: usize,
     /// Its claims, by number.
     pub claims: &'static [Point],
     /// Its cover points, by number.
@@ -45,6 +47,7 @@ macro_rules! harness {
         requirements [$($requirement:literal),* $(,)?];
         assumptions [$($assumption:literal),* $(,)?];
         bound $bound:expr;
+        cases $cases:expr;
         claims { $($claim:ident: $claim_text:literal,)+ }
         covers { $($cover:ident: $cover_text:literal,)+ }
         $body:block
@@ -68,6 +71,7 @@ macro_rules! harness {
                 requirements: &[$($requirement),*],
                 assumptions: &[$($assumption),*],
                 bound: $bound,
+                cases: $cases,
                 claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
                 covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
                 run: |engine| run(engine),

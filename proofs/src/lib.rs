@@ -28,5 +28,14 @@ pub const ASPECTS: usize = match option_env!("ATC_ASPECTS") {
     None => 4,
 };
 
+/// What the harnesses whose size is a parameter say of their bound at this size: nothing at 16, which is all there is.
+pub const fn bound(aspects: usize) -> &'static str {
+    match aspects {
+        16 => "",
+        4 => "4 aspects",
+        _ => "another number of aspects than the 16 of the machine",
+    }
+}
+
 /// All harnesses, module by module.
 pub const HARNESSES: &[&[Harness]] = &[time::ALL, aspect::ALL, supervision::ALL, duplex::ALL];

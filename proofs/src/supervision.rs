@@ -18,9 +18,9 @@ struct Cycle {
     unbraked: Brake,
 }
 
-fn any_speed<E: Engine + ?Sized>(e: &mut E) -> Option<i32> {
-    let value = any_u32(e, 0..=30).cast_signed_compat();
-    if e.word(0..=3) & 3 == 3 { None } else { Some(value) }
+fn any_speed<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Option<i32> {
+    let value = any_u32(e, what, 0..=30).cast_signed_compat();
+    if e.word("that speed is missing (3 mod 4)", 0..=3) & 3 == 3 { None } else { Some(value) }
 }
 
 /// `u32::cast_signed`, which is newer than the compilers this is built with.
@@ -35,19 +35,19 @@ impl CastSigned for u32 {
 }
 
 fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
-    let maximum = e.word(1..=30);
-    let margin = e.word(0..=5);
+    let maximum = e.word("highest plausible speed (0.1 km/h)", 1..=30);
+    let margin = e.word("release margin (0.1 km/h)", 0..=5);
     let Ok(parameters) = Supervision::new(KmhTenths(maximum), KmhTenths(margin)) else {
         e.assume(false);
         return None;
     };
-    let previous = match e.word(0..=2) {
+    let previous = match e.word("previous brake (0 release, 1 service, else emergency)", 0..=2) {
         0 => Brake::Release,
         1 => Brake::Service,
         _ => Brake::Emergency,
     };
-    let measured = any_speed(e);
-    let permitted = any_speed(e);
+    let measured = any_speed(e, "measured speed (0.1 km/h, two's complement)");
+    let permitted = any_speed(e, "permitted speed (0.1 km/h, two's complement)");
     let speeds = Speeds { measured: measured.map(RawKmhTenths), permitted: permitted.map(RawKmhTenths) };
     Some(Cycle {
         maximum: i64::from(maximum),
@@ -78,6 +78,7 @@ harness! {
     requirements ["SUP-1"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Above: "above the permitted speed the brake is on",
         NotAbove: "not above it, and with no brake on before, it is released",
@@ -114,6 +115,7 @@ harness! {
     requirements ["SUP-2"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Emergency: "a missing, negative or too high speed, or a missing or negative permission, commands the emergency brake, and nothing else does",
     }
@@ -140,6 +142,7 @@ harness! {
     requirements ["SUP-3"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Exact: "accepted if and only if the maximum is above 0 and the margin not above it; kept as asked; the error names the broken rule",
     }
@@ -148,7 +151,7 @@ harness! {
         Refused: "some parameters are refused",
     }
     {
-        let (maximum, margin) = (e.word(0..=30), e.word(0..=30));
+        let (maximum, margin) = (e.word("highest plausible speed (0.1 km/h)", 0..=30), e.word("release margin (0.1 km/h)", 0..=30));
         let exact = match Supervision::new(KmhTenths(maximum), KmhTenths(margin)) {
             Ok(kept) => maximum > 0 && margin <= maximum && kept.maximum().0 == maximum && kept.margin().0 == margin,
             Err(SupervisionError::NoMaximum) => maximum == 0,

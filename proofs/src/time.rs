@@ -18,6 +18,7 @@ harness! {
     requirements ["TIME-1"];
     assumptions ["cycle-10ms"];
     bound "cycle 10 ms; other cycles are tested";
+    cases 1;
     claims {
         Up: "rounded up, a time lasts at least what was asked, and less than a cycle more",
         Down: "rounded down, it lasts at most what was asked, and less than a cycle less",
@@ -30,10 +31,10 @@ harness! {
     }
     {
         // Drawn, so that the compiler leaves the division to the prover, which knows it better than its bit tricks.
-        let cycle_ms = u32::from(e.word(10..=10));
+        let cycle_ms = u32::from(e.word("cycle (ms)", 10..=10));
         e.assume(cycle_ms == CYCLE_MS);
         let Some(cycle) = Cycle::new(Millis(cycle_ms)) else { return e.assume(false) };
-        let asked = any_u32(e, 0..=2000);
+        let asked = any_u32(e, "time (ms)", 0..=2000);
         let most = 60_000 * CYCLE_MS;
         let lasts = |ticks: Ticks| u64::from(ticks.0) * u64::from(CYCLE_MS);
         let (time, unit) = (u64::from(asked), u64::from(CYCLE_MS));
@@ -44,7 +45,7 @@ harness! {
         e.claim(Claim::Refused as u32, up.is_none() == (asked > most) && down.is_none() == (asked >= most + CYCLE_MS));
         e.cover(Cover::Inexact as u32, up != down && up.is_some());
 
-        let ms = [300..=300, 400..=400, 400..=400, 800..=800, 100..=100].map(|likely| Millis(any_u32(e, likely)));
+        let ms = [300..=300, 400..=400, 400..=400, 800..=800, 100..=100].map(|likely| Millis(any_u32(e, "T1, T2, T3, T4, T5 (ms)", likely)));
         let [operate, recovery, mask, interruption, shortened_operate] = ms;
         let times = Times::from_millis(
             Millis(cycle_ms),
@@ -74,6 +75,7 @@ harness! {
     requirements ["TIME-2", "TIME-3"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Exact: "accepted if and only if no rule of TIME-2 is broken",
         Kept: "accepted times are the ones that were asked for, T4 at most T2+T3 less one",
@@ -86,7 +88,7 @@ harness! {
     }
     {
         let [operate, recovery, mask, interruption, shortened] =
-            [1..=6, 1..=6, 0..=6, 0..=14, 0..=5].map(|likely| e.word(likely));
+            [1..=6, 1..=6, 0..=6, 0..=14, 0..=5].map(|likely| e.word("T1, T2, T3, T4, T5 (cycles)", likely));
         let expiry = u32::from(recovery) + u32::from(mask);
         let result = Times::from_ticks(Ticks(operate), Ticks(recovery), Ticks(mask), Ticks(interruption), Ticks(shortened));
         let allowed = operate > 0

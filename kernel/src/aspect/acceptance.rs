@@ -65,6 +65,8 @@ impl<const N: usize> State<N> {
 
     /// The invariant. Kept by [`step`] (T-ACC-8); every proof assumes it before a step and nothing more.
     pub fn is_valid(&self, times: Times) -> bool {
+        //= spec/general.md#gen-1-one-invariant
+        //# Every state type MUST have one validity predicate that the initial state, the most restrictive one, satisfies and every step preserves.
         let ranks = AspectSet::from_bits(rank_bits::<N>());
         let mut valid = self.last.is_valid()
             && self.last.bits() & !ranks.bits() == 0
@@ -165,6 +167,8 @@ impl<const N: usize> State<N> {
 ///
 /// Within a cycle: runs and ages, then acceptances, then expiry, then drops, then the display.
 pub fn step<const N: usize>(times: Times, state: State<N>, detected: AspectSet) -> (State<N>, Display) {
+    //= spec/general.md#gen-2-total
+    //# Every step MUST end without a panic, an overflow or an index out of bounds, from any state bits and on any input.
     let mut next = state;
     for rank in 0..N {
         advance(times, &mut next, rank, detected.bits() >> rank & 1 == 1);
@@ -176,6 +180,8 @@ pub fn step<const N: usize>(times: Times, state: State<N>, detected: AspectSet) 
     //= spec/aspect.md#acc-7-mask-and-a-higher-aspect
     //# A masked aspect MUST be dropped when a higher aspect has been detected on T1 consecutive cycles up to now.
     let outdated = next.evident(times).below_highest();
+    //= spec/aspect.md#acc-4-recovery
+    //# A lost aspect MUST be satisfied while its age is below T2.
     let masked = next.accepted.without(next.firm(times));
     next.dropped = next.dropped.or(masked.and(contradicted.or(outdated)));
 

@@ -5,7 +5,7 @@
 //! before it is gone; and an aspect that was accepted, and interrupted only shortly, is accepted again after a
 //! shorter operate time. Of all that stand, the lowest is displayed; no display means stop.
 //!
-//! Requirements: `spec/aspect.md`, ACC-1 to ACC-9 and TIME-1, TIME-2. Read in this order: [`Times`] (parameters),
+//! Requirements: `spec/aspect.md`, ACC-1 to ACC-9 and TIME-1 to TIME-4. Read in this order: [`Times`] (parameters),
 //! [`AspectSet`] and [`Display`] (input and output), [`State`] with its `is_valid`, and [`step`].
 
 mod acceptance;

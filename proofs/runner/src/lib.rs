@@ -1,1 +1,53 @@
-//! Runs the proofs.
+//! Runs the theorems of `atc-proofs` and reports what happened.
+//!
+//! Two engines are here. `native` *tests*: it draws values and replays counterexamples. `cbmc` *proves*, on the
+//! compiled, optimised code: Rust → WebAssembly → C → CBMC. Kani is run by `cargo kani` itself. A result is only ever
+//! what a run said: a prover that is missing, was killed or was silent is never a pass.
+
+pub mod campaign;
+mod cbmc;
+mod compile;
+pub mod mutants;
+pub mod native;
+mod process;
+pub mod provenance;
+pub mod report;
+pub mod selftest;
+mod tools;
+
+use std::path::{Path, PathBuf};
+
+pub use campaign::{Options, campaign};
+pub use cbmc::Solver;
+pub use mutants::mutants;
+pub use tools::Tools;
+
+use atc_proofs::Harness;
+
+/// The checkout that this program was built from.
+pub fn root() -> PathBuf {
+    let runner = Path::new(env!("CARGO_MANIFEST_DIR"));
+    runner.ancestors().nth(2).unwrap_or(runner).to_path_buf()
+}
+
+/// All harnesses, module by module, in the order of the sources.
+pub fn harnesses() -> Vec<&'static Harness> {
+    atc_proofs::HARNESSES.iter().copied().flatten().collect()
+}
+
+/// The harnesses of these names; all of them if none is named.
+///
+/// # Errors
+/// A name that no harness has: a filter that matches nothing must not pass.
+pub fn select(names: &[String]) -> Result<Vec<&'static Harness>, String> {
+    if names.is_empty() {
+        return Ok(harnesses());
+    }
+    let find = |name: &String| {
+        harnesses().into_iter().find(|harness| harness.name == name).ok_or_else(|| {
+            let known: Vec<_> = harnesses().iter().map(|harness| harness.name).collect();
+            format!("there is no harness `{name}`; the harnesses are {}", known.join(", "))
+        })
+    };
+    names.iter().map(find).collect()
+}

@@ -1,2 +1,258 @@
-//! `atc-prover`.
-fn main() {}
+//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
+
+use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
+use atc_prover::{Options, Tools, campaign, harnesses, mutants, native, root, select, selftest};
+use clap::{Parser, Subcommand, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Runs the theorems of the train control kernel.
+#[derive(Parser)]
+#[command(name = "atc-proofs", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Lists the harnesses: theorem, claims, cover points, assumptions.
+    List,
+    /// Proves (or tests) the harnesses and writes the result as JSON.
+    Prove {
+        /// The harnesses; all of them if none is named.
+        names: Vec<String>,
+        /// What runs them.
+        #[arg(long, value_enum, default_value = "cbmc")]
+        engine: EngineName,
+        /// Where the JSON goes [default: target/proofs/campaign.json, or native.json].
+        #[arg(long)]
+        json: Option<PathBuf>,
+        #[command(flatten)]
+        run: Run,
+    },
+    /// Breaks the kernel in named ways and expects the named theorems to fail.
+    Mutants {
+        /// The mutants; all of them if none is named.
+        names: Vec<String>,
+        /// Where the JSON goes [default: target/proofs/mutants.json].
+        #[arg(long)]
+        json: Option<PathBuf>,
+        #[command(flatten)]
+        run: Run,
+    },
+    /// Runs one harness natively on given values, and says in words what they are.
+    Replay {
+        /// The harness.
+        harness: String,
+        /// The values in order, with commas; without them those of the last campaign's counterexample.
+        #[arg(long, value_delimiter = ',')]
+        values: Option<Vec<u16>>,
+        /// Keeps them as a regression test: proofs/runner/regressions/NAME.json.
+        #[arg(long, value_name = "NAME")]
+        keep: Option<String>,
+    },
+    /// Tests the cbmc engine on harnesses whose verdicts are known.
+    Selftest {
+        #[command(flatten)]
+        run: Run,
+    },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EngineName {
+    /// Proves, on the compiled code.
+    Cbmc,
+    /// Tests, with drawn values.
+    Native,
+}
+
+#[derive(clap::Args)]
+struct Run {
+    /// Runs of the prover at a time [default: the cores].
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Seconds for each run of the prover.
+    #[arg(long, default_value_t = 600)]
+    time_limit: u64,
+    /// Which solver.
+    #[arg(long, value_enum, default_value = "cadical")]
+    solver: atc_prover::Solver,
+    /// Ranks of the aspect machine, 1 to 16.
+    #[arg(long, default_value_t = atc_proofs::ASPECTS, value_parser = aspects)]
+    aspects: usize,
+}
+
+fn aspects(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|number| (1..=16).contains(number)).ok_or_else(|| "a number from 1 to 16".to_owned())
+}
+
+impl Run {
+    fn options(&self) -> Options {
+        let default = Options::default();
+        Options {
+            jobs: self.jobs.unwrap_or(default.jobs).max(1),
+            limit: Duration::from_secs(self.time_limit),
+            solver: self.solver,
+            aspects: self.aspects,
+            ..default
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(command: Command) -> Result<bool, String> {
+    match command {
+        Command::List => {
+            list();
+            Ok(true)
+        }
+        Command::Prove { names, engine: EngineName::Cbmc, json, run } => prove(&names, json, &run.options()),
+        Command::Prove { names, engine: EngineName::Native, json, run } => {
+            let result = atc_prover::campaign::native_campaign(&run.options(), &select(&names)?)?;
+            result.harnesses.iter().for_each(|harness| println!("{}", line(harness)));
+            save(&json.unwrap_or_else(|| default("native.json")), &result)?;
+            Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
+        }
+        Command::Mutants { names, json, run } => try_mutants(&names, json, &run.options()),
+        Command::Replay { harness, values, keep } => replay(&harness, values, keep),
+        Command::Selftest { run } => {
+            selftest::check(&Tools::find(&root())?, &run.options())?;
+            println!("the cbmc engine passes its self-test");
+            Ok(true)
+        }
+    }
+}
+
+fn list() {
+    for harness in harnesses() {
+        println!("{} ({}): {}", harness.name, harness.theorem, harness.statement.trim());
+        harness.claims.iter().for_each(|claim| println!("    claim  {}: {}", claim.name, claim.text));
+        harness.covers.iter().for_each(|cover| println!("    cover  {}: {}", cover.name, cover.text));
+        println!(
+            "    proves {}; assumes {:?}; {}",
+            harness.requirements.join(", "),
+            harness.assumptions,
+            harness.bound
+        );
+    }
+}
+
+fn prove(names: &[String], json: Option<PathBuf>, options: &Options) -> Result<bool, String> {
+    let chosen = select(names)?;
+    let bar = bar(chosen.len());
+    let result = campaign(options, &chosen, &|harness| {
+        bar.suspend(|| println!("{}", line(harness)));
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
+    let proved = result.harnesses.iter().filter(|harness| harness.verdict == Verdict::Proved).count();
+    let claims: usize = result.harnesses.iter().map(|harness| harness.claims.len()).sum();
+    println!("{proved} of {} harnesses proved ({claims} claims), {:.1} s", chosen.len(), result.provenance.seconds);
+    save(&json.unwrap_or_else(|| default("campaign.json")), &result)?;
+    Ok(proved == chosen.len())
+}
+
+fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Result<bool, String> {
+    let bar = bar(atc_prover::mutants::list(&root())?.len());
+    let result: Mutants = mutants(options, names, &|mutant| {
+        let by: Vec<_> =
+            mutant.killed_by.iter().map(|kill| format!("{} ({})", kill.harness, kill.claims.join(", "))).collect();
+        let reason = mutant.reason.as_deref().unwrap_or_default();
+        let verdict = format!("{:?}", mutant.verdict).to_lowercase();
+        bar.suspend(|| println!("{verdict:9} {:32} {:6.1} s  {} {reason}", mutant.name, mutant.seconds, by.join("; ")));
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
+    let killed = result.mutants.iter().filter(|mutant| mutant.verdict == MutantVerdict::Killed).count();
+    println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
+    save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
+    Ok(killed == result.mutants.len())
+}
+
+fn replay(name: &str, values: Option<Vec<u16>>, keep: Option<String>) -> Result<bool, String> {
+    let names = [name.to_owned()];
+    let harness = select(&names)?[0];
+    let values = match values {
+        Some(values) => values,
+        None => last_counterexample(name)?,
+    };
+    let run = native::replay(harness, &values);
+    run.drawn.iter().for_each(|(what, value)| println!("    {value:6}  {value:#018b}  {what}"));
+    let failed: Vec<_> = run.failed().iter().filter_map(|number| harness.claims.get(*number as usize)).collect();
+    for claim in &failed {
+        println!("fails: {}: {}", claim.name, claim.text);
+    }
+    if !run.accepted {
+        println!("these values do not meet the assumptions of {name}: nothing is claimed of them");
+    } else if failed.is_empty() {
+        println!("every claim of {name} holds for these values");
+    }
+    if let Some(keep) = keep {
+        let plain = !keep.is_empty() && keep.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !plain {
+            return Err(format!("`{keep}` is no name for a test: letters, digits and _ only"));
+        }
+        let path = root().join("proofs/runner/regressions").join(format!("{keep}.json"));
+        save(&path, &serde_json::json!({ "harness": name, "values": values }))?;
+    }
+    Ok(run.accepted && failed.is_empty())
+}
+
+fn last_counterexample(name: &str) -> Result<Vec<u16>, String> {
+    let path = default("campaign.json");
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}; give --values", path.display()))?;
+    let last: Campaign = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+    let result = last.harnesses.into_iter().find(|harness| harness.name == name);
+    result
+        .and_then(|harness| harness.counterexample)
+        .ok_or_else(|| format!("the last campaign has no counterexample of {name}; give --values"))
+}
+
+fn line(harness: &HarnessResult) -> String {
+    let verdict = harness.verdict.as_str();
+    let covers = harness.covers.iter().filter(|cover| cover.hit).count();
+    let bound = if harness.bound.is_empty() { String::new() } else { format!(", {}", harness.bound) };
+    let reason = harness.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+    format!(
+        "{verdict:8} {:20} {:7.1} s  {} claims, {covers} of {} cover points{bound}{reason}",
+        harness.name,
+        harness.seconds,
+        harness.claims.len(),
+        harness.covers.len(),
+    )
+}
+
+fn bar(length: usize) -> ProgressBar {
+    let bar = ProgressBar::new(u64::try_from(length).unwrap_or(0));
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed}");
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn default(name: &str) -> PathBuf {
+    root().join("target").join("proofs").join(name)
+}
+
+/// Writes JSON: first under another name, so that a killed run leaves no half of it.
+fn save(path: &Path, result: &impl serde::Serialize) -> Result<(), String> {
+    let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
+    }
+    let text = serde_json::to_string_pretty(result).map_err(|error| failed(&error))?;
+    let unfinished = path.with_extension("json.part");
+    std::fs::write(&unfinished, text + "\n").map_err(|error| failed(&error))?;
+    std::fs::rename(&unfinished, path).map_err(|error| failed(&error))
+}

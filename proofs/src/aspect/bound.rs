@@ -11,6 +11,7 @@ harness! {
     requirements ["ACC-2"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         Bounded: "the display is at most any aspect that is accepted and heard",
         Stays: "an accepted aspect that is heard, and was not lost, stays accepted",
@@ -40,6 +41,7 @@ harness! {
     requirements ["ACC-3", "ACC-6"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         Unseen: "an aspect unheard for T2+T3 cycles is neither satisfied nor displayed",
         Silence: "after T2+T3 cycles of silence nothing is displayed",
@@ -55,8 +57,8 @@ harness! {
         let rank = any_rank::<ASPECTS, E>(e);
         let expiry = cycle.asked.expiry;
         // Ghosts: cycles in which this aspect, and in which all aspects, have not been heard, counted to T2+T3.
-        let unheard = e.word(0..=expiry);
-        let silence = e.word(0..=expiry);
+        let unheard = e.word("cycles this aspect has been unheard", 0..=expiry);
+        let silence = e.word("cycles of silence", 0..=expiry);
         let covers = |lane: Lane, cycles: u16| !lane.accepted || lane.age >= cycles;
         e.assume(unheard <= expiry && covers(lane(&cycle.before, rank), unheard));
         e.assume(silence <= expiry && every(&cycle, false, |lane| covers(lane, silence)));
@@ -93,6 +95,7 @@ harness! {
     requirements ["ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-6", "ACC-7", "ACC-9"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         Recovery: "an accepted aspect lost for less than T2 is satisfied",
         Mask: "from T2 to T2+T3 it stays satisfied exactly while no lower aspect is firm and no higher one has T1 evidence",

@@ -1,6 +1,6 @@
 //! T-ACC-5 and T-ACC-6: two runs of the machine side by side, and the relation between them.
 
-use super::{Asked, BOUND, any_parts, any_rank, any_set, any_times, has, satisfied};
+use super::{Asked, BOUND, any_parts, any_set, any_times, has, satisfied};
 use crate::{ASPECTS, Engine};
 use atc_kernel::aspect::{AspectSet, Parts, State, step};
 
@@ -39,6 +39,7 @@ harness! {
     requirements ["ACC-8", "ACC-9"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         NotHigher: "where the conventional device shows an aspect, the new one does not show a higher one",
         Related: "the relation between the two devices is kept",
@@ -109,6 +110,7 @@ harness! {
     requirements ["ACC-2", "ACC-7", "ACC-8", "ACC-9"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases ASPECTS;
     claims {
         Bounded: "the display with the added detections is at most the higher of the added aspect and the display without them",
         Related: "the relation between the two runs is kept",
@@ -121,14 +123,14 @@ harness! {
     }
     {
         let Some(asked) = any_times(e) else { return };
-        let extra = any_rank::<ASPECTS, E>(e);
+        let extra = e.choose("rank of the added aspect", ASPECTS);
         let plain = any_parts::<ASPECTS, E>(e, &asked);
         let more = any_counterpart(e, &plain, &asked);
         let (plain_state, more_state) = (State::from_parts(plain), State::from_parts(more));
         e.assume(plain_state.is_valid(asked.times) && more_state.is_valid(asked.times));
         e.assume(more_heard(&asked, &plain, &more, extra));
         let detected = any_set::<ASPECTS, E>(e);
-        let added = if e.word(0..=1) & 1 == 1 { 1 << extra } else { 0 };
+        let added = if e.word("the extra aspect is heard (odd: yes)", 0..=1) & 1 == 1 { 1 << extra } else { 0 };
 
         let (plain, display) = step(asked.times, plain_state, detected);
         let (more, display_more) = step(asked.times, more_state, AspectSet::from_bits(detected.bits() | added));
@@ -146,15 +148,16 @@ harness! {
 /// An arbitrary second state; for testers, likely close to `parts`.
 fn any_counterpart<const N: usize, E: Engine + ?Sized>(e: &mut E, parts: &Parts<N>, asked: &Asked) -> Parts<N> {
     let near = |value: u16| value..=value;
-    let accepted = e.word(near(parts.accepted));
-    let dropped = e.word(near(parts.dropped));
-    let credited = e.word(near(parts.credited));
-    let last = e.word(near(parts.last));
+    let accepted = e.word("second device: accepted (bits)", near(parts.accepted));
+    let dropped = e.word("second device: dropped (bits)", near(parts.dropped));
+    let credited = e.word("second device: credited (bits)", near(parts.credited));
+    let last = e.word("second device: displayed last (bit)", near(parts.last));
     let mut other = Parts { run: [0; N], age: [0; N], accepted, dropped, credited, last };
     for rank in 0..N {
         let top = if has(accepted, rank) { asked.expiry } else { 0 };
-        other.age[rank] = e.word(parts.age[rank].min(top)..=parts.age[rank].min(top));
-        other.run[rank] = e.word(near(parts.run[rank]));
+        other.age[rank] =
+            e.word("second device: age, rank by rank", parts.age[rank].min(top)..=parts.age[rank].min(top));
+        other.run[rank] = e.word("second device: run, rank by rank", near(parts.run[rank]));
     }
     other
 }

@@ -12,6 +12,7 @@ harness! {
     requirements ["GEN-1"];
     assumptions [];
     bound BOUND;
+    cases 1;
     claims {
         Inductive: "the state after a cycle is valid",
         Initial: "the initial state is valid and displays nothing",
@@ -44,6 +45,7 @@ harness! {
     requirements ["GEN-2"];
     assumptions [];
     bound BOUND;
+    cases 1;
     claims {
         One: "at most one aspect is displayed, and it is satisfied",
     }
@@ -69,6 +71,7 @@ harness! {
     requirements ["ACC-2"];
     assumptions [];
     bound "";
+    cases 1;
     claims {
         Same: "the two ways give the same aspect, for all sets of 16",
     }
@@ -77,7 +80,7 @@ harness! {
         Empty: "the set is empty",
     }
     {
-        let bits = e.word(0..=u16::MAX);
+        let bits = e.word("set (bits)", 0..=u16::MAX);
         let flags: [bool; 16] = core::array::from_fn(|rank| has(bits, rank));
         let slow = lowest_member(&flags);
         let fast = AspectSet::from_bits(bits).lowest();

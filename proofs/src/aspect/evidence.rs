@@ -61,6 +61,7 @@ harness! {
     requirements ["ACC-1", "ACC-8"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         OnlyOnEvidence: "an acceptance has T1 consecutive cycles, or T5 with a credit",
         OnEvidence: "T1 consecutive cycles, or T5 with a credit, are an acceptance",
@@ -80,10 +81,10 @@ harness! {
         let rank = any_rank::<ASPECTS, E>(e);
         let (was, is) = (lane(&cycle.before, rank), lane(&cycle.after, rank));
         let before = History {
-            run: e.word(was.run..=was.run),
-            ever: e.word(0..=1) & 1 == 1,
-            since: e.word(if was.accepted { was.age..=was.age } else { asked.expiry..=asked.expiry }),
-            gap: e.word(was.age.saturating_sub(was.run)..=was.age.saturating_sub(was.run)),
+            run: e.word("history: run", was.run..=was.run),
+            ever: e.word("history: ever accepted (odd: yes)", 0..=1) & 1 == 1,
+            since: e.word("history: cycles since accepted and heard", if was.accepted { was.age..=was.age } else { asked.expiry..=asked.expiry }),
+            gap: e.word("history: g of the present run", was.age.saturating_sub(was.run)..=was.age.saturating_sub(was.run)),
         };
         e.assume(before.matches(asked, was));
 
@@ -117,6 +118,7 @@ harness! {
     requirements ["ACC-9"];
     assumptions ["detected-throughout"];
     bound BOUND;
+    cases 1;
     claims {
         Rise: "a rise above the last display has T1 cycles of evidence now, of that aspect or a higher one",
         OtherRise: "any other rise shows an aspect that is accepted and heard now",

@@ -9,6 +9,7 @@ mod compare;
 mod display;
 mod evidence;
 mod gap;
+mod table;
 
 use crate::{ASPECTS, Engine, Harness};
 use atc_kernel::aspect::{Acceptance, AspectSet, Display, Parts, State, Times, step};
@@ -18,7 +19,8 @@ pub use bound::{t_acc_2, t_acc_3, t_acc_7};
 pub use compare::{t_acc_5, t_acc_6};
 pub use display::{set_1, t_acc_8, total};
 pub use evidence::{t_acc_1, t_acc_1_rise};
-pub use gap::{t_acc_4, t_acc_4_tolerated};
+pub use gap::{t_acc_4, t_acc_4_alone, t_acc_4_tolerated};
+pub use table::time_table;
 
 /// The harnesses of this module.
 pub const ALL: &[Harness] = &[
@@ -27,21 +29,19 @@ pub const ALL: &[Harness] = &[
     t_acc_2::HARNESS,
     t_acc_3::HARNESS,
     t_acc_4::HARNESS,
+    t_acc_4_alone::HARNESS,
     t_acc_4_tolerated::HARNESS,
     t_acc_5::HARNESS,
     t_acc_6::HARNESS,
     t_acc_7::HARNESS,
     t_acc_8::HARNESS,
+    time_table::HARNESS,
     set_1::HARNESS,
     total::HARNESS,
 ];
 
 /// What the harnesses of size [`ASPECTS`] say of their bound.
-pub(crate) const BOUND: &str = match ASPECTS {
-    16 => "",
-    4 => "4 aspects; 16 by `cargo kani` and the heavy tier",
-    _ => "fewer than 16 aspects",
-};
+pub(crate) const BOUND: &str = crate::bound(ASPECTS);
 
 /// Arbitrary valid times, and T4 as it was asked for (the machine may cap it).
 #[derive(Clone, Copy)]
@@ -57,12 +57,12 @@ struct Asked {
 }
 
 fn any_times<E: Engine + ?Sized>(e: &mut E) -> Option<Asked> {
-    let operate = e.word(2..=5);
-    let recovery = e.word(1..=5);
-    let mask = e.word(0..=5);
-    let interruption = e.word(0..=11);
-    let shortened = e.word(1..=operate.saturating_sub(1).max(1));
-    let conventional = e.word(0..=1) & 1 == 1;
+    let operate = e.word("T1 (cycles)", 2..=5);
+    let recovery = e.word("T2 (cycles)", 1..=5);
+    let mask = e.word("T3 (cycles)", 0..=5);
+    let interruption = e.word("T4 (cycles)", 0..=11);
+    let shortened = e.word("T5 (cycles)", 1..=operate.saturating_sub(1).max(1));
+    let conventional = e.word("conventional device (odd: yes)", 0..=1) & 1 == 1;
     let Ok(times) =
         Times::from_ticks(Ticks(operate), Ticks(recovery), Ticks(mask), Ticks(interruption), Ticks(shortened))
     else {
@@ -80,26 +80,29 @@ fn any_times<E: Engine + ?Sized>(e: &mut E) -> Option<Asked> {
 
 /// An arbitrary set of aspects below rank `N`.
 fn any_set<const N: usize, E: Engine + ?Sized>(e: &mut E) -> AspectSet {
-    AspectSet::from_bits(e.word(0..=ranks::<N>()))
+    AspectSet::from_bits(e.word("detected (bits)", 0..=ranks::<N>()))
 }
 
 /// An arbitrary state, valid or not.
 fn any_parts<const N: usize, E: Engine + ?Sized>(e: &mut E, asked: &Asked) -> Parts<N> {
-    let accepted = e.word(0..=ranks::<N>());
-    let dropped = e.word(0..=accepted);
-    let credited = e.word(0..=ranks::<N>() & !accepted);
-    let last = e.word(0..=ranks::<N>());
+    let accepted = e.word("accepted (bits)", 0..=ranks::<N>());
+    let dropped = e.word("dropped (bits)", 0..=accepted);
+    let credited = e.word("credited (bits)", 0..=ranks::<N>() & !accepted);
+    let last = e.word("displayed last (bit)", 0..=ranks::<N>());
     let mut parts = Parts { run: [0; N], age: [0; N], accepted, dropped, credited, last };
     for rank in 0..N {
         let is_accepted = has(accepted, rank);
-        parts.age[rank] = e.word(0..=if is_accepted { asked.expiry } else { 0 });
-        parts.run[rank] = e.word(if is_accepted && parts.age[rank] == 0 {
-            asked.shortened..=asked.operate
-        } else if is_accepted {
-            0..=parts.age[rank].saturating_sub(1).min(asked.operate)
-        } else {
-            0..=asked.operate.saturating_sub(1)
-        });
+        parts.age[rank] = e.word("age, rank by rank", 0..=if is_accepted { asked.expiry } else { 0 });
+        parts.run[rank] = e.word(
+            "run, rank by rank",
+            if is_accepted && parts.age[rank] == 0 {
+                asked.shortened..=asked.operate
+            } else if is_accepted {
+                0..=parts.age[rank].saturating_sub(1).min(asked.operate)
+            } else {
+                0..=asked.operate.saturating_sub(1)
+            },
+        );
     }
     parts
 }
@@ -145,7 +148,7 @@ struct Lane {
 
 /// An arbitrary rank below `N`.
 fn any_rank<const N: usize, E: Engine + ?Sized>(e: &mut E) -> usize {
-    let rank = e.word(0..=u16::try_from(N).unwrap_or(1) - 1);
+    let rank = e.word("rank looked at", 0..=u16::try_from(N).unwrap_or(1) - 1);
     e.assume(usize::from(rank) < N);
     usize::from(rank)
 }

@@ -1,0 +1,267 @@
+//! All harnesses, in parallel over the cores.
+
+use crate::cbmc::{Answer, CBMC, Question, Silence, Solver, ask};
+use crate::compile::{Compiled, RUSTC, compile};
+use crate::native::{self, blank};
+use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
+use crate::tools::Tools;
+use crate::{provenance, root, selftest};
+use atc_proofs::Harness;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Harnesses, or mutants, at a time.
+    pub jobs: usize,
+    /// For each run of the prover.
+    pub limit: Duration,
+    /// Which solver.
+    pub solver: Solver,
+    /// Ranks of the aspect machine; only the compiled engines can change it.
+    pub aspects: usize,
+    /// Accepted runs for each harness of the native engine.
+    pub tests: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            jobs: std::thread::available_parallelism().map_or(2, usize::from),
+            limit: Duration::from_mins(10),
+            solver: Solver::Cadical,
+            aspects: atc_proofs::ASPECTS,
+            tests: 20_000,
+        }
+    }
+}
+
+/// Proves `harnesses` with CBMC. `progress` hears of every result as it comes.
+///
+/// Without the provers every harness is *not run*. If the engine fails its own self-test, every harness is an error.
+///
+/// # Errors
+/// The sources cannot be read. (A harness that does not prove is a result, not an error.)
+pub fn campaign(
+    options: &Options,
+    harnesses: &[&Harness],
+    progress: &(dyn Fn(&HarnessResult) + Sync),
+) -> Result<Campaign, String> {
+    let root = root();
+    let started = Instant::now();
+    let tools = Tools::find(&root);
+    let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
+    let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
+    provenance.aspects = options.aspects;
+    let folder = root.join("target").join("proofs").join("kernel");
+    let ready = tools.map_err(|reason| (Verdict::NotRun, reason)).and_then(|tools| {
+        let failed = |reason| (Verdict::Error, reason);
+        selftest::check(&tools, options).map_err(failed)?;
+        let compiled = compile(&tools, &root, &folder, options.aspects).map_err(failed)?;
+        Ok((tools, compiled))
+    });
+    let results = match ready {
+        Ok((tools, compiled)) => prove_all(&tools, &compiled, options, harnesses, progress),
+        Err((verdict, reason)) => harnesses
+            .iter()
+            .map(|harness| {
+                let result = unproven(harness, verdict, reason.clone());
+                progress(&result);
+                result
+            })
+            .collect(),
+    };
+    provenance.seconds = started.elapsed().as_secs_f64();
+    Ok(Campaign { schema: SCHEMA, engine: "cbmc".to_owned(), provenance, harnesses: results })
+}
+
+/// Tests `harnesses` natively.
+///
+/// # Errors
+/// The sources cannot be read.
+pub fn native_campaign(options: &Options, harnesses: &[&Harness]) -> Result<Campaign, String> {
+    let started = Instant::now();
+    let mut provenance = provenance::of(&root(), std::collections::BTreeMap::new(), Vec::new())?;
+    let results = in_parallel(options.jobs, harnesses.len(), |index| native::test(harnesses[index], options.tests));
+    provenance.seconds = started.elapsed().as_secs_f64();
+    Ok(Campaign { schema: SCHEMA, engine: "native".to_owned(), provenance, harnesses: results })
+}
+
+/// The options of compiler and prover, for the record.
+pub(crate) fn flags(solver: Solver) -> Vec<String> {
+    let flags = RUSTC.iter().chain(&CBMC).map(ToString::to_string);
+    flags.chain([format!("solver={}", solver.name())]).collect()
+}
+
+fn unproven(harness: &Harness, verdict: Verdict, reason: String) -> HarnessResult {
+    let mut result = blank(harness, "cbmc");
+    result.verdict = verdict;
+    result.reason = Some(reason);
+    for claim in &mut result.claims {
+        claim.verdict = verdict;
+    }
+    result
+}
+
+/// What the two runs of one case said: what holds, and what can be reached.
+struct Case {
+    proof: Result<(Answer, Duration), Silence>,
+    reach: Result<(Answer, Duration), Silence>,
+}
+
+fn prove_all(
+    tools: &Tools,
+    compiled: &Compiled,
+    options: &Options,
+    harnesses: &[&Harness],
+    progress: &(dyn Fn(&HarnessResult) + Sync),
+) -> Vec<HarnessResult> {
+    // A job is one case of one harness, those with many cases first: they take longest.
+    let folders = in_parallel(options.jobs, harnesses.len(), |index| {
+        compiled.to_c(tools, harnesses[index].name, crate::compile::STACK)
+    });
+    let cases = |harness: &Harness| cases_of(harness, options.aspects);
+    let mut jobs: Vec<(usize, usize)> =
+        (0..harnesses.len()).flat_map(|index| (0..cases(harnesses[index])).map(move |case| (index, case))).collect();
+    jobs.sort_by_key(|(index, _)| std::cmp::Reverse(cases(harnesses[*index])));
+    let pending: Vec<_> = harnesses.iter().map(|harness| AtomicUsize::new(cases(harness))).collect();
+    let collected: Vec<_> = harnesses.iter().map(|_| Mutex::new(Vec::new())).collect();
+    let results: Vec<_> = harnesses.iter().map(|_| Mutex::new(None)).collect();
+    in_parallel(options.jobs, jobs.len(), |job| {
+        let (index, case) = jobs[job];
+        let harness = harnesses[index];
+        let answer = match &folders[index] {
+            Ok(folder) => case_of(tools, folder, harness, (case, cases(harness)), options),
+            Err(reason) => {
+                let silence = || Err(Silence::Broken(reason.clone()));
+                Case { proof: silence(), reach: silence() }
+            }
+        };
+        lock(&collected[index]).push((case, answer));
+        if pending[index].fetch_sub(1, Ordering::AcqRel) == 1 {
+            let mut all = std::mem::take(&mut *lock(&collected[index]));
+            all.sort_by_key(|(case, _)| *case);
+            let result = conclude(harness, options, &all.into_iter().map(|(_, answer)| answer).collect::<Vec<_>>());
+            progress(&result);
+            *lock(&results[index]) = Some(result);
+        }
+    });
+    let missing = |harness: &Harness| unproven(harness, Verdict::Error, "the runner lost this result".to_owned());
+    results
+        .into_iter()
+        .zip(harnesses)
+        .map(|(result, harness)| lock(&result).take().unwrap_or_else(|| missing(harness)))
+        .collect()
+}
+
+/// Whether the size of the harness is a parameter.
+fn is_sized(harness: &Harness) -> bool {
+    harness.bound == atc_proofs::bound(atc_proofs::ASPECTS)
+}
+
+/// The harness's cases at this size: a sized one that is split is split over the aspects.
+fn cases_of(harness: &Harness, aspects: usize) -> usize {
+    if is_sized(harness) && harness.cases > 1 { aspects } else { harness.cases }
+}
+
+fn case_of(tools: &Tools, folder: &Path, harness: &Harness, case: (usize, usize), options: &Options) -> Case {
+    let question = Question { case, ..Question::proof(harness.name, options.solver, options.limit) };
+    let proof = ask(tools, folder, &question);
+    // An incremental solver finds the many reachable points fastest.
+    let reach = ask(tools, folder, &Question { reach: true, solver: Solver::Minisat, ..question });
+    Case { proof, reach }
+}
+
+/// The result of a harness from its cases: every claim must hold and be reachable in every case, every cover point must be hit in one.
+fn conclude(harness: &Harness, options: &Options, cases: &[Case]) -> HarnessResult {
+    let mut result = unproven(harness, Verdict::Error, String::new());
+    result.reason = None;
+    if is_sized(harness) {
+        atc_proofs::bound(options.aspects).clone_into(&mut result.bound);
+    }
+    options.solver.name().clone_into(&mut result.solver);
+    let took =
+        |answer: &Result<(Answer, Duration), Silence>| answer.as_ref().map_or(0.0, |(_, took)| took.as_secs_f64());
+    result.seconds = cases.iter().map(|case| took(&case.proof) + took(&case.reach)).sum();
+    let mut answers = Vec::new();
+    for case in cases {
+        match (&case.proof, &case.reach) {
+            (Ok((proof, _)), Ok((reach, _))) => answers.push((proof, reach)),
+            (Err(Silence::Late), _) | (_, Err(Silence::Late)) => {
+                let reason = format!("no answer within {} s", options.limit.as_secs());
+                return unproven(harness, Verdict::Timeout, reason);
+            }
+            (Err(Silence::Broken(reason)), _) | (_, Err(Silence::Broken(reason))) => {
+                return unproven(harness, Verdict::Error, reason.clone());
+            }
+        }
+    }
+    for (number, claim) in result.claims.iter_mut().enumerate() {
+        let verdict = |(proof, reach): &(&Answer, &Answer)| match (proof.claim(number), reach.claim(number)) {
+            (Some(false), _) => Verdict::Failed,
+            (Some(true), Some(false)) => Verdict::Proved,
+            // Also if the assertion is not there at all: no code path leads to it.
+            _ => Verdict::Vacuous,
+        };
+        claim.verdict = answers.iter().map(verdict).max().unwrap_or(Verdict::Vacuous);
+    }
+    for (number, cover) in result.covers.iter_mut().enumerate() {
+        cover.hit = answers.iter().any(|(_, reach)| reach.cover(number) == Some(false));
+    }
+    let failed = answers.iter().find_map(|(proof, _)| proof.values.iter().find(|(what, _)| what.starts_with("claim ")));
+    result.counterexample = failed.map(|(_, values)| values.clone());
+    if let Some(trap) = answers.iter().find_map(|(proof, _)| proof.other_failure()) {
+        // What comes after a trap is cut off, so nothing is proved.
+        let values = answers.iter().find_map(|(proof, _)| proof.values.get(trap));
+        result.reason = Some(format!("{trap} can be reached"));
+        result.counterexample = result.counterexample.or_else(|| values.cloned());
+        for claim in &mut result.claims {
+            claim.verdict = claim.verdict.max(Verdict::Error);
+        }
+        let is_trap = trap.starts_with("trap: ");
+        result.verdict = if is_trap { Verdict::Failed } else { Verdict::Error };
+        return result;
+    }
+    let worst = result.claims.iter().map(|claim| claim.verdict).max().unwrap_or(Verdict::Vacuous);
+    let missed: Vec<_> = result.covers.iter().filter(|cover| !cover.hit).map(|cover| cover.name.as_str()).collect();
+    if worst == Verdict::Proved && !missed.is_empty() {
+        result.reason = Some(format!("cover points that are not reached: {}", missed.join(", ")));
+        result.verdict = Verdict::Vacuous;
+    } else {
+        let which: Vec<_> =
+            result.claims.iter().filter(|claim| claim.verdict == worst).map(|claim| claim.name.as_str()).collect();
+        result.reason = (worst != Verdict::Proved).then(|| format!("claims: {}", which.join(", ")));
+        result.verdict = worst;
+    }
+    result
+}
+
+/// `work(0)`, …, `work(count - 1)` on `jobs` threads, the results in order.
+pub(crate) fn in_parallel<T: Send>(jobs: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let results: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(count));
+    std::thread::scope(|scope| {
+        for _ in 0..jobs.clamp(1, count.max(1)) {
+            scope.spawn(|| {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    if index >= count {
+                        break;
+                    }
+                    let result = work(index);
+                    lock(&results).push((index, result));
+                }
+            });
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    results.sort_by_key(|(index, _)| *index);
+    results.into_iter().map(|(_, result)| result).collect()
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}

@@ -1,0 +1,155 @@
+//! From harness to C: rustc → wasm-ld → wasm2c.
+
+use crate::process::{End, Job, Limits, run};
+use crate::tools::Tools;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The options of every compilation. Optimised, because that is what is proven; with overflow checks, because an
+/// overflow must be a trap; one unit with everything inlined, because CBMC likes locals better than memory.
+pub const RUSTC: [&str; 8] = [
+    "--edition=2024",
+    "--target=wasm32-unknown-unknown",
+    "-Copt-level=3",
+    "-Cpanic=abort",
+    "-Coverflow-checks=on",
+    "-Ccodegen-units=1",
+    "-Cllvm-args=-inline-threshold=1000000",
+    "-Cllvm-args=-unroll-threshold=1000000",
+];
+
+/// Bytes of the stack in linear memory. A harness that needs more traps out of bounds.
+pub const STACK: u32 = 4096;
+
+const LINK: [&str; 6] =
+    ["--no-entry", "--gc-sections", "--stack-first", "--initial-memory=65536", "--import-undefined", "--strip-debug"];
+
+const LIMITS: Limits = Limits { time: Duration::from_mins(2), memory_kib: 4 << 20 };
+
+/// The harnesses, compiled: a static library from which one is linked at a time.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    library: PathBuf,
+    folder: PathBuf,
+}
+
+/// Compiles the kernel and the harnesses whose sources are below `sources` (`kernel/src`, `proofs/src`) into `folder`.
+///
+/// # Errors
+/// What the compiler said.
+pub fn compile(tools: &Tools, sources: &Path, folder: &Path, aspects: usize) -> Result<Compiled, String> {
+    fresh(folder)?;
+    let kernel = folder.join("libatc_kernel.rlib");
+    let library = folder.join("libatc_proofs.a");
+    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &["--crate-type=rlib".to_owned()], aspects)?;
+    let options = [
+        "--crate-type=staticlib".to_owned(),
+        "-Clto=fat".to_owned(),
+        "--cfg=engine=\"cbmc\"".to_owned(),
+        format!("--extern=atc_kernel={}", kernel.display()),
+    ];
+    rustc(tools, &sources.join("proofs/src/lib.rs"), &library, &options, aspects)?;
+    Ok(Compiled { library, folder: folder.to_path_buf() })
+}
+
+/// Compiles one file without dependencies into a static library (the self-test).
+///
+/// # Errors
+/// What the compiler said.
+pub fn compile_one(tools: &Tools, source: &Path, folder: &Path) -> Result<Compiled, String> {
+    fresh(folder)?;
+    let library = folder.join("libselftest.a");
+    rustc(tools, source, &library, &["--crate-type=staticlib".to_owned(), "-Clto=fat".to_owned()], 1)?;
+    Ok(Compiled { library, folder: folder.to_path_buf() })
+}
+
+impl Compiled {
+    /// Links the harness `name` alone and turns it into C. Returns the folder with `harness.c` and `harness.h`.
+    ///
+    /// # Errors
+    /// What the linker or wasm2c said.
+    pub fn to_c(&self, tools: &Tools, name: &str, stack: u32) -> Result<PathBuf, String> {
+        let folder = self.folder.join(name);
+        fresh(&folder)?;
+        let wasm = folder.join("harness.wasm");
+        let mut link: Vec<String> = LINK.iter().map(ToString::to_string).collect();
+        link.extend([format!("--export={name}"), format!("-zstack-size={stack}"), "-o".to_owned()]);
+        link.extend([wasm.display().to_string(), self.library.display().to_string()]);
+        tool(tools, "wasm-ld", &link, None, &folder)?;
+        let source = folder.join("harness.c");
+        let convert = [
+            "-n".to_owned(),
+            "h".to_owned(),
+            wasm.display().to_string(),
+            "-o".to_owned(),
+            source.display().to_string(),
+        ];
+        tool(tools, "wasm2c", &convert, None, &folder)?;
+        let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
+        write(&source, &without_accessors(&text)?)?;
+        write(&folder.join("driver.c"), include_str!("../../cbmc/driver.c"))?;
+        Ok(folder)
+    }
+}
+
+/// wasm2c's own accessors of linear memory go through memcpy, which CBMC does not look into: the driver has typed ones.
+fn without_accessors(text: &str) -> Result<String, String> {
+    let mut kept = String::with_capacity(text.len());
+    let mut in_macro = false;
+    let mut removed = 0;
+    for line in text.lines() {
+        let is_accessor = line.starts_with("DEFINE_LOAD(") || line.starts_with("DEFINE_STORE(");
+        let starts_macro = line.starts_with("#define LOAD_DATA");
+        removed += usize::from(is_accessor || starts_macro);
+        if !is_accessor && !starts_macro && !in_macro {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+        in_macro = (in_macro || starts_macro) && line.ends_with('\\');
+    }
+    // 23 accessors and the macro, of wasm2c 1.0.36; other versions must be looked at before they are believed.
+    if removed >= 20 { Ok(kept) } else { Err(format!("only {removed} accessors in the C of this wasm2c")) }
+}
+
+fn fresh(folder: &Path) -> Result<(), String> {
+    let failed = |error| format!("{}: {error}", folder.display());
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(failed)?;
+    }
+    std::fs::create_dir_all(folder).map_err(failed)
+}
+
+pub(crate) fn write(path: &Path, text: &str) -> Result<(), String> {
+    std::fs::write(path, text).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Compiles `source` into `output` (`libNAME.rlib` or `libNAME.a`).
+fn rustc(tools: &Tools, source: &Path, output: &Path, options: &[String], aspects: usize) -> Result<(), String> {
+    let folder = output.parent().unwrap_or(output);
+    let name = output.file_stem().map(|stem| stem.to_string_lossy().replacen("lib", "", 1)).unwrap_or_default();
+    let mut arguments: Vec<String> = RUSTC.iter().map(ToString::to_string).collect();
+    arguments.push(format!("--crate-name={name}"));
+    arguments.extend(options.iter().cloned());
+    arguments.extend(["-o".to_owned(), output.display().to_string(), source.display().to_string()]);
+    tool(tools, "rustc", &arguments, Some(("ATC_ASPECTS", aspects.to_string())), folder)
+}
+
+fn tool(
+    tools: &Tools,
+    name: &str,
+    arguments: &[String],
+    variable: Option<(&str, String)>,
+    folder: &Path,
+) -> Result<(), String> {
+    let output = folder.join(format!("{name}.out"));
+    let program = tools.path(name);
+    let job = Job { program: &program, arguments, variable, folder, output: &output, limits: LIMITS };
+    match run(&job)?.0 {
+        End::Code(0) => Ok(()),
+        end => {
+            let said = std::fs::read_to_string(format!("{}.err", output.display())).unwrap_or_default();
+            let first: Vec<_> = said.lines().filter(|line| !line.is_empty()).take(6).collect();
+            Err(format!("{name}: {end:?}: {}", first.join(" / ")))
+        }
+    }
+}

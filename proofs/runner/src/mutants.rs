@@ -1,0 +1,184 @@
+//! Named wrong kernels. Each is a change of a line or two in a copy of the kernel; a theorem that is proved of the
+//! kernel must fail on it.
+
+use crate::campaign::{Options, flags, in_parallel};
+use crate::cbmc::{Question, Silence, ask_fresh};
+use crate::compile::compile;
+use crate::report::{Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
+use crate::tools::Tools;
+use crate::{provenance, root, select};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// A mutant, as `proofs/mutants.toml` has it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mutant {
+    /// Its name, unique.
+    pub name: String,
+    /// What is wrong with it, in a sentence.
+    pub what: String,
+    /// The requirements that it breaks.
+    pub requirements: Vec<String>,
+    /// The file, from the kernel's `src`.
+    pub file: String,
+    /// The text to replace; it stands in the file exactly once.
+    pub find: String,
+    /// What replaces it.
+    pub replace: String,
+    /// The harnesses that must reject it: each one on its own.
+    pub killed_by: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    mutant: Vec<Mutant>,
+}
+
+/// The mutants of `proofs/mutants.toml`, checked against the kernel and the harnesses of this checkout.
+///
+/// # Errors
+/// What is wrong with the file: a text that does not stand in the kernel exactly once, an unknown harness.
+pub fn list(root: &Path) -> Result<Vec<Mutant>, String> {
+    let path = root.join("proofs").join("mutants.toml");
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let file: File = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+    for (place, mutant) in file.mutant.iter().enumerate() {
+        let wrong = |reason: String| Err(format!("proofs/mutants.toml: mutant `{}`: {reason}", mutant.name));
+        if file.mutant[..place].iter().any(|other| other.name == mutant.name) {
+            return wrong("the name is taken".to_owned());
+        }
+        if mutant.killed_by.is_empty() {
+            return wrong("no harness is to reject it".to_owned());
+        }
+        if let Err(reason) = select(&mutant.killed_by).map(drop).and(changed(root, mutant).map(drop)) {
+            return wrong(reason);
+        }
+    }
+    Ok(file.mutant)
+}
+
+/// The text of the file that the mutant changes, changed.
+fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
+    let path = root.join("kernel/src").join(&mutant.file);
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    match text.matches(&mutant.find).count() {
+        1 => Ok(text.replacen(&mutant.find, &mutant.replace, 1)),
+        count => Err(format!("`{}` stands {count} times in {}, not once", mutant.find, mutant.file)),
+    }
+}
+
+/// Tries the harnesses of each mutant (all of them, if no name is given). `progress` hears of every result.
+///
+/// # Errors
+/// A name that no mutant has, or a broken `proofs/mutants.toml`.
+pub fn mutants(
+    options: &Options,
+    names: &[String],
+    progress: &(dyn Fn(&MutantResult) + Sync),
+) -> Result<Mutants, String> {
+    let root = root();
+    let started = Instant::now();
+    let all = list(&root)?;
+    if let Some(name) = names.iter().find(|name| !all.iter().any(|mutant| mutant.name == **name)) {
+        let known: Vec<_> = all.iter().map(|mutant| mutant.name.as_str()).collect();
+        return Err(format!("there is no mutant `{name}`; the mutants are {}", known.join(", ")));
+    }
+    let chosen: Vec<_> = all.iter().filter(|mutant| names.is_empty() || names.contains(&mutant.name)).collect();
+    let tools = Tools::find(&root);
+    let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
+    let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
+    let results = in_parallel(options.jobs, chosen.len(), |index| {
+        let mutant = chosen[index];
+        let started = Instant::now();
+        let (verdict, killed_by, reason) = match &tools {
+            Ok(tools) => attempt(tools, &root, mutant, options)
+                .unwrap_or_else(|reason| (MutantVerdict::Error, Vec::new(), Some(reason))),
+            Err(reason) => (MutantVerdict::NotRun, Vec::new(), Some(reason.clone())),
+        };
+        let result = MutantResult {
+            name: mutant.name.clone(),
+            what: mutant.what.clone(),
+            requirements: mutant.requirements.clone(),
+            file: format!("kernel/src/{}", mutant.file),
+            change: [mutant.find.clone(), mutant.replace.clone()],
+            verdict,
+            killed_by,
+            reason,
+            seconds: started.elapsed().as_secs_f64(),
+        };
+        progress(&result);
+        result
+    });
+    provenance.seconds = started.elapsed().as_secs_f64();
+    Ok(Mutants { schema: SCHEMA, provenance, mutants: results })
+}
+
+type Attempt = (MutantVerdict, Vec<Kill>, Option<String>);
+
+fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Result<Attempt, String> {
+    let folder = root.join("target").join("proofs").join("mutants").join(&mutant.name);
+    let sources = folder.join("sources");
+    if sources.exists() {
+        std::fs::remove_dir_all(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
+    }
+    copy(&root.join("kernel/src"), &sources.join("kernel/src"))?;
+    copy(&root.join("proofs/src"), &sources.join("proofs/src"))?;
+    crate::compile::write(&sources.join("kernel/src").join(&mutant.file), &changed(root, mutant)?)?;
+    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects)?;
+    let mut killed = Vec::new();
+    let mut reasons = Vec::new();
+    for harness in select(&mutant.killed_by)? {
+        let mut claims: Vec<String> = Vec::new();
+        let mut counterexample = None;
+        for case in 0..harness.cases {
+            let question = Question {
+                case: (case, harness.cases),
+                ..Question::proof(harness.name, options.solver, options.limit)
+            };
+            let answer = match ask_fresh(tools, &compiled, &question) {
+                Ok((answer, _)) => answer,
+                Err(Silence::Late) => return Err(format!("{}: no answer in time", harness.name)),
+                Err(Silence::Broken(reason)) => return Err(format!("{}: {reason}", harness.name)),
+            };
+            let names = harness.claims.iter().enumerate();
+            claims.extend(
+                names
+                    .filter(|(number, _)| answer.claim(*number) == Some(false))
+                    .map(|(_, claim)| claim.name.to_owned()),
+            );
+            counterexample = counterexample
+                .or_else(|| answer.values.iter().find(|(what, _)| what.starts_with("claim ")).map(|(_, v)| v.clone()));
+            // A trap is what the theorem of totality is about.
+            claims.extend(answer.other_failure().filter(|what| what.starts_with("trap: ")).map(ToOwned::to_owned));
+            if !claims.is_empty() {
+                break;
+            }
+        }
+        if claims.is_empty() {
+            reasons.push(format!("{} does not reject it", harness.name));
+        } else {
+            killed.push(Kill { harness: harness.name.to_owned(), claims, counterexample });
+        }
+    }
+    // Every harness that is named must reject it: a theorem that no longer does has become weaker.
+    let verdict = if reasons.is_empty() { MutantVerdict::Killed } else { MutantVerdict::Survived };
+    Ok((verdict, killed, (!reasons.is_empty()).then(|| reasons.join("; "))))
+}
+
+fn copy(from: &Path, to: &PathBuf) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
+    std::fs::create_dir_all(to).map_err(failed)?;
+    for entry in std::fs::read_dir(from).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target)?;
+        } else {
+            std::fs::copy(entry.path(), &target).map_err(failed)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,83 @@
+//! The cbmc engine tests itself before it is believed: for each trap on the way from Rust to CBMC, a harness whose
+//! verdict is known, true and false ones (`proofs/cbmc/selftest.rs`).
+
+use crate::campaign::{Options, in_parallel};
+use crate::cbmc::{Answer, Question, Silence, ask};
+use crate::compile::{STACK, compile_one};
+use crate::tools::Tools;
+use std::path::Path;
+
+/// What is expected of one harness of the self-test.
+enum Expected {
+    /// The claims that hold, the claims that fail, the reachable claims, the cover points that are hit.
+    Verdicts(&'static [usize], &'static [usize], &'static [usize], &'static [usize]),
+    /// An assertion of this description fails.
+    Failure(&'static str),
+    /// No answer, with this word in the reason.
+    Silence(&'static str),
+}
+
+/// Harness, bytes of stack, expected verdict, what the trap is.
+const CASES: [(&str, u32, Expected, &str); 8] = [
+    ("memory", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "loads and stores of linear memory"),
+    ("table", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "constant tables in data segments"),
+    ("stack", 1024, Expected::Failure("trap: out of bounds"), "a stack that is too small"),
+    ("verdicts", STACK, Expected::Verdicts(&[0, 2, 3], &[1], &[0, 1], &[0]), "a verdict for each claim, and vacuity"),
+    ("missing", STACK, Expected::Silence("no body"), "a function without a body"),
+    ("unwinding", STACK, Expected::Failure("unwinding assertion"), "an unwinding bound that is too small"),
+    ("overflow", STACK, Expected::Failure("trap: panic"), "an arithmetic overflow"),
+    ("bounds", STACK, Expected::Failure("trap: panic"), "an index out of bounds"),
+];
+
+/// Runs the self-test.
+///
+/// # Errors
+/// The first trap that the engine walked into.
+pub fn check(tools: &Tools, options: &Options) -> Result<(), String> {
+    let root = crate::root();
+    let folder = root.join("target").join("proofs").join("selftest");
+    let compiled = compile_one(tools, &root.join("proofs/cbmc/selftest.rs"), &folder)?;
+    let failures = in_parallel(options.jobs, CASES.len(), |index| {
+        let (name, stack, expected, trap) = &CASES[index];
+        let found = compiled
+            .to_c(tools, name, *stack)
+            .map_err(Silence::Broken)
+            .and_then(|folder| both(tools, &folder, name, *stack, options));
+        match_up(expected, &found).map_err(|reason| format!("the cbmc engine's self-test `{name}` ({trap}): {reason}"))
+    });
+    failures.into_iter().collect()
+}
+
+fn both(tools: &Tools, folder: &Path, name: &str, stack: u32, options: &Options) -> Result<(Answer, Answer), Silence> {
+    let question = Question { stack, ..Question::proof(name, options.solver, options.limit) };
+    let (proof, _) = ask(tools, folder, &question)?;
+    let (reach, _) = ask(tools, folder, &Question { reach: true, ..question })?;
+    Ok((proof, reach))
+}
+
+fn match_up(expected: &Expected, found: &Result<(Answer, Answer), Silence>) -> Result<(), String> {
+    match (expected, found) {
+        (Expected::Silence(word), Err(Silence::Broken(reason))) if reason.contains(word) => Ok(()),
+        (Expected::Failure(description), Ok((proof, _)))
+            if proof.other_failure().is_some_and(|failure| failure.starts_with(description)) =>
+        {
+            Ok(())
+        }
+        (Expected::Verdicts(hold, fail, reachable, hit), Ok((proof, reach))) => {
+            let numbers = |answer: &dyn Fn(usize) -> bool| (0..8).filter(|number| answer(*number)).collect::<Vec<_>>();
+            // A claim that no path leads to may be gone altogether.
+            let holding = numbers(&|number| proof.claim(number) != Some(false) && hold.contains(&number));
+            let failing = numbers(&|number| proof.claim(number) == Some(false));
+            let reached = numbers(&|number| reach.claim(number) == Some(false));
+            let covered = numbers(&|number| reach.cover(number) == Some(false));
+            let found = [holding, failing, reached, covered];
+            let wanted = [*hold, *fail, *reachable, *hit];
+            if found.iter().zip(wanted).all(|(found, wanted)| found == wanted) && proof.other_failure().is_none() {
+                Ok(())
+            } else {
+                Err(format!("holding, failing, reachable, hit: expected {wanted:?}, found {found:?}"))
+            }
+        }
+        (_, found) => Err(format!("found {found:?}")),
+    }
+}

@@ -1,0 +1,53 @@
+//! The provers' tools, as `ci/install-provers` left them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The tools of the cbmc engine.
+#[derive(Clone, Debug)]
+pub struct Tools {
+    bin: PathBuf,
+    /// The folder of `wasm-rt.h`.
+    pub include: PathBuf,
+    /// Tool → version and origin.
+    pub versions: BTreeMap<String, String>,
+}
+
+const NEEDED: [&str; 4] = ["rustc", "wasm-ld", "wasm2c", "cbmc"];
+
+impl Tools {
+    /// The tools below `target/provers` of this checkout.
+    ///
+    /// # Errors
+    /// What is missing and how it can be had.
+    pub fn find(root: &Path) -> Result<Self, String> {
+        let provers = root.join("target").join("provers");
+        let list = provers.join("tools.json");
+        let hint = "run ci/install-provers";
+        let text = std::fs::read_to_string(&list)
+            .map_err(|error| format!("the provers are not installed ({}: {error}); {hint}", list.display()))?;
+        let known: BTreeMap<String, Option<Entry>> = serde_json::from_str(&text)
+            .map_err(|error| format!("{} cannot be read: {error}; {hint}", list.display()))?;
+        let missing: Vec<_> =
+            NEEDED.iter().filter(|tool| known.get(**tool).is_none_or(Option::is_none)).copied().collect();
+        if !missing.is_empty() {
+            return Err(format!("not to be had on this machine: {}; {hint} says what would help", missing.join(", ")));
+        }
+        let versions = known
+            .into_iter()
+            .filter_map(|(tool, entry)| entry.map(|entry| (tool, format!("{} ({})", entry.version, entry.origin))))
+            .collect();
+        Ok(Self { bin: provers.join("bin"), include: provers.join("include"), versions })
+    }
+
+    /// The wrapper of `tool`.
+    pub fn path(&self, tool: &str) -> PathBuf {
+        self.bin.join(tool)
+    }
+}
+
+#[derive(serde::Deserialize)]
+struct Entry {
+    version: String,
+    origin: String,
+}
