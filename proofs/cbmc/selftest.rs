@@ -23,7 +23,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 
 /// Through linear memory: what is stored is what is loaded.
 #[unsafe(no_mangle)]
-extern "C" fn memory() {
+extern "C" fn cells() {
     let mut cells = [0_u16; 8];
     let (place, value) = (word() as usize % 8, word() as u16);
     cells[place] = value;
@@ -37,7 +37,7 @@ static SQUARES: [u32; 12] = [0, 1, 4, 9, 16, 25, 36, 49, 64, 81, 100, 121];
 
 /// Constant tables are there.
 #[unsafe(no_mangle)]
-extern "C" fn table() {
+extern "C" fn constants() {
     let index = word();
     assume(u32::from(index < 12));
     let square = core::hint::black_box(&SQUARES)[index as usize];

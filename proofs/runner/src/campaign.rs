@@ -3,6 +3,7 @@
 use crate::cbmc::{Answer, CBMC, Question, Silence, Solver, ask};
 use crate::compile::{Compiled, RUSTC, compile};
 use crate::native::{self, blank};
+use crate::process::only_run;
 use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
 use crate::tools::Tools;
 use crate::{provenance, root, selftest};
@@ -51,6 +52,7 @@ pub fn campaign(
     progress: &(dyn Fn(&HarnessResult) + Sync),
 ) -> Result<Campaign, String> {
     let root = root();
+    let _lock = only_run(&root.join("target").join("proofs"))?;
     let started = Instant::now();
     let tools = Tools::find(&root);
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();

@@ -10,10 +10,12 @@ use std::time::Duration;
 
 /// The options of every run. `--no-standard-checks`: what can go wrong in the wasm2c code is an assertion in the
 /// driver, and the C it writes relies on wrapping. Unwinding assertions stay on: a bound that is too small fails.
-pub const CBMC: [&str; 7] = [
+pub const CBMC: [&str; 9] = [
     "--no-standard-checks",
-    "--object-bits=14",
-    "--unwind=20",
+    "--object-bits",
+    "14",
+    "--unwind",
+    "20",
     "--unwinding-assertions",
     "--slice-formula",
     "--json-ui",
@@ -21,7 +23,7 @@ pub const CBMC: [&str; 7] = [
 ];
 
 /// Bytes of constant data that a harness may have.
-const DATA: u32 = 4096;
+const DATA: u32 = 1024;
 
 /// Which solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -135,7 +137,8 @@ pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
         folder.display().to_string(),
         "-I".to_owned(),
         tools.include.display().to_string(),
-        format!("--unwindset=load_bytes.0:{}", DATA + 1),
+        "--unwindset".to_owned(),
+        format!("load_bytes.0:{}", DATA + 1),
     ];
     if question.reach {
         arguments.push("-DREACH".to_owned());
@@ -189,6 +192,9 @@ pub fn parse(text: &str) -> Result<Answer, String> {
             Some("FAILURE") => false,
             other => return Err(format!("cbmc says {other:?} of `{description}`")),
         };
+        if description.contains("no body for") {
+            return Err(format!("cbmc does not see all the code: {description}"));
+        }
         if !holds {
             let values = values(&property["trace"]);
             answer.values.entry(description.clone()).or_insert(values);

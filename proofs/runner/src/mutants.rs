@@ -4,6 +4,7 @@
 use crate::campaign::{Options, flags, in_parallel};
 use crate::cbmc::{Question, Silence, ask_fresh};
 use crate::compile::compile;
+use crate::process::only_run;
 use crate::report::{Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
 use crate::tools::Tools;
 use crate::{provenance, root, select};
@@ -80,6 +81,7 @@ pub fn mutants(
     progress: &(dyn Fn(&MutantResult) + Sync),
 ) -> Result<Mutants, String> {
     let root = root();
+    let _lock = only_run(&root.join("target").join("proofs"))?;
     let started = Instant::now();
     let all = list(&root)?;
     if let Some(name) = names.iter().find(|name| !all.iter().any(|mutant| mutant.name == **name)) {

@@ -1,11 +1,23 @@
 //! Runs a program with a time limit and a memory limit, and ends all that it started.
 
+use nix::fcntl::{Flock, FlockArg};
 use std::fs::File;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use wait_timeout::ChildExt;
+
+/// The folder of the proofs, for one run at a time: another run that wants it waits.
+///
+/// # Errors
+/// The folder cannot be made, or the system has no locks.
+pub fn only_run(folder: &Path) -> Result<Flock<File>, String> {
+    let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
+    std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
+    let file = File::create(folder.join("lock")).map_err(|error| failed(&error))?;
+    Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| failed(&error))
+}
 
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -19,8 +19,8 @@ enum Expected {
 
 /// Harness, bytes of stack, expected verdict, what the trap is.
 const CASES: [(&str, u32, Expected, &str); 8] = [
-    ("memory", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "loads and stores of linear memory"),
-    ("table", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "constant tables in data segments"),
+    ("cells", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "loads and stores of linear memory"),
+    ("constants", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "constant tables in data segments"),
     ("stack", 1024, Expected::Failure("trap: out of bounds"), "a stack that is too small"),
     ("verdicts", STACK, Expected::Verdicts(&[0, 2, 3], &[1], &[0, 1], &[0]), "a verdict for each claim, and vacuity"),
     ("missing", STACK, Expected::Silence("no body"), "a function without a body"),
