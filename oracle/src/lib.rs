@@ -1,1 +1,19 @@
-//! Oracle.
+//! The kernel as a reference oracle.
+//!
+//! * [`serve`]: JSON lines, protocol 1 — somebody else's implementation is stepped beside the kernel
+//!   ([`protocol`] for the forms, [`machine`] for what each machine reads and puts out).
+//! * [`trace`] and [`chart`]: the timing chart (SVG, VCD) of a recorded session, checked against the kernel.
+//! * [`schema`]: the JSON Schema of the protocol, generated from the types.
+
+pub mod chart;
+pub mod kmh;
+pub mod machine;
+pub mod protocol;
+pub mod schema;
+mod serve;
+mod session;
+pub mod trace;
+
+pub use kmh::{Kmh, KmhError};
+pub use serve::serve;
+pub use session::{MAX_LINE, Session};

@@ -1,2 +1,139 @@
-//! `oracle`.
-fn main() {}
+//! `oracle`: the kernel as a reference, on the command line.
+
+use std::fmt;
+use std::fs;
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use atc_oracle::chart::{self, View};
+use atc_oracle::trace::{Replies, Trace, TraceError};
+use clap::{Args, Parser, Subcommand};
+
+/// The verified kernel as a reference oracle
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Answers JSON lines (protocol 1) from standard input on standard output
+    Serve,
+    /// Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
+    Chart(ChartArgs),
+    /// Prints the JSON Schema of protocol 1
+    Schema,
+}
+
+#[derive(Args)]
+struct ChartArgs {
+    /// Request lines, with their replies if these were kept; "-" for standard input
+    trace: PathBuf,
+    /// Where the chart goes; standard output if neither file is named
+    #[arg(short, long, value_name = "FILE.svg")]
+    output: Option<PathBuf>,
+    /// Where the signals go, for a waveform viewer
+    #[arg(long, value_name = "FILE.vcd")]
+    vcd: Option<PathBuf>,
+    /// The chart's title [default: the machine's name]
+    #[arg(long)]
+    title: Option<String>,
+    /// The first instant drawn, in the unit of the chart's axis
+    #[arg(long)]
+    from: Option<u64>,
+    /// The last instant drawn
+    #[arg(long)]
+    to: Option<u64>,
+    /// Draws replies that differ from the kernel's in red; else they are an error
+    #[arg(long)]
+    as_recorded: bool,
+}
+
+/// What stops a command, with the file that it is about.
+enum Failure {
+    Read(PathBuf, io::Error),
+    Write(PathBuf, io::Error),
+    Trace(PathBuf, TraceError),
+    Serve(io::Error),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(path, error) => write!(f, "{} cannot be read: {error}", path.display()),
+            Self::Write(path, error) => write!(f, "{} cannot be written: {error}", path.display()),
+            Self::Trace(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Serve(error) => write!(f, "the session broke off: {error}"),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Serve => atc_oracle::serve(io::stdin().lock(), io::stdout().lock()).map_err(Failure::Serve),
+        Command::Chart(args) => draw(&args),
+        Command::Schema => print(&atc_oracle::schema::text()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("oracle: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn draw(args: &ChartArgs) -> Result<(), Failure> {
+    let text = read(&args.trace)?;
+    let broken = |error| Failure::Trace(args.trace.clone(), error);
+    let trace = Trace::parse(&text).map_err(broken)?;
+    let replies = if args.as_recorded { Replies::AsRecorded } else { Replies::MustAgree };
+    let view = View { title: args.title.clone(), from: args.from, to: args.to };
+    // Both are made before either is written.
+    let svg = chart::svg(&trace, replies, &view).map_err(broken)?;
+    let vcd =
+        args.vcd.as_ref().map(|path| chart::vcd(&trace, replies).map(|vcd| (path, vcd))).transpose().map_err(broken)?;
+    match &args.output {
+        Some(path) => write(path, &svg)?,
+        None if args.vcd.is_none() => print(&svg)?,
+        None => {}
+    }
+    vcd.map_or(Ok(()), |(path, vcd)| write(path, &vcd))
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    let text = if path == Path::new("-") {
+        let mut text = String::new();
+        io::stdin().lock().read_to_string(&mut text).map(|_| text)
+    } else {
+        fs::read_to_string(path)
+    };
+    text.map_err(|error| Failure::Read(path.to_owned(), error))
+}
+
+/// Writes beside the file first and then takes its name, so that nothing half-written ever has it.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let failed = |error| Failure::Write(path.to_owned(), error);
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As for any new file: the umask takes away what it takes away.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder).map_err(failed)?;
+    file.write_all(text.as_bytes()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Write("standard output".into(), error)),
+        _ => Ok(()),
+    }
+}

@@ -18,7 +18,7 @@ mod tools;
 use std::path::{Path, PathBuf};
 
 pub use campaign::{Options, campaign};
-pub use cbmc::Solver;
+pub use cbmc::{Answer, Solver, parse as parse_cbmc};
 pub use mutants::mutants;
 pub use tools::Tools;
 

@@ -98,7 +98,8 @@ pub fn replay(harness: &Harness, values: &[u16]) -> Run {
 pub fn test(harness: &Harness, accepted: usize) -> HarnessResult {
     let started = Instant::now();
     let mut random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    let single = replay(harness, &[0]).drawn.len() == 1;
+    let first = replay(harness, &[0]);
+    let single = first.accepted && first.drawn.len() == 1;
     let mut made = vec![false; harness.claims.len()];
     let mut failed: Vec<Option<Vec<u16>>> = vec![None; harness.claims.len()];
     let mut hit = vec![false; harness.covers.len()];

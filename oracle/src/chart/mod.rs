@@ -1,0 +1,213 @@
+//! Timing charts: what a case looks like over time, and how that is written out.
+//!
+//! A machine lays its case out as a [`Scene`]; [`svg()`] draws scenes and [`vcd()`] writes them for waveform viewers.
+//! Time is counted in logic cycles. An input is drawn over the cycle in which it was read, `[k, k+1)`; an output
+//! stands from the end of that cycle on, `[k+1, k+2)`. So every drawn span has its true length.
+
+pub mod aspect;
+mod draw;
+mod ink;
+pub mod supervision;
+mod wave;
+
+use crate::trace::{Replies, Trace, TraceError};
+
+/// The chart of one case.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The machine's name.
+    pub machine: &'static str,
+    /// The parameters and the result, in a few short sentences.
+    pub notes: Vec<String>,
+    /// What time is shown in.
+    pub unit: Unit,
+    /// How many logic cycles the case has.
+    pub cycles: u64,
+    /// The rows, from top to bottom.
+    pub lanes: Vec<Lane>,
+    /// Cycles at which a line goes through all rows.
+    pub guides: Vec<u64>,
+    /// Which tones the chart uses, and what each means there.
+    pub legend: Vec<(Tone, &'static str)>,
+    /// The signals, for waveform viewers.
+    pub signals: Vec<Signal>,
+    /// Where the record differs from the kernel, as spans of cycles.
+    pub differences: Vec<(u64, u64)>,
+}
+
+/// The unit of the time axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// Its name: "ms" or "cycles".
+    pub name: &'static str,
+    /// How many there are in one logic cycle.
+    pub per_cycle: u32,
+}
+
+impl Unit {
+    /// A number of cycles in this unit, with the unit's name.
+    pub fn text(self, cycles: u64) -> String {
+        format!("{} {}", self.value(cycles), self.name)
+    }
+
+    /// A number of cycles in this unit.
+    pub fn value(self, cycles: u64) -> u64 {
+        cycles.saturating_mul(self.per_cycle.into())
+    }
+}
+
+/// One row.
+#[derive(Clone, Debug)]
+pub struct Lane {
+    /// What the row shows.
+    pub label: String,
+    /// The first row of a group has a line above it.
+    pub first: bool,
+    /// Its height in pixels.
+    pub height: u32,
+    /// What is drawn in it.
+    pub marks: Vec<Mark>,
+}
+
+/// Something in a row. Spans are in cycles, the end not included.
+#[derive(Clone, Debug)]
+pub enum Mark {
+    /// A two-valued signal: high in these spans, low elsewhere.
+    Wave(Vec<(u64, u64)>),
+    /// A span with a text in it. `texts` go from full to short; the longest that fits is written.
+    Bar {
+        /// The first cycle.
+        from: u64,
+        /// The cycle after the last.
+        to: u64,
+        /// How it is filled.
+        tone: Tone,
+        /// What is written in it.
+        texts: Vec<String>,
+    },
+    /// A measured span, with arrows at its ends.
+    Dimension {
+        /// The first cycle.
+        from: u64,
+        /// The cycle after the last.
+        to: u64,
+        /// What was measured.
+        text: String,
+    },
+    /// A sign at an instant.
+    Sign {
+        /// When.
+        at: u64,
+        /// Which.
+        sign: Sign,
+    },
+    /// A value over time: steps of `(cycle, value)`, None where there is none. All curves of a row share the scale.
+    Curve {
+        /// The values, each from its cycle on.
+        points: Vec<(u64, Option<f64>)>,
+        /// How it is drawn.
+        tone: Tone,
+        /// The highest value of the row's scale.
+        top: f64,
+    },
+}
+
+/// What a colour stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// A signal that is heard; a value that is on display.
+    Signal,
+    /// The operate time T1 running.
+    Operate,
+    /// The shortened operate time T5 running.
+    Shortened,
+    /// The recovery time T2 running.
+    Recovery,
+    /// The no-signal mask T3 running.
+    Mask,
+    /// Dropped from the mask.
+    Dropped,
+    /// The service brake.
+    Service,
+    /// The emergency brake.
+    Emergency,
+    /// A limit.
+    Limit,
+    /// Nothing.
+    Blank,
+    /// Not what the kernel says.
+    Difference,
+}
+
+/// A sign at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// Accepted.
+    Accepted,
+    /// Gone: no longer accepted.
+    Gone,
+}
+
+/// A signal for a waveform viewer.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Its name, without spaces.
+    pub name: String,
+    /// Its values, each from its cycle on; the first at cycle 0.
+    pub values: Values,
+}
+
+/// The values of a signal, each from its cycle on.
+#[derive(Clone, Debug)]
+pub enum Values {
+    /// On or off.
+    Wire(Vec<(u64, bool)>),
+    /// The name of a state, without spaces.
+    State(Vec<(u64, String)>),
+    /// A number; there may be none.
+    Real(Vec<(u64, Option<f64>)>),
+}
+
+/// How a chart is headed, and which part of it is drawn.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// The title; without one the machine's name.
+    pub title: Option<String>,
+    /// The first instant, in the chart's unit.
+    pub from: Option<u64>,
+    /// The last instant, in the chart's unit.
+    pub to: Option<u64>,
+}
+
+/// The timing chart of a trace as an SVG document, its cases one below the other.
+///
+/// # Errors
+/// As [`Trace::scenes`], and if the view shows no cycle of some case.
+pub fn svg(trace: &Trace, replies: Replies, view: &View) -> Result<String, TraceError> {
+    draw::svg(&trace.scenes(replies)?, view)
+}
+
+/// The signals of a trace in the Value Change Dump format, a scope for each case; the states carry their names.
+///
+/// # Errors
+/// As [`Trace::scenes`].
+pub fn vcd(trace: &Trace, replies: Replies) -> Result<String, TraceError> {
+    wave::vcd(&trace.scenes(replies)?)
+}
+
+/// Spans of equal values, as `(from, to, value)`.
+pub(crate) fn spans<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<(u64, u64, T)> {
+    let mut spans: Vec<(u64, u64, T)> = Vec::new();
+    for (value, at) in values.into_iter().zip(0..) {
+        match spans.last_mut() {
+            Some((_, to, last)) if *last == value => *to = at + 1,
+            _ => spans.push((at, at + 1, value)),
+        }
+    }
+    spans
+}
+
+/// The changes of a series of values, as `(at, value)`.
+pub(crate) fn changes<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<(u64, T)> {
+    spans(values).into_iter().map(|(from, _, value)| (from, value)).collect()
+}

@@ -1,0 +1,69 @@
+//! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
+
+use atc_prover::{mutants, parse_cbmc, root};
+
+const DONE: &str = r#"[{"program":"CBMC"},{"result":[
+  {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
+  {"property":"w2c_prover_claim.assertion.2","description":"claim 1","status":"FAILURE","trace":[
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000111"}},
+    {"stepType":"assignment","lhs":"other","value":{"binary":"1"}},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000001111111111111111"}}]}]},
+  {"cProverStatus":"failure"}]"#;
+
+#[test]
+fn verdicts_and_counterexamples_are_read() {
+    let answer = parse_cbmc(DONE).unwrap();
+    assert_eq!((answer.claim(0), answer.claim(1), answer.claim(2)), (Some(true), Some(false), None));
+    assert_eq!(answer.values["claim 1"], [7, 65_535]);
+    assert_eq!(answer.other_failure(), None);
+}
+
+#[test]
+fn a_killed_prover_is_no_pass() {
+    // Cut anywhere: never a result.
+    for length in 0..DONE.len() {
+        assert!(parse_cbmc(&DONE[..length]).is_err(), "cut at {length}");
+    }
+}
+
+#[test]
+fn no_status_unknown_status_and_nothing_checked_are_errors() {
+    let without_status = DONE.replace("cProverStatus", "other");
+    assert!(parse_cbmc(&without_status).unwrap_err().contains("no status"));
+    let unknown = DONE.replace("SUCCESS", "UNKNOWN");
+    assert!(parse_cbmc(&unknown).unwrap_err().contains("UNKNOWN"));
+    let empty = r#"[{"result":[]},{"cProverStatus":"success"}]"#;
+    assert!(parse_cbmc(empty).unwrap_err().contains("nothing"));
+}
+
+#[test]
+fn code_that_the_prover_does_not_see_is_an_error() {
+    let warned = DONE.replace(r#"{"program":"CBMC"}"#, r#"{"messageText":"**** WARNING: no body for function f"}"#);
+    assert!(parse_cbmc(&warned).unwrap_err().contains("no body"));
+    let property = DONE.replace("claim 0", "no body for callee f");
+    assert!(parse_cbmc(&property).unwrap_err().contains("no body"));
+}
+
+#[test]
+fn a_trap_is_not_a_claim() {
+    let trapped = DONE.replace("claim 1", "trap: panic");
+    assert_eq!(parse_cbmc(&trapped).unwrap().other_failure(), Some("trap: panic"));
+}
+
+#[test]
+fn every_mutant_changes_the_kernel_in_one_place_and_names_its_harnesses() {
+    let all = mutants::list(&root()).unwrap();
+    assert!(all.len() >= 40, "only {} mutants", all.len());
+    assert!(all.iter().all(|mutant| mutant.find != mutant.replace));
+}
+
+#[test]
+fn every_requirement_of_a_harness_has_a_mutant() {
+    let all = mutants::list(&root()).unwrap();
+    for harness in atc_prover::harnesses() {
+        for requirement in harness.requirements {
+            let known = all.iter().any(|mutant| mutant.requirements.iter().any(|other| other == requirement));
+            assert!(known, "no mutant breaks {requirement}");
+        }
+    }
+}

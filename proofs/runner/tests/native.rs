@@ -1,0 +1,77 @@
+//! The native engine: every harness on drawn values, and every counterexample that was ever kept.
+
+use atc_prover::report::Verdict;
+use atc_prover::{harnesses, native, root, select};
+use std::collections::BTreeSet;
+
+#[test]
+fn every_harness_holds_on_drawn_values() {
+    for harness in harnesses() {
+        let result = native::test(harness, 2_000);
+        assert_eq!(
+            result.verdict,
+            Verdict::Tested,
+            "{}: {:?} {:?}",
+            harness.name,
+            result.reason,
+            result.counterexample
+        );
+    }
+}
+
+#[test]
+fn every_cover_point_is_hit_by_some_drawn_values() {
+    // Hit by CBMC one and all; these are too rare for drawn values.
+    let rare: BTreeSet<&str> = RARE.iter().copied().collect();
+    for harness in harnesses() {
+        let result = native::test(harness, 20_000);
+        let missed =
+            result.covers.iter().filter(|cover| !cover.hit).map(|cover| format!("{}::{}", harness.name, cover.name));
+        let missed: Vec<_> = missed.filter(|name| !rare.contains(name.as_str())).collect();
+        assert!(missed.is_empty(), "{missed:?}");
+    }
+}
+
+const RARE: [&str; 0] = [];
+
+#[test]
+fn kept_counterexamples_stay_repaired() {
+    #[derive(serde::Deserialize)]
+    struct Kept {
+        harness: String,
+        values: Vec<u16>,
+    }
+    for entry in std::fs::read_dir(root().join("proofs/runner/regressions")).unwrap() {
+        let path = entry.unwrap().path();
+        let kept: Kept = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let run = native::replay(select(&[kept.harness]).unwrap()[0], &kept.values);
+        assert!(run.failed().is_empty(), "{}: {:?}", path.display(), run.failed());
+    }
+}
+
+#[test]
+fn a_replay_draws_exactly_the_values_of_the_tape() {
+    let harness = select(&["sup_3".to_owned()]).unwrap()[0];
+    let run = native::replay(harness, &[4000, 5]);
+    let values: Vec<_> = run.drawn.iter().map(|(_, value)| *value).collect();
+    assert_eq!(values, [4000, 5]);
+    assert!(run.accepted && run.failed().is_empty());
+    assert_eq!(run.covered, [0]);
+}
+
+#[test]
+fn names_are_unique_and_every_harness_can_fail_and_be_covered() {
+    let mut names = BTreeSet::new();
+    for harness in harnesses() {
+        assert!(names.insert(harness.name), "{} twice", harness.name);
+        assert!((1..=8).contains(&harness.claims.len()), "{}", harness.name);
+        assert!((1..=8).contains(&harness.covers.len()), "{}", harness.name);
+        assert!(!harness.requirements.is_empty(), "{}", harness.name);
+    }
+}
+
+#[test]
+fn a_name_that_matches_nothing_is_an_error() {
+    let error = select(&["t_acc_99".to_owned()]).err().unwrap();
+    assert!(error.contains("t_acc_99") && error.contains("t_acc_1"), "{error}");
+}
