@@ -170,9 +170,31 @@ pub fn step<const N: usize>(times: Times, state: State<N>, detected: AspectSet) 
     //= spec/general.md#gen-2-total
     //# Every step MUST end without a panic, an overflow or an index out of bounds, from any state bits and on any input.
     let mut next = state;
+    let mut accepted = 0;
+    let mut dropped = 0;
+    let mut credited = 0;
     for rank in 0..N {
-        advance(times, &mut next, rank, detected.bits() >> rank & 1 == 1);
+        let bit = |bits: u16| bits >> rank & 1 == 1;
+        let lane = advance(
+            times,
+            Lane {
+                run: state.run[rank],
+                age: state.age[rank],
+                accepted: bit(state.accepted.bits()),
+                dropped: bit(state.dropped.bits()),
+                credited: bit(state.credited.bits()),
+            },
+            bit(detected.bits()),
+        );
+        next.run[rank] = lane.run;
+        next.age[rank] = lane.age;
+        accepted |= u16::from(lane.accepted) << rank;
+        dropped |= u16::from(lane.dropped) << rank;
+        credited |= u16::from(lane.credited) << rank;
     }
+    next.accepted = AspectSet::from_bits(accepted);
+    next.dropped = AspectSet::from_bits(dropped);
+    next.credited = AspectSet::from_bits(credited);
 
     //= spec/aspect.md#acc-5-mask
     //# A masked aspect MUST be dropped when a lower aspect is firm.
@@ -200,48 +222,45 @@ pub fn step<const N: usize>(times: Times, state: State<N>, detected: AspectSet) 
     (next, display)
 }
 
-/// One rank, one cycle: its run and its age, then acceptance, then expiry. Nothing here looks at another rank.
-fn advance<const N: usize>(times: Times, next: &mut State<N>, rank: usize, heard: bool) {
-    let this = AspectSet::from_bits(1 << rank);
-    let accepted = !next.accepted.and(this).is_empty();
+/// One rank of a state.
+#[derive(Clone, Copy)]
+struct Lane {
+    run: Ticks,
+    age: Ticks,
+    accepted: bool,
+    dropped: bool,
+    credited: bool,
+}
 
+/// One rank, one cycle: its run and its age, then acceptance, then expiry. Nothing here looks at another rank.
+/// Without a branch that depends on the signals: all ranks take the same path, and the compiler takes several at once.
+#[inline]
+#[expect(clippy::needless_bitwise_bool, reason = "a lazy operator is a branch")]
+fn advance(times: Times, lane: Lane, heard: bool) -> Lane {
     let run = if !heard {
         Ticks(0)
-    } else if next.run[rank] < times.operate {
-        Ticks(next.run[rank].0.saturating_add(1))
+    } else if lane.run < times.operate {
+        Ticks(lane.run.0.saturating_add(1))
     } else {
         times.operate
     };
-    let lost = accepted && (next.age[rank].0 > 0 || !heard);
-    let age = if lost { Ticks(next.age[rank].0.saturating_add(1)) } else { Ticks(0) };
-    let credited = heard && if lost { has_credit(times, run, age) } else { !next.credited.and(this).is_empty() };
-
-    next.run[rank] = run;
-    next.credited = next.credited.without(this);
+    let lost = lane.accepted & ((lane.age.0 > 0) | !heard);
+    let age = if lost { Ticks(lane.age.0.saturating_add(1)) } else { Ticks(0) };
+    let credited = heard & if lost { has_credit(times, run, age) } else { lane.credited };
     //= spec/aspect.md#acc-1-operate
     //# An aspect MUST be accepted when it has been detected on T1 consecutive cycles.
     //= spec/aspect.md#acc-8-shortened-operate
     //# A lost aspect that is detected again after g cycles, with g at most T4 and below T2+T3, MUST be accepted after T5 cycles of that detection.
-    if heard && run >= awaited(times, credited) {
-        next.accepted = next.accepted.or(this);
-        next.dropped = next.dropped.without(this);
-        next.age[rank] = Ticks(0);
-        return;
-    }
+    let accept = heard & (run >= awaited(times, credited));
     //= spec/aspect.md#acc-6-expiry
     //# A lost aspect MUST be gone at age T2+T3.
-    let gone = lost && age >= times.expiry;
-    if gone {
-        next.accepted = next.accepted.without(this);
-        next.dropped = next.dropped.without(this);
-    }
-    if !lost || gone {
-        next.age[rank] = Ticks(0);
-        if credited {
-            next.credited = next.credited.or(this);
-        }
-    } else {
-        next.age[rank] = age;
+    let gone = lost & !accept & (age >= times.expiry);
+    Lane {
+        run,
+        age: if lost & !gone & !accept { age } else { Ticks(0) },
+        accepted: accept | (lane.accepted & !gone),
+        dropped: lane.dropped & !gone & !accept,
+        credited: credited & !accept & (!lost | gone),
     }
 }
 
@@ -252,7 +271,7 @@ fn awaited(times: Times, credited: bool) -> Ticks {
 
 /// Whether a lost aspect of this run and age was re-detected within T4 of its loss.
 fn has_credit(times: Times, run: Ticks, age: Ticks) -> bool {
-    run.0 > 0 && age.0.saturating_sub(run.0) <= times.interruption.0
+    (run.0 > 0) & (age.0.saturating_sub(run.0) <= times.interruption.0)
 }
 
 /// A bit for each rank below `N`.

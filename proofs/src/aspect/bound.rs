@@ -63,7 +63,7 @@ harness! {
         e.assume(unheard <= expiry && covers(lane(&cycle.before, rank), unheard));
         e.assume(silence <= expiry && every(&cycle, false, |lane| covers(lane, silence)));
 
-        let count = |cycles: u16, heard: bool| if heard { 0 } else { (cycles + 1).min(expiry) };
+        let count = |cycles: u16, heard: bool| if heard { 0 } else { cycles.saturating_add(1).min(expiry) };
         let unheard = count(unheard, has(cycle.detected, rank));
         let silence = count(silence, cycle.detected != 0);
         let (was, is) = (lane(&cycle.before, rank), lane(&cycle.after, rank));
@@ -120,7 +120,7 @@ harness! {
         let heard = has(cycle.detected, rank);
         let reaccepted = is.accepted && is.age == 0 && heard;
         // Cycles since the loss, this one included: 0 if it is not lost.
-        let lost_for = if heard && was.age == 0 { 0 } else { was.age + 1 };
+        let lost_for = if heard && was.age == 0 { 0 } else { was.age.saturating_add(1) };
         let was_satisfied = was.accepted && !was.dropped;
         let is_satisfied = is.accepted && !is.dropped;
 

@@ -71,8 +71,8 @@ harness! {
             let shown = u16::from(is_displayed(&asked, gap, heard));
             same(&next.parts(), &closed_form(&asked, run, gap, heard)) && display.bits() == shown
         };
-        e.claim(Claim::Silent as u32, heard > 0 || as_formula(0, gap + 1, 0));
-        e.claim(Claim::Heard as u32, gap == 0 || as_formula(1, gap, heard + 1));
+        e.claim(Claim::Silent as u32, heard > 0 || as_formula(0, gap.saturating_add(1), 0));
+        e.claim(Claim::Heard as u32, gap == 0 || as_formula(1, gap, heard.saturating_add(1)));
         e.claim(Claim::Valid as u32, state.is_valid(asked.times));
 
         let sum = u32::from(gap) + u32::from(needed(&asked, gap));
@@ -171,6 +171,6 @@ harness! {
             };
         }
         e.claim(Claim::Same as u32, at_each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15));
-        e.cover(Cover::Highest as u32, rank == 15 && heard && one.age[0] > 0 && one.run[0] + 1 >= asked.shortened);
+        e.cover(Cover::Highest as u32, rank == 15 && heard && one.age[0] > 0 && one.run[0].saturating_add(1) >= asked.shortened);
     }
 }
