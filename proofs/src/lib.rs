@@ -18,6 +18,9 @@ pub mod duplex;
 pub mod supervision;
 pub mod time;
 
+#[cfg(kani)]
+mod contracts;
+
 pub use engine::{Engine, any_u32};
 pub use harness::{Harness, Point};
 
