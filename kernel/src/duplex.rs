@@ -6,18 +6,22 @@
 
 use crate::Machine;
 
-/// An output on which two channels agree. The field is private and [`Agreed::compare`] is the only constructor, so
-/// that the comparison cannot be left out:
+/// An output on which two channels agree. Only [`Duplex::step`] makes one, out of the outputs of both channels, so that
+/// the comparison cannot be left out or be made of one channel with itself:
 ///
 /// ```compile_fail,E0423
-/// let forged = atc_kernel::duplex::Agreed(7_u8); // the constructor is private
+/// let forged = atc_kernel::duplex::Agreed(7_u8); // the field is private
+/// ```
+///
+/// ```compile_fail,E0624
+/// let forged = atc_kernel::duplex::Agreed::compare(7_u8, 7_u8); // and so is the comparison
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Agreed<T>(T);
 
 impl<T: Copy + Eq> Agreed<T> {
     /// The common value of the two channels; `None` if they differ.
-    pub fn compare(a: T, b: T) -> Option<Self> {
+    fn compare(a: T, b: T) -> Option<Self> {
         //= spec/duplex.md#dup-2-no-way-round-the-comparison
         //# An agreed output MUST be constructible only from two equal channel outputs.
         if a == b { Some(Self(a)) } else { None }

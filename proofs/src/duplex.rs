@@ -1,6 +1,6 @@
 //! Two channels: DUP-1 and DUP-2.
 
-use crate::aspect::{BOUND, any_machine_state};
+use crate::aspect::{BOUND, any_machine_state, same};
 use crate::{ASPECTS, Harness};
 use atc_kernel::Machine;
 use atc_kernel::aspect::{AspectSet, Parts, State};
@@ -38,6 +38,7 @@ harness! {
     claims {
         SafeOrSame: "with one bit flipped the output is the safe one or the one without the fault",
         NoneLatent: "after the cycle the two channels are equal, or the safe output is latched",
+        Caught: "a flipped bit of the state or the trip word, whichever, is found in this cycle",
     }
     covers {
         Trips: "a flipped bit trips the comparison",
@@ -60,8 +61,11 @@ harness! {
         let (_, expected) = machine.step(state, input);
         let (pair, agreed) = pair.step(&machine, input);
         e.claim(Claim::SafeOrSame as u32, agreed.is_none_or(|output| output.get() == expected));
-        let equal = pair.a == pair.b && !pair.is_tripped();
-        e.claim(Claim::NoneLatent as u32, if agreed.is_some() { equal } else { pair.is_tripped() });
+        // Field by field, and not with the kernel's own comparison.
+        let equal = same(&pair.a.state.parts(), &pair.b.state.parts()) && pair.a.trip == 0 && pair.b.trip == 0;
+        let latched = pair.a.trip == TRIPPED && pair.b.trip == TRIPPED;
+        e.claim(Claim::NoneLatent as u32, if agreed.is_some() { equal } else { latched });
+        e.claim(Claim::Caught as u32, agreed.is_none());
         e.cover(Cover::Trips as u32, pair.is_tripped());
         e.cover(Cover::Displaying as u32, expected.bits() != 0);
         e.cover(Cover::TripWord as u32, word == words - 1);
@@ -72,6 +76,8 @@ harness! {
 struct Anything {
     results: [(u16, u16); 2],
     calls: Cell<usize>,
+    /// The states from which it was called.
+    states: [Cell<u16>; 2],
 }
 
 impl Machine for Anything {
@@ -85,9 +91,10 @@ impl Machine for Anything {
         0
     }
 
-    fn step(&self, _: u16, (): ()) -> (u16, u16) {
+    fn step(&self, state: u16, (): ()) -> (u16, u16) {
         let call = self.calls.get();
         self.calls.set(call + 1);
+        self.states[usize::from(call > 0)].set(state);
         if call == 0 { self.results[0] } else { self.results[1] }
     }
 }
@@ -106,6 +113,7 @@ harness! {
         Value: "it is the output of both",
         Latch: "without an output both channels are tripped",
         Once: "each channel computes exactly once",
+        Own: "each channel computes from its own state and keeps its own result",
     }
     covers {
         Agree: "the channels agree",
@@ -113,7 +121,7 @@ harness! {
     }
     {
         let mut any = || e.word("of any machine", 0..=1);
-        let machine = Anything { results: [(any(), any()), (any(), any())], calls: Cell::new(0) };
+        let machine = Anything { results: [(any(), any()), (any(), any())], calls: Cell::new(0), states: Default::default() };
         let [trip_a, trip_b] = [any(), any()].map(|word| word.to_le_bytes()[0]);
         let before = Duplex { a: Channel { state: any(), trip: trip_a }, b: Channel { state: any(), trip: trip_b } };
         let (after, agreed) = before.step(&machine, ());
@@ -124,6 +132,8 @@ harness! {
         e.claim(Claim::Value as u32, agreed.is_none_or(|value| value.get() == output_a && value.get() == output_b));
         e.claim(Claim::Latch as u32, agreed.is_some() || after.a.trip == TRIPPED && after.b.trip == TRIPPED);
         e.claim(Claim::Once as u32, machine.calls.get() == 2);
+        let from_own = machine.states[0].get() == before.a.state && machine.states[1].get() == before.b.state;
+        e.claim(Claim::Own as u32, from_own && after.a.state == state_a && after.b.state == state_b);
         e.cover(Cover::Agree as u32, agreed.is_some());
         e.cover(Cover::OutputsOnly as u32, output_a == output_b && !agree && sound);
     }
@@ -149,7 +159,7 @@ harness! {
     {
         let mut any = || e.word("of any machine", 0..=3);
         let result = (any(), any());
-        let machine = Anything { results: [result; 2], calls: Cell::new(0) };
+        let machine = Anything { results: [result; 2], calls: Cell::new(0), states: Default::default() };
         let state = any();
         let sound = Channel { state, trip: 0 };
         let (pair, agreed) = Duplex { a: sound, b: sound }.step(&machine, ());

@@ -1,11 +1,12 @@
 //! Speed supervision: SUP-1 to SUP-3.
 
 use crate::{Engine, Harness, any_u32};
+use atc_kernel::Machine;
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
 use atc_kernel::supervision::{Brake, Speeds, Supervision, SupervisionError, step};
 
 /// The harnesses of this module.
-pub const ALL: &[Harness] = &[sup_1::HARNESS, sup_2::HARNESS, sup_3::HARNESS];
+pub const ALL: &[Harness] = &[sup_1::HARNESS, sup_2::HARNESS, sup_3::HARNESS, sup_machine::HARNESS];
 
 struct Cycle {
     maximum: i64,
@@ -84,6 +85,7 @@ harness! {
         NotAbove: "not above it, and with no brake on before, it is released",
         MarginDelays: "a brake that was on stays on at least as long as without a margin, and at most until the margin is reached or the train stands",
         Function: "without a margin the command is a function of the two speeds",
+        Held: "a brake that was on, service or emergency, stays on until the margin is reached or the train stands",
     }
     covers {
         Delayed: "a release that the margin delays",
@@ -102,6 +104,7 @@ harness! {
             cycle.brake >= cycle.unbraked && (above || !reached || cycle.brake == Brake::Release),
         );
         e.claim(Claim::Function as u32, cycle.margin > 0 || cycle.brake == cycle.unbraked);
+        e.claim(Claim::Held as u32, !braked || reached || cycle.brake != Brake::Release);
         e.cover(Cover::Delayed as u32, cycle.brake > cycle.unbraked);
         e.cover(Cover::Released as u32, braked && cycle.brake == Brake::Release);
         e.cover(Cover::Equal as u32, measured == permitted);
@@ -160,5 +163,42 @@ harness! {
         e.claim(Claim::Exact as u32, exact);
         e.cover(Cover::Accepted as u32, maximum > 0 && margin <= maximum);
         e.cover(Cover::Refused as u32, maximum == 0 || margin > maximum);
+    }
+}
+
+harness! {
+    /// As a machine the supervision is its step: it remembers the command that it gives, it starts with the emergency
+    /// brake, which is its safe output too, and more braking is the higher command.
+    sup_machine(e)
+    theorem "SUP-1";
+    requirements ["SUP-1", "GEN-1"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Step: "the machine commands, and remembers, what the step says",
+        Start: "the initial state and the safe output are the emergency brake",
+        Order: "release is below service, and service below emergency",
+    }
+    covers {
+        Braking: "the machine brakes",
+    }
+    {
+        let (maximum, margin) = (e.word("highest plausible speed (0.1 km/h)", 1..=30), e.word("release margin (0.1 km/h)", 0..=5));
+        let Ok(machine) = Supervision::new(KmhTenths(maximum), KmhTenths(margin)) else { return e.assume(false) };
+        let previous = match e.word("previous brake (0 release, 1 service, else emergency)", 0..=2) {
+            0 => Brake::Release,
+            1 => Brake::Service,
+            _ => Brake::Emergency,
+        };
+        let measured = any_speed(e, "measured speed (0.1 km/h, two's complement)").map(RawKmhTenths);
+        let permitted = any_speed(e, "permitted speed (0.1 km/h, two's complement)").map(RawKmhTenths);
+        let speeds = Speeds { measured, permitted };
+        let expected = step(machine, previous, speeds);
+        let (next, brake) = machine.step(previous, speeds);
+        e.claim(Claim::Step as u32, brake == expected && next == expected);
+        e.claim(Claim::Start as u32, machine.initial() == Brake::Emergency && Supervision::SAFE == Brake::Emergency);
+        e.claim(Claim::Order as u32, Brake::Release < Brake::Service && Brake::Service < Brake::Emergency);
+        e.cover(Cover::Braking as u32, brake == Brake::Service);
     }
 }

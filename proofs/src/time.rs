@@ -80,6 +80,7 @@ harness! {
         Exact: "accepted if and only if no rule of TIME-2 is broken",
         Kept: "accepted times are the ones that were asked for, T4 at most T2+T3 less one",
         Told: "the rule that the error names is broken",
+        NoCycle: "a cycle of 0 is refused, whatever the times, and so has no cycle",
     }
     covers {
         Accepted: "some times are accepted",
@@ -119,6 +120,10 @@ harness! {
             TimesError::InterruptionTooLong => interruption > 60_000,
         };
         e.claim(Claim::Told as u32, result.as_ref().err().is_none_or(told));
+        let [t1, t2, t3, t4, t5] = [operate, recovery, mask, interruption, shortened].map(|time| Millis(u32::from(time)));
+        let asked = TimesMs { operate: t1, recovery: t2, mask: t3, interruption: t4, shortened_operate: t5 };
+        let refused = Times::from_millis(Millis(0), asked) == Err(TimesError::NoCycle);
+        e.claim(Claim::NoCycle as u32, refused && Cycle::new(Millis(0)).is_none());
         e.cover(Cover::Accepted as u32, result.is_ok());
         e.cover(Cover::Capped as u32, result.is_ok() && u32::from(interruption) >= expiry);
         e.cover(Cover::Refused as u32, result.is_err());

@@ -4,3 +4,8 @@
 pub mod device;
 pub mod timing_chart;
 pub mod workload;
+
+/// The examples of the README, compiled and run.
+#[doc = include_str!("../../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -64,14 +64,14 @@ impl AspectSet {
 
     /// Every aspect higher than the lowest of the set; empty if the set is.
     #[must_use]
-    pub(super) const fn above_lowest(self) -> Self {
+    pub const fn above_lowest(self) -> Self {
         let low = self.lowest().0;
         Self(!(low | low.wrapping_sub(1)))
     }
 
     /// Every aspect lower than the highest of the set; empty if the set is.
     #[must_use]
-    pub(super) const fn below_highest(self) -> Self {
+    pub const fn below_highest(self) -> Self {
         let mut bits = self.0 >> 1;
         bits |= bits >> 1;
         bits |= bits >> 2;

@@ -66,7 +66,7 @@ impl Times {
     /// Checks `times` and turns them into logic cycles of length `cycle`: T1 and T5 round up, T2, T3 and T4 down.
     ///
     /// # Errors
-    /// The first rule of TIME-2 that is broken, in the order of [`TimesError`] from the cycle on.
+    /// A rule of TIME-2 that is broken; if several are, times that are too long come first.
     pub fn from_millis(cycle: Millis, times: TimesMs) -> Result<Self, TimesError> {
         let cycle = Cycle::new(cycle).ok_or(TimesError::NoCycle)?;
         let operate = cycle.at_least(times.operate).ok_or(TimesError::OperateTooLong)?;
@@ -81,7 +81,7 @@ impl Times {
     /// Checks times that are in logic cycles already (T1, T2, T3, T4, T5).
     ///
     /// # Errors
-    /// The first rule of TIME-2 that is broken.
+    /// A rule of TIME-2 that is broken.
     pub fn from_ticks(
         operate: Ticks,
         recovery: Ticks,

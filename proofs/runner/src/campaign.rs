@@ -164,9 +164,13 @@ fn is_sized(harness: &Harness) -> bool {
     harness.bound == atc_proofs::bound(atc_proofs::ASPECTS)
 }
 
-/// The harness's cases at this size: a sized one that is split is split over the aspects.
+/// The harness's cases at this size: a sized one that is split is split over the aspects, or over one more of them.
 fn cases_of(harness: &Harness, aspects: usize) -> usize {
-    if is_sized(harness) && harness.cases > 1 { aspects } else { harness.cases }
+    if is_sized(harness) && harness.cases > 1 {
+        (aspects + harness.cases - atc_proofs::ASPECTS).min(atc_kernel::aspect::MAX_ASPECTS)
+    } else {
+        harness.cases
+    }
 }
 
 fn case_of(tools: &Tools, folder: &Path, harness: &Harness, case: (usize, usize), options: &Options) -> Case {

@@ -73,7 +73,8 @@ harness! {
         e.claim(Claim::Ages as u32, covers(is, unheard) && every(&cycle, true, |lane| covers(lane, silence)));
         e.claim(Claim::Start as u32, State::<ASPECTS>::INITIAL.parts().accepted == 0);
         e.cover(Cover::Expires as u32, unheard == expiry && was.accepted && !is.accepted);
-        e.cover(Cover::Glitch as u32, unheard < expiry && was.accepted && !is.accepted);
+        let glitch = was.run > 0 || has(cycle.detected, rank);
+        e.cover(Cover::Glitch as u32, glitch && unheard < expiry && was.accepted && !is.accepted);
     }
 }
 
@@ -100,6 +101,7 @@ harness! {
         Recovery: "an accepted aspect lost for less than T2 is satisfied",
         Mask: "from T2 to T2+T3 it stays satisfied exactly while no lower aspect is firm and no higher one has T1 evidence",
         Gone: "at T2+T3 it is neither accepted nor satisfied",
+        Accepted: "an aspect that is accepted and not lost is satisfied, whatever it was before",
         NoOther: "an aspect that is not accepted becomes satisfied only by an acceptance",
         Lowest: "what is displayed is the lowest satisfied aspect",
         Nothing: "nothing is displayed only if nothing is satisfied, or a rise has no evidence",
@@ -140,6 +142,7 @@ harness! {
         e.claim(Claim::Recovery as u32, !(was.accepted && lost_for < asked.recovery) || is_satisfied);
         e.claim(Claim::Mask as u32, !masked || is_satisfied == (was_satisfied && !contradicted));
         e.claim(Claim::Gone as u32, !(lost && lost_for >= asked.expiry) || !is.accepted && !is_satisfied);
+        e.claim(Claim::Accepted as u32, !reaccepted || is_satisfied);
         e.claim(Claim::NoOther as u32, was.accepted || reaccepted || !is_satisfied);
         e.claim(Claim::Lowest as u32, display == 0 || display == lowest);
         let forbidden = lowest > cycle.before.last && !at_or_above(evident, lowest);

@@ -1,6 +1,6 @@
 //! T-ACC-4: the shortened operate time never drops an aspect, in its exact form.
 
-use super::{Asked, any_parts, any_times, same};
+use super::{Asked, any_parts, any_times, at_each_rank, same};
 use atc_kernel::aspect::{AspectSet, MAX_ASPECTS, Parts, State, step};
 
 /// The operate time that counts after an interruption of `gap` cycles, alone on the line.
@@ -161,16 +161,8 @@ harness! {
         let one = any_parts::<1, E>(e, &asked);
         e.assume(State::from_parts(one).is_valid(asked.times));
         let heard = e.word("heard (odd: yes)", 0..=1) & 1 == 1;
-        // Each rank a constant, so that the other 15 are constants as well.
-        macro_rules! at_each {
-            ($($rank:literal)*) => {
-                match rank {
-                    $($rank => is_alone::<$rank>(&asked, one, heard),)*
-                    _ => false,
-                }
-            };
-        }
-        e.claim(Claim::Same as u32, at_each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15));
+        let alone = at_each_rank!(rank, false, is_alone(&asked, one, heard));
+        e.claim(Claim::Same as u32, alone);
         e.cover(Cover::Highest as u32, rank == 15 && heard && one.age[0] > 0 && one.run[0].saturating_add(1) >= asked.shortened);
     }
 }

@@ -5,6 +5,7 @@
 //! proves that the ghost and the state go together from the initial state on.
 
 mod bound;
+mod carry;
 mod compare;
 mod display;
 mod evidence;
@@ -16,11 +17,12 @@ use atc_kernel::aspect::{Acceptance, AspectSet, Display, Parts, State, Times, st
 use atc_kernel::time::Ticks;
 
 pub use bound::{t_acc_2, t_acc_3, t_acc_7};
+pub use carry::{carry_away, carry_idle};
 pub use compare::{t_acc_5, t_acc_6};
 pub use display::{set_1, t_acc_8, total};
 pub use evidence::{t_acc_1, t_acc_1_rise};
 pub use gap::{t_acc_4, t_acc_4_alone, t_acc_4_tolerated};
-pub use table::time_table;
+pub use table::{table_names, time_table};
 
 /// The harnesses of this module.
 pub const ALL: &[Harness] = &[
@@ -35,7 +37,10 @@ pub const ALL: &[Harness] = &[
     t_acc_6::HARNESS,
     t_acc_7::HARNESS,
     t_acc_8::HARNESS,
+    carry_away::HARNESS,
+    carry_idle::HARNESS,
     time_table::HARNESS,
+    table_names::HARNESS,
     set_1::HARNESS,
     total::HARNESS,
 ];
@@ -172,8 +177,23 @@ fn lane<const N: usize>(parts: &Parts<N>, rank: usize) -> Lane {
     found
 }
 
+/// `function::<RANK>(arguments)` for the `RANK` that is `rank`, each one a constant, so that the rest of the state is easy.
+macro_rules! at_each_rank {
+    ($rank:expr, $otherwise:expr, $function:ident($($argument:expr),*)) => {
+        at_each_rank!(@ $rank, $otherwise, $function, ($($argument),*), 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15)
+    };
+    (@ $rank:expr, $otherwise:expr, $function:ident, $arguments:tt, $($constant:literal)*) => {
+        match $rank {
+            $($constant => at_each_rank!(= $function::<$constant>, $arguments),)*
+            _ => $otherwise,
+        }
+    };
+    (= $function:ident::<$constant:literal>, ($($argument:expr),*)) => { $function::<$constant>($($argument),*) };
+}
+use at_each_rank;
+
 /// Whether two states are the same, field by field. (`==` on arrays compiles to a loop over bytes, which no prover likes.)
-fn same<const N: usize>(one: &Parts<N>, other: &Parts<N>) -> bool {
+pub(crate) fn same<const N: usize>(one: &Parts<N>, other: &Parts<N>) -> bool {
     let mut same = one.accepted == other.accepted
         && one.dropped == other.dropped
         && one.credited == other.credited
@@ -223,10 +243,14 @@ fn at_or_above(set: u16, one: u16) -> bool {
 
 /// The aspects heard on T1 consecutive cycles up to now, from the runs before and what is detected now.
 fn evident<const N: usize>(cycle: &Cycle<N>) -> u16 {
+    evident_after(&cycle.asked, &cycle.before, cycle.detected)
+}
+
+fn evident_after<const N: usize>(asked: &Asked, before: &Parts<N>, detected: u16) -> u16 {
     let mut set = 0;
     for rank in 0..N {
-        let run = if has(cycle.detected, rank) { u32::from(cycle.before.run[rank]) + 1 } else { 0 };
-        set |= u16::from(run >= u32::from(cycle.asked.operate)) << rank;
+        let run = if has(detected, rank) { u32::from(before.run[rank]) + 1 } else { 0 };
+        set |= u16::from(run >= u32::from(asked.operate)) << rank;
     }
     set
 }

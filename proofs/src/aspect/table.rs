@@ -1,6 +1,6 @@
 //! TIME-4: the aspect table.
 
-use atc_kernel::aspect::{AspectTable, MAX_ASPECTS, TableError};
+use atc_kernel::aspect::{AspectId, AspectTable, MAX_ASPECTS, TableError};
 use atc_kernel::speed::KmhTenths;
 
 /// One entry more than a table may have.
@@ -58,5 +58,42 @@ harness! {
         e.cover(Cover::Accepted as u32, result.is_ok());
         e.cover(Cover::Full as u32, result.is_ok() && count == MAX_ASPECTS);
         e.cover(Cover::Refused as u32, result.is_err());
+    }
+}
+
+harness! {
+    /// In an accepted table the aspect of rank i permits speed i and is what that speed names; a speed that is not in
+    /// the table names no aspect, and a rank that is not, no speed.
+    table_names(e)
+    theorem "T-ACC-8";
+    requirements ["TIME-4"];
+    assumptions [];
+    bound "tables of 4 speeds";
+    cases 1;
+    claims {
+        Speed: "a rank of the table has its speed, any other rank none",
+        Aspect: "a speed of the table names its rank, any other speed none",
+    }
+    covers {
+        Named: "a speed names the last rank of the table",
+        Unknown: "a speed names no aspect",
+    }
+    {
+        let speeds = [0..=3, 4..=7, 8..=11, 12..=15].map(|likely| e.word("speeds (0.1 km/h), rising", likely));
+        e.assume(speeds[0] < speeds[1] && speeds[1] < speeds[2] && speeds[2] < speeds[3]);
+        let Ok(table) = AspectTable::new(&speeds.map(KmhTenths)) else { return e.assume(false) };
+        let asked = e.word("speed looked up (0.1 km/h)", 0..=16);
+        let rank = e.word("rank looked up", 0..=15) & 15;
+        let found = table.aspect(KmhTenths(asked)).map_or(16, |aspect| usize::from(aspect.rank()));
+        let speed = AspectId::new(rank.to_le_bytes()[0]).and_then(|aspect| table.speed(aspect));
+        let (mut expected_rank, mut expected_speed) = (16, None);
+        for (place, speed) in speeds.into_iter().enumerate() {
+            expected_rank = if speed == asked { place } else { expected_rank };
+            expected_speed = if usize::from(rank) == place { Some(speed) } else { expected_speed };
+        }
+        e.claim(Claim::Speed as u32, speed.map(|speed| speed.0) == expected_speed);
+        e.claim(Claim::Aspect as u32, found == expected_rank);
+        e.cover(Cover::Named as u32, found == 3);
+        e.cover(Cover::Unknown as u32, found == 16);
     }
 }
