@@ -33,7 +33,7 @@ impl Default for Options {
         Self {
             jobs: std::thread::available_parallelism().map_or(2, usize::from),
             limit: Duration::from_mins(10),
-            solver: Solver::Cadical,
+            solver: Solver::Auto,
             aspects: atc_proofs::ASPECTS,
             tests: 20_000,
         }

@@ -22,12 +22,17 @@ pub const CBMC: [&str; 9] = [
     "--trace",
 ];
 
+/// How long [`Solver::Auto`] waits for the first solver.
+const FIRST: Duration = Duration::from_secs(20);
+
 /// Bytes of constant data that a harness may have.
 const DATA: u32 = 1024;
 
 /// Which solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Solver {
+    /// CaDiCaL, and where that has no answer in 20 s, Kissat: each is fast where the other is slow.
+    Auto,
     /// CaDiCaL, in CBMC.
     Cadical,
     /// MiniSat, in CBMC.
@@ -41,7 +46,7 @@ pub enum Solver {
 impl Solver {
     fn options(self, tools: &Tools) -> Vec<String> {
         match self {
-            Self::Cadical => vec!["--sat-solver".to_owned(), "cadical".to_owned()],
+            Self::Auto | Self::Cadical => vec!["--sat-solver".to_owned(), "cadical".to_owned()],
             Self::Minisat => vec!["--sat-solver".to_owned(), "minisat2".to_owned()],
             Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.path("kissat").display().to_string()],
             Self::Z3 => vec!["--smt2".to_owned(), "--z3".to_owned()],
@@ -51,6 +56,7 @@ impl Solver {
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Auto => "cadical or kissat",
             Self::Cadical => "cadical",
             Self::Minisat => "minisat2",
             Self::Kissat => "kissat",
@@ -124,6 +130,20 @@ pub enum Silence {
 /// # Errors
 /// No answer, and why. Only an answer that is complete is one.
 pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
+    if question.solver != Solver::Auto || !tools.versions.contains_key("kissat") {
+        return ask_one(tools, folder, question);
+    }
+    let first = Question { limit: question.limit.min(FIRST), solver: Solver::Cadical, ..*question };
+    match ask_one(tools, folder, &first) {
+        Err(Silence::Late) => {
+            let (answer, took) = ask_one(tools, folder, &Question { solver: Solver::Kissat, ..*question })?;
+            Ok((answer, took + first.limit))
+        }
+        answer => answer,
+    }
+}
+
+fn ask_one(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
     let (case, cases) = question.case;
     let mut arguments: Vec<String> = vec![
         folder.join("driver.c").display().to_string(),

@@ -78,7 +78,7 @@ struct Run {
     #[arg(long, default_value_t = 600)]
     time_limit: u64,
     /// Which solver.
-    #[arg(long, value_enum, default_value = "cadical")]
+    #[arg(long, value_enum, default_value = "auto")]
     solver: atc_prover::Solver,
     /// Ranks of the aspect machine, 1 to 16.
     #[arg(long, default_value_t = atc_proofs::ASPECTS, value_parser = aspects)]

@@ -1,0 +1,185 @@
+//! The case from the plan and the results.
+
+use crate::argument;
+use crate::case::{Case, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Status, Technique, Tool};
+use crate::hazard;
+use crate::inputs::proofs::Campaigned;
+use crate::inputs::tests::{self, Run};
+use crate::inputs::{models, mutants, proofs};
+use crate::open;
+use crate::plan::Plan;
+use crate::srac;
+use crate::trace;
+use crate::verdict::Verdict;
+use atc_models::Outcome;
+use atc_prover::report::Mutants;
+use std::collections::BTreeMap;
+
+/// What the engines have said.
+#[derive(Clone, Debug)]
+pub struct Results {
+    /// The campaigns, run or imported.
+    pub campaigns: Vec<Campaigned>,
+    /// The mutants, and whether they belong to other sources.
+    pub mutants: Option<(Mutants, bool)>,
+    /// The models.
+    pub outcomes: Vec<Outcome>,
+    /// Why a model has no outcome.
+    pub no_outcome: String,
+    /// The tests.
+    pub tests: Run,
+    /// What all of it belongs to.
+    pub provenance: Provenance,
+}
+
+/// What must be so for the exit code 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Required {
+    /// Nothing may have gone wrong.
+    NoDefect,
+    /// Every claim of the kernel proved by the cbmc engine, every model as expected, every wrong kernel rejected.
+    Proved,
+}
+
+/// Builds the case.
+pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
+    let (mut evidence, engines) = proofs::evidence(&plan.harnesses, &results.campaigns);
+    let (modelled, models) = models::evidence(&plan.models, &results.outcomes, &results.no_outcome);
+    evidence.extend(modelled);
+    let (killed, stale) = results.mutants.as_ref().map_or((None, false), |(all, stale)| (Some(all), *stale));
+    evidence.extend(mutants::evidence(&plan.mutants, killed, stale));
+    evidence.extend(suites(plan, &results.tests));
+
+    let mut conditions = srac::conditions(&plan.data.assumptions, &plan.uses);
+    // A bound that only this run has (another number of aspects) is carried by the same conditions.
+    for condition in &mut conditions {
+        condition.used_by.sort();
+        condition.used_by.dedup();
+    }
+    let nodes = argument::build(&plan.data.argument, &evidence, &conditions, &engines);
+    let hazards = hazard::log(&plan.data.hazards, &nodes, &evidence, &conditions);
+    let mut case = Case {
+        schema: SCHEMA,
+        title: "Train control kernel: aspect acceptance, speed supervision, two channels".to_owned(),
+        conclusions: argument::conclusions(&nodes, &evidence, &conditions),
+        status: Status::default(),
+        open_items: Vec::new(),
+        requirements: trace::table(&plan.requirements, &plan.citations, &plan.mentions, &evidence),
+        line: plan.line.case(&evidence),
+        techniques: techniques(plan, &evidence),
+        tools: tools(plan, &results.provenance),
+        provenance: results.provenance,
+        argument: nodes,
+        evidence,
+        engines,
+        conditions,
+        hazards,
+        models,
+    };
+    case.open_items = open::items(plan, &case);
+    case.status = status(&case, required);
+    case
+}
+
+/// The suites of the run, and those that are named somewhere and are not there.
+fn suites(plan: &Plan, run: &Run) -> Vec<Evidence> {
+    let mut found = tests::evidence(run);
+    for id in plan.tests_named() {
+        if !found.iter().any(|one| one.id == id) {
+            let name = id.trim_start_matches("test:");
+            found.push(match run {
+                Run::NotRun(why) => tests::one(name, Verdict::NotRun, String::new(), Some(why.clone())),
+                Run::Ran { .. } => {
+                    let reason = "the argument names this suite, and it is not in the run".to_owned();
+                    tests::one(name, Verdict::Undecided, String::new(), Some(reason))
+                }
+            });
+        }
+    }
+    found
+}
+
+fn techniques(plan: &Plan, evidence: &[Evidence]) -> Vec<Technique> {
+    let known: Vec<_> = evidence.iter().map(|one| one.id.clone()).collect();
+    let text = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    plan.data
+        .techniques
+        .techniques
+        .iter()
+        .map(|one| {
+            let ids: Vec<_> =
+                one.evidence.iter().flat_map(|id| argument::resolve(id, &known).unwrap_or_default()).collect();
+            let verdicts = evidence.iter().filter(|one| ids.contains(&one.id)).map(|one| one.verdict);
+            Technique {
+                name: one.name.clone(),
+                claimed: text(&one.claimed),
+                evidence: one.evidence.clone(),
+                verdict: Verdict::worst(verdicts),
+            }
+        })
+        .collect()
+}
+
+fn tools(plan: &Plan, provenance: &Provenance) -> Vec<Tool> {
+    let tools = plan.data.techniques.tools.iter();
+    tools
+        .map(|tool| Tool {
+            name: tool.name.clone(),
+            class: tool.class.clone(),
+            version: provenance.tools.get(&tool.name).cloned(),
+            justification: tool.justification.split_whitespace().collect::<Vec<_>>().join(" "),
+        })
+        .collect()
+}
+
+/// The end of the run: complete or not, and the exit code with its reasons.
+pub fn status(case: &Case, required: Required) -> Status {
+    let mut counts: BTreeMap<String, BTreeMap<Verdict, usize>> = BTreeMap::new();
+    for one in &case.evidence {
+        *counts.entry(one.kind.word().to_owned()).or_default().entry(one.verdict).or_default() += 1;
+    }
+    // A theorem that was only tested has no result of a prover.
+    let proves = |one: &EngineResult| one.engine != "native" && one.verdict.is_result();
+    let has_result = |one: &Evidence| match one.kind {
+        Kind::Harness => one.verdict.is_result() && one.engines.iter().any(proves),
+        _ => one.verdict.is_result(),
+    };
+    let missing: Vec<_> = case.evidence.iter().filter(|one| !has_result(one)).map(|one| one.id.clone()).collect();
+    let mut reasons: Vec<String> = Vec::new();
+    for one in case.evidence.iter().filter(|one| one.verdict.is_defect()) {
+        reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.reason.as_deref().unwrap_or("no reason given")));
+    }
+    for one in case.open_items.iter().filter(|one| one.severity == Severity::Stop) {
+        if !case.evidence.iter().any(|evidence| evidence.title == one.about) && !one.about.contains(' ') {
+            reasons.push(format!("{}: {}", one.about, one.text));
+        }
+    }
+    if required == Required::Proved {
+        for one in case.evidence.iter().filter(|one| !one.verdict.is_defect()) {
+            let enough = match one.kind {
+                Kind::Harness => {
+                    one.engines.iter().any(|engine| engine.engine == "cbmc" && engine.verdict <= Verdict::ProvedBounded)
+                }
+                Kind::Model => one.verdict == Verdict::ModelChecked,
+                Kind::Mutant => one.verdict == Verdict::Tested,
+                Kind::Test => true,
+            };
+            if !enough {
+                let wanted = match one.kind {
+                    Kind::Harness => "not proved by the cbmc engine",
+                    Kind::Model => "not checked",
+                    Kind::Mutant | Kind::Test => "not rejected by a theorem",
+                };
+                reasons.push(format!("{} is {}, {wanted}", one.id, one.verdict));
+            }
+        }
+    }
+    Status {
+        complete: missing.is_empty(),
+        missing,
+        required: (required == Required::Proved).then(|| "proved".to_owned()),
+        exit_code: u8::from(!reasons.is_empty()),
+        reasons,
+        counts,
+    }
+}

@@ -1,0 +1,61 @@
+//! The specific application as data.
+
+use crate::verdict::Verdict;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A line's parameters and what follows from them.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Its name.
+    pub name: String,
+    /// Where the parameters come from.
+    pub source: String,
+    /// One logic cycle in ms.
+    pub cycle_ms: u32,
+    /// The aspects' permitted speeds in km/h.
+    pub aspects_km_h: Vec<f64>,
+    /// Each time: name, meaning, asked for in ms, cycles, kept in ms.
+    pub times: Vec<LineTime>,
+    /// What follows: name, value, how it is computed.
+    pub derived: Vec<Derived>,
+    /// What the user should look at.
+    pub notes: Vec<String>,
+    /// The generic theorems that hold for this line, with their verdicts.
+    pub theorems: Vec<(String, Verdict)>,
+    /// The data checks that were made, each with its result.
+    pub checks: Vec<String>,
+}
+
+/// One of the five times.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineTime {
+    /// T1 to T5.
+    pub symbol: String,
+    /// What it is.
+    pub name: String,
+    /// What was asked for, in ms.
+    pub asked_ms: u32,
+    /// Logic cycles.
+    pub ticks: u16,
+    /// What is kept, in ms.
+    pub kept_ms: u64,
+    /// `up`, `down` or `exact`, and a limit that was applied.
+    pub rounding: String,
+}
+
+/// A figure that follows from the parameters.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Derived {
+    /// What it is.
+    pub name: String,
+    /// The value with its unit.
+    pub value: String,
+    /// How it is computed.
+    pub formula: String,
+    /// The theorem that says so.
+    pub source: String,
+}

@@ -1,0 +1,453 @@
+//! The safety case as data. Everything that is rendered is rendered from this, and this is what `case.json` holds.
+
+mod line;
+
+use crate::verdict::Verdict;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+pub use line::{Derived, Line, LineTime};
+
+/// The version of this shape.
+pub const SCHEMA: u32 = 1;
+
+/// A whole safety case.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// The version of this shape: 1.
+    pub schema: u32,
+    /// What the case is about.
+    pub title: String,
+    /// What it is bound to.
+    pub provenance: Provenance,
+    /// How the run ended.
+    pub status: Status,
+    /// One for each root of the argument.
+    pub conclusions: Vec<Conclusion>,
+    /// What is not as it should be, the worst first.
+    pub open_items: Vec<OpenItem>,
+    /// The theorems, models, mutants and tests.
+    pub evidence: Vec<Evidence>,
+    /// The engines: which ran, and how to run the others.
+    pub engines: Vec<Engine>,
+    /// The argument, with the verdict of every node.
+    pub argument: Vec<Node>,
+    /// The safety-related application conditions: what the user must guarantee.
+    pub conditions: Vec<Condition>,
+    /// The hazard log.
+    pub hazards: Vec<Hazard>,
+    /// The requirements, and what each one is connected with.
+    pub requirements: Vec<Requirement>,
+    /// The models' parameters, properties and traces.
+    pub models: Vec<Model>,
+    /// Techniques of EN 50716 Annex A and what is claimed of each.
+    pub techniques: Vec<Technique>,
+    /// Tools by class.
+    pub tools: Vec<Tool>,
+    /// The specific application: one line's parameters.
+    pub line: Line,
+}
+
+/// What the results belong to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// The commit, if this is a checkout.
+    pub commit: Option<String>,
+    /// Whether the checkout differs from the commit.
+    pub dirty: Option<bool>,
+    /// SHA-256 of `Cargo.lock` (hexadecimal).
+    pub cargo_lock_sha256: String,
+    /// SHA-256 of what the provers see: the sources of kernel and proofs (hexadecimal).
+    pub sources_sha256: String,
+    /// SHA-256 of each folder, for `render` and `verify` (hexadecimal).
+    pub folders: BTreeMap<String, String>,
+    /// Name to version of every tool that was used.
+    pub tools: BTreeMap<String, String>,
+    /// The provers' flags.
+    pub flags: Vec<String>,
+    /// The number of aspects in the harnesses whose size is a parameter.
+    pub aspects: usize,
+    /// When the case was made, in seconds since 1970-01-01 UTC.
+    pub generated_unix: u64,
+    /// How long everything took, in seconds.
+    pub seconds: f64,
+}
+
+/// How the run ended.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Status {
+    /// Whether every entry of the manifest has a result for these sources.
+    pub complete: bool,
+    /// The entries without one.
+    pub missing: Vec<String>,
+    /// What was required: `proved`, or nothing.
+    pub required: Option<String>,
+    /// The exit code: 0 or 1.
+    pub exit_code: u8,
+    /// Why it is not 0.
+    pub reasons: Vec<String>,
+    /// Each evidence kind: how many of each verdict.
+    pub counts: BTreeMap<String, BTreeMap<Verdict, usize>>,
+}
+
+/// What one root of the argument amounts to.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Conclusion {
+    /// The root's id.
+    pub node: String,
+    /// The worst verdict under it.
+    pub verdict: Verdict,
+    /// The sentence, never stronger than the verdict.
+    pub sentence: String,
+}
+
+/// How bad an open item is. The worst comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// Something failed, or showed nothing. The run never ends well with one of these.
+    Stop,
+    /// Something is not shown.
+    Open,
+    /// Something to know.
+    Note,
+}
+
+/// Something that is not as it should be.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OpenItem {
+    /// How bad it is.
+    pub severity: Severity,
+    /// The evidence, requirement or node that it is about.
+    pub about: String,
+    /// What is open.
+    pub text: String,
+}
+
+/// What kind of evidence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// A theorem's harness.
+    Harness,
+    /// A state-space model.
+    Model,
+    /// A named wrong kernel: `tested` means killed.
+    Mutant,
+    /// A suite of tests.
+    Test,
+}
+
+impl Kind {
+    /// The word before the colon of an id.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Harness => "harness",
+            Self::Model => "model",
+            Self::Mutant => "mutant",
+            Self::Test => "test",
+        }
+    }
+}
+
+/// One piece of evidence.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Evidence {
+    /// `harness:…`, `model:…`, `mutant:…` or `test:…`.
+    pub id: String,
+    /// What kind it is.
+    pub kind: Kind,
+    /// A short title: the theorem's name, the model's, the mutant's, the suite's.
+    pub title: String,
+    /// What it shows, in plain English.
+    pub statement: String,
+    /// What it amounts to.
+    pub verdict: Verdict,
+    /// Bound, states and parameters, or numbers: what belongs with the verdict.
+    pub detail: String,
+    /// Why the verdict is not better.
+    pub reason: Option<String>,
+    /// Requirement ids.
+    pub requirements: Vec<String>,
+    /// Assumption ids.
+    pub assumptions: Vec<String>,
+    /// Claims (harness) or properties (model), each with its own verdict.
+    pub claims: Vec<Claim>,
+    /// Cover points.
+    pub covers: Vec<Cover>,
+    /// What each engine says of it.
+    pub engines: Vec<EngineResult>,
+    /// For a mutant: the harnesses that reject it, with the claims that turn red.
+    pub killed_by: Vec<String>,
+    /// Seconds of the engine that the verdict comes from.
+    pub seconds: f64,
+    /// The arbitrary values of a counterexample, in the order in which the harness draws them.
+    pub counterexample: Option<Vec<u16>>,
+}
+
+/// A claim or a model's property.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Its name.
+    pub name: String,
+    /// What it says.
+    pub text: String,
+    /// Its own verdict.
+    pub verdict: Verdict,
+}
+
+/// A cover point.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cover {
+    /// Its name.
+    pub name: String,
+    /// What is reached.
+    pub text: String,
+    /// Whether it was; nothing while no prover has run.
+    pub hit: Option<bool>,
+}
+
+/// One engine's word on one harness.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EngineResult {
+    /// `cbmc`, `kani`, `creusot`, `native`.
+    pub engine: String,
+    /// What it says.
+    pub verdict: Verdict,
+    /// Why, or how to run it.
+    pub note: String,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// An engine and how far it went.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Engine {
+    /// `cbmc`, `kani`, `creusot`, `native`.
+    pub name: String,
+    /// What it looks at.
+    pub what: String,
+    /// The worst verdict of its results; `not-run` if there is none.
+    pub verdict: Verdict,
+    /// What was run or imported, in numbers.
+    pub summary: String,
+    /// The command that runs it.
+    pub command: String,
+}
+
+/// What kind of node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum NodeKind {
+    /// A claim.
+    Goal,
+    /// How a claim is divided.
+    Strategy,
+    /// Evidence.
+    Solution,
+    /// What the words mean, or where it applies.
+    Context,
+    /// Why a strategy is sound.
+    Justification,
+    /// A safety-related application condition.
+    Assumption,
+}
+
+/// One node of the argument, in the manner of the Goal Structuring Notation.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Node {
+    /// Its id: G1, S1, Sn1, C1, J1, A1.
+    pub id: String,
+    /// What kind it is.
+    pub kind: NodeKind,
+    /// What it says.
+    pub text: String,
+    /// The nodes that support it.
+    pub supported_by: Vec<String>,
+    /// Contexts, justifications and assumptions.
+    pub in_context_of: Vec<String>,
+    /// For a solution: the evidence.
+    pub evidence: Option<String>,
+    /// The worst verdict under it; nothing for contexts and the like.
+    pub verdict: Option<Verdict>,
+    /// What would make it wrong.
+    pub defeaters: Vec<Defeater>,
+    /// Whether it is a root.
+    pub root: bool,
+}
+
+/// What would make a claim wrong.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Defeater {
+    /// The doubt.
+    pub text: String,
+    /// The answer; nothing if there is none yet.
+    pub answer: Option<String>,
+    /// The evidence that the answer rests on.
+    pub evidence: Vec<String>,
+    /// Whether it is open: no answer, or an answer whose evidence does not hold.
+    pub open: bool,
+    /// Why it is open.
+    pub reason: Option<String>,
+}
+
+/// A safety-related application condition.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Condition {
+    /// SRAC-1, SRAC-2, …
+    pub number: String,
+    /// The assumption's id.
+    pub id: String,
+    /// What must be so.
+    pub statement: String,
+    /// Why the proof or model needs it.
+    pub why: String,
+    /// What may happen if it is not so: hazard ids.
+    pub hazards: Vec<String>,
+    /// Who must see to it.
+    pub addressee: String,
+    /// How it can be checked.
+    pub check: String,
+    /// Who answers for it.
+    pub owner: String,
+    /// Who uses it: evidence and argument nodes.
+    pub used_by: Vec<String>,
+}
+
+/// A hazard of the log.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hazard {
+    /// H-1, H-2, …
+    pub id: String,
+    /// What it is called.
+    pub title: String,
+    /// What may come of it.
+    pub severity: String,
+    /// What leads to it.
+    pub causes: Vec<String>,
+    /// Evidence ids that mitigate it.
+    pub mitigated_by: Vec<String>,
+    /// Requirement ids.
+    pub requirements: Vec<String>,
+    /// The worst verdict of what mitigates it.
+    pub verdict: Verdict,
+    /// The conditions that are left to the user: SRAC numbers.
+    pub residual: Vec<String>,
+    /// What remains in words.
+    pub remains: String,
+}
+
+/// A requirement and what it is connected with.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Requirement {
+    /// ACC-1, …
+    pub id: String,
+    /// The heading.
+    pub title: String,
+    /// The sentence with MUST.
+    pub sentence: String,
+    /// `spec/….md:line`.
+    pub at: String,
+    /// Where the code quotes it: `file:line`.
+    pub code: Vec<String>,
+    /// Harness ids.
+    pub harnesses: Vec<String>,
+    /// Model ids.
+    pub models: Vec<String>,
+    /// Mutant ids.
+    pub mutants: Vec<String>,
+    /// Where a test names it: `file:line`.
+    pub tests: Vec<String>,
+    /// The worst verdict of its harnesses; `not-run` if it has none.
+    pub verdict: Verdict,
+}
+
+/// A model's outcome.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// The evidence id.
+    pub id: String,
+    /// Name and value of each parameter.
+    pub parameters: Vec<(String, String)>,
+    /// How many states there are.
+    pub unique_states: Option<u64>,
+    /// The properties: name, what is expected, what was found.
+    pub properties: Vec<Property>,
+    /// The timing charts of what was found: caption and SVG.
+    pub charts: Vec<Chart>,
+}
+
+/// A model's property.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Property {
+    /// Its name.
+    pub name: String,
+    /// What it says.
+    pub text: String,
+    /// What is expected.
+    pub expected: String,
+    /// What was found.
+    pub found: String,
+    /// Whether the expectation is met.
+    pub verdict: Verdict,
+}
+
+/// A drawing.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Chart {
+    /// The property that it belongs to.
+    pub name: String,
+    /// What it shows.
+    pub caption: String,
+    /// The drawing, an `svg` element.
+    pub svg: String,
+    /// The trace that it was drawn from, one JSON object a line.
+    pub trace: String,
+}
+
+/// A technique of EN 50716 Annex A.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Technique {
+    /// Its name.
+    pub name: String,
+    /// What is claimed.
+    pub claimed: String,
+    /// The evidence ids behind the claim; empty if it is a matter of construction.
+    pub evidence: Vec<String>,
+    /// The worst verdict of that evidence; nothing if it is a matter of construction.
+    pub verdict: Option<Verdict>,
+}
+
+/// A tool and its class.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    /// Its name.
+    pub name: String,
+    /// T1, T2 or T3.
+    pub class: String,
+    /// The version that was found; nothing if it was not used.
+    pub version: Option<String>,
+    /// What it does here, and what would detect its faults.
+    pub justification: String,
+}

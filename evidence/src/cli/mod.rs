@@ -1,0 +1,145 @@
+//! The commands.
+
+mod render;
+mod run;
+
+use crate::error::Fault;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+
+/// Exit code for a bad command line, configuration or source of the case.
+pub const USAGE: u8 = 2;
+
+/// Makes the safety case of the train control kernel from its proofs, models, tests and wrong kernels.
+#[derive(Debug, Parser)]
+#[command(name = "safety-case", version, about)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run the engines and write the case.
+    Run(Box<Run>),
+    /// Write a case again from its case.json; results of other sources become stale.
+    Render {
+        /// The folder of a case.
+        #[arg(long)]
+        from: PathBuf,
+        /// Where to write it; without this, in place.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// The checkout; without this, the one that holds the current folder.
+        #[arg(long)]
+        root: Option<PathBuf>,
+    },
+    /// Check a case: hash its files and its sources again, and search a random model once more.
+    Verify {
+        /// The folder of a case.
+        folder: PathBuf,
+        /// How many models to search again.
+        #[arg(long, default_value_t = 1)]
+        models: usize,
+        /// The checkout; without this, the one that holds the current folder.
+        #[arg(long)]
+        root: Option<PathBuf>,
+    },
+    /// Print the JSON Schema of case.json.
+    Schema,
+}
+
+/// What `run` takes.
+#[derive(Clone, Debug, Args)]
+// Each switch leaves out one kind of evidence, which the case then calls not run.
+#[allow(clippy::struct_excessive_bools)]
+pub struct Run {
+    /// What must be so for the exit code 0, beyond nothing having gone wrong.
+    #[arg(long)]
+    require: Option<Require>,
+    /// A line's parameters (TOML); without this, the example of the patent.
+    #[arg(long)]
+    config: Option<PathBuf>,
+    /// Where to write the case; without this, target/safety-case in the checkout.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// How many provers at a time; without this, one for each core.
+    #[arg(long)]
+    jobs: Option<usize>,
+    /// Seconds that one harness or one model may take.
+    #[arg(long, default_value_t = 600)]
+    time_limit: u64,
+    /// Do not run the provers.
+    #[arg(long)]
+    no_provers: bool,
+    /// Do not run the harnesses natively.
+    #[arg(long)]
+    no_native: bool,
+    /// Do not run the wrong kernels.
+    #[arg(long)]
+    no_mutants: bool,
+    /// Do not search the models.
+    #[arg(long)]
+    no_models: bool,
+    /// Do not run the tests.
+    #[arg(long)]
+    no_tests: bool,
+    /// What `cargo test` printed (both streams in one file), instead of running it.
+    #[arg(long, conflicts_with = "no_tests")]
+    test_results: Option<PathBuf>,
+    /// A campaign of another engine or machine (JSON); may be given more than once.
+    #[arg(long)]
+    import: Vec<PathBuf>,
+    /// The checkout; without this, the one that holds the current folder.
+    #[arg(long)]
+    root: Option<PathBuf>,
+}
+
+/// What may be required.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Require {
+    /// Every kernel claim proved by cbmc, every model as expected, every wrong kernel rejected.
+    Proved,
+}
+
+/// Does what the command line says and returns the exit code: 0, 1 (the evidence says no) or 2 (bad input).
+pub fn main(cli: Cli) -> u8 {
+    let result = match cli.command {
+        Command::Run(options) => run::run(&options),
+        Command::Render { from, out, root } => render::render(&from, out.as_deref(), root.as_deref()),
+        Command::Verify { folder, models, root } => render::verify(&folder, models, root.as_deref()),
+        Command::Schema => {
+            print!("{}", crate::output::schema());
+            Ok(0)
+        }
+    };
+    result.unwrap_or_else(|faults| {
+        for fault in faults {
+            eprintln!("error: {fault}");
+        }
+        USAGE
+    })
+}
+
+/// The checkout: the given folder, or the nearest one above the current folder that has the kernel and the
+/// specification.
+fn checkout(given: Option<&Path>) -> Result<PathBuf, Fault> {
+    let is_root =
+        |path: &Path| path.join("kernel").is_dir() && path.join("spec").is_dir() && path.join("Cargo.lock").is_file();
+    let start = match given {
+        Some(path) => path.to_path_buf(),
+        None => std::env::current_dir().map_err(|error| Fault::new(&"current folder", error))?,
+    };
+    let start = start.canonicalize().map_err(|error| Fault::new(&start.display(), error))?;
+    let found = if given.is_some() {
+        Some(start.as_path()).filter(|path| is_root(path))
+    } else {
+        start.ancestors().find(|path| is_root(path))
+    };
+    found.map(Path::to_path_buf).ok_or_else(|| {
+        Fault::new(
+            &start.display(),
+            "this is not the checkout (a folder with kernel/, spec/ and Cargo.lock): give --root",
+        )
+    })
+}

@@ -1,0 +1,260 @@
+//! The case's own sources: `spec/assumptions.toml`, `hazards.toml`, `argument.toml`, `techniques.toml` and
+//! `evidence/ratchet.toml`.
+
+use crate::error::{Fault, line_of, read};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::Path;
+
+/// All of them.
+#[derive(Clone, Debug)]
+pub struct Data {
+    /// What is assumed.
+    pub assumptions: Vec<Assumption>,
+    /// The hazard log.
+    pub hazards: Vec<Hazard>,
+    /// The argument.
+    pub argument: Argument,
+    /// Techniques and tools.
+    pub techniques: Techniques,
+    /// The least numbers.
+    pub ratchet: Ratchet,
+}
+
+/// Something that is assumed: becomes a safety-related application condition.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Assumption {
+    /// Its id, as harnesses and models use it.
+    pub id: String,
+    /// What must be so.
+    pub statement: String,
+    /// Why it is needed.
+    pub why: String,
+    /// What may happen otherwise.
+    pub hazards: Vec<String>,
+    /// Who must see to it.
+    pub addressee: String,
+    /// How it can be checked.
+    pub check: String,
+    /// Who answers for it. An assumption without an owner stops the build.
+    #[serde(default)]
+    pub owner: String,
+    /// The beginnings of the bounds (in words) that this assumption carries beyond.
+    #[serde(default)]
+    pub bounds: Vec<String>,
+}
+
+/// A hazard.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hazard {
+    /// H-1, …
+    pub id: String,
+    /// What it is called.
+    pub title: String,
+    /// What may come of it.
+    pub severity: String,
+    /// What leads to it.
+    pub causes: Vec<String>,
+    /// The goals of the argument that mitigate it.
+    pub goals: Vec<String>,
+    /// What remains, in words.
+    pub remains: String,
+}
+
+/// The argument.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Argument {
+    /// Claims.
+    #[serde(default, rename = "goal")]
+    pub goals: Vec<Goal>,
+    /// How claims are divided.
+    #[serde(default, rename = "strategy")]
+    pub strategies: Vec<Strategy>,
+    /// What the words mean, or where it applies.
+    #[serde(default, rename = "context")]
+    pub contexts: Vec<Text>,
+    /// Why a strategy is sound.
+    #[serde(default, rename = "justification")]
+    pub justifications: Vec<Text>,
+}
+
+/// A claim.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// G1, …
+    pub id: String,
+    /// What is claimed.
+    pub text: String,
+    /// Whether it is a root.
+    #[serde(default)]
+    pub root: bool,
+    /// Goals and strategies below.
+    #[serde(default)]
+    pub supported_by: Vec<String>,
+    /// Evidence ids; `*` at the end stands for all that begin so.
+    #[serde(default)]
+    pub evidence: Vec<String>,
+    /// Contexts and justifications.
+    #[serde(default)]
+    pub context: Vec<String>,
+    /// Assumptions of the argument itself, beyond those of the evidence.
+    #[serde(default)]
+    pub assumes: Vec<String>,
+    /// What would make it wrong.
+    #[serde(default, rename = "defeater")]
+    pub defeaters: Vec<Defeater>,
+}
+
+/// A doubt.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Defeater {
+    /// The doubt.
+    pub text: String,
+    /// The answer, if there is one.
+    pub answer: Option<String>,
+    /// The evidence that the answer rests on.
+    #[serde(default)]
+    pub evidence: Vec<String>,
+    /// Engines that must have a result for the answer to hold.
+    #[serde(default)]
+    pub engines: Vec<String>,
+}
+
+/// How a claim is divided.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strategy {
+    /// S1, …
+    pub id: String,
+    /// How.
+    pub text: String,
+    /// Goals below.
+    pub supported_by: Vec<String>,
+    /// Contexts and justifications.
+    #[serde(default)]
+    pub context: Vec<String>,
+}
+
+/// A context or a justification.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Text {
+    /// C1 or J1, …
+    pub id: String,
+    /// What it says.
+    pub text: String,
+}
+
+/// Techniques and tools.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Techniques {
+    /// Techniques of EN 50716 Annex A.
+    #[serde(default, rename = "technique")]
+    pub techniques: Vec<Technique>,
+    /// Tools by class.
+    #[serde(default, rename = "tool")]
+    pub tools: Vec<Tool>,
+}
+
+/// A technique.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Technique {
+    /// Its name.
+    pub name: String,
+    /// What is claimed.
+    pub claimed: String,
+    /// Evidence ids, as in a goal.
+    #[serde(default)]
+    pub evidence: Vec<String>,
+}
+
+/// A tool.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    /// Its name in the list of versions.
+    pub name: String,
+    /// T1, T2 or T3.
+    pub class: String,
+    /// What it does here, and what would detect its faults.
+    pub justification: String,
+}
+
+/// The least numbers: fewer stops the case, more asks to raise them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ratchet {
+    /// Harnesses.
+    pub harnesses: usize,
+    /// Claims of all harnesses.
+    pub claims: usize,
+    /// Cover points of all harnesses.
+    pub covers: usize,
+    /// Named wrong kernels.
+    pub mutants: usize,
+    /// Models.
+    pub models: usize,
+    /// Requirements.
+    pub requirements: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Assumptions {
+    assumption: Vec<Assumption>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Hazards {
+    hazard: Vec<Hazard>,
+}
+
+impl Data {
+    /// Reads them all.
+    ///
+    /// # Errors
+    /// A file is missing or has an unknown or missing field; with the file and the line.
+    pub fn read(root: &Path) -> Result<Self, Fault> {
+        Ok(Self {
+            assumptions: file::<Assumptions>(root, "spec/assumptions.toml")?.assumption,
+            hazards: file::<Hazards>(root, "spec/hazards.toml")?.hazard,
+            argument: file(root, "spec/argument.toml")?,
+            techniques: file(root, "spec/techniques.toml")?,
+            ratchet: file(root, "evidence/ratchet.toml")?,
+        })
+    }
+}
+
+fn file<T: DeserializeOwned>(root: &Path, name: &str) -> Result<T, Fault> {
+    parse(name, &read(&root.join(name))?)
+}
+
+/// The contents of a TOML file.
+///
+/// # Errors
+/// A syntax error, or an unknown or missing field; with the line.
+pub fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, Fault> {
+    toml::from_str(text).map_err(|error| {
+        let line = error.span().map_or_else(String::new, |span| format!(":{}", line_of(text, span.start)));
+        Fault::new(&format!("{name}{line}"), error.message())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ratchet, parse};
+
+    #[test]
+    fn a_fault_in_a_file_has_its_line() {
+        let fault = parse::<Ratchet>("ratchet.toml", "harnesses = 1\nclaim = 2\n").expect_err("unknown field");
+        assert!(fault.at == "ratchet.toml:2" && fault.text.contains("claim"), "{fault}");
+    }
+}

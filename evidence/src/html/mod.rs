@@ -1,0 +1,123 @@
+//! The document: one HTML file that needs nothing else, readable without scripts, printable.
+
+mod argument;
+mod drawing;
+mod page_one;
+mod registers;
+mod report;
+mod theorems;
+
+use crate::case::Case;
+use crate::verdict::Verdict;
+pub use page_one::headline;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// The whole document.
+pub fn document(case: &Case) -> String {
+    let title = format!("Safety case: {}", case.line.name);
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body {
+                (page_one::render(case))
+                (contents())
+                (page_one::words())
+                (report::definition(case))
+                (report::management(case))
+                h2 #technical { "4 Technical safety report" }
+                (argument::render(case))
+                (theorems::render(case))
+                (registers::render(case))
+                (report::ending(case))
+            }
+        }
+    }
+    .into_string()
+}
+
+fn contents() -> Markup {
+    let chapters = [
+        ("system", "1 System definition", false),
+        ("quality", "2 Quality management report", false),
+        ("safety", "3 Safety management report", false),
+        ("technical", "4 Technical safety report", false),
+        ("argument", "4.1 Argument", true),
+        ("engines", "4.2 Engines", true),
+        ("theorems", "4.3 Theorems", true),
+        ("mutants", "4.4 Wrong kernels", true),
+        ("models", "4.5 Models and hazards found", true),
+        ("tests", "4.6 Tests", true),
+        ("hazards", "4.7 Hazard log", true),
+        ("cutsets", "4.8 Minimal cut sets", true),
+        ("conditions", "4.9 Application conditions", true),
+        ("traceability", "4.10 Traceability", true),
+        ("techniques", "4.11 Techniques", true),
+        ("tools", "4.12 Tools", true),
+        ("line", "4.13 Specific application", true),
+        ("related", "5 Related safety cases", false),
+        ("conclusion", "6 Conclusion", false),
+        ("provenance", "7 Provenance", false),
+    ];
+    html! {
+        nav aria-label="Contents" {
+            @for (id, title, sub) in chapters {
+                a.sub[sub] href={ "#" (id) } { (title) }
+            }
+        }
+    }
+}
+
+/// A verdict as a badge: a word and a colour.
+fn badge(verdict: Verdict) -> Markup {
+    html! { span class={ "badge " (verdict.word()) } title=(verdict.meaning()) { (verdict.word()) } }
+}
+
+/// Seconds, short.
+fn seconds(seconds: f64) -> String {
+    if seconds <= 0.0 {
+        "–".to_owned()
+    } else if seconds < 9.95 {
+        format!("{seconds:.1} s")
+    } else {
+        format!("{seconds:.0} s")
+    }
+}
+
+/// A date and time, UTC.
+fn date(unix: u64) -> String {
+    i64::try_from(unix)
+        .ok()
+        .and_then(|unix| chrono::DateTime::from_timestamp(unix, 0))
+        .map_or_else(|| "unknown".to_owned(), |time| time.format("%Y-%m-%d %H:%M UTC").to_string())
+}
+
+/// An evidence id as a link to its row.
+fn link(id: &str) -> Markup {
+    let target = id.replace([':', '*'], "-");
+    html! { a href={ "#" (target) } { code { (id) } } }
+}
+
+/// Links, with commas.
+fn links(ids: &[String]) -> Markup {
+    html! {
+        @for (place, id) in ids.iter().enumerate() {
+            @if place > 0 { ", " }
+            (link(id))
+        }
+    }
+}
+
+/// The anchor of an evidence id.
+fn anchor(id: &str) -> String {
+    id.replace([':', '*'], "-")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,84 @@
+//! The parts of EN 50129 around the technical safety report; each says what verification cannot support.
+
+use super::{badge, date};
+use crate::case::Case;
+use maud::{Markup, html};
+
+/// Section 1.
+pub fn definition(case: &Case) -> Markup {
+    html! {
+        h2 #system { "1 System definition" }
+        p { "The generic product is the kernel package " code { "atc-kernel" } ": three machines of an automatic train control \
+             system, each a pure and total function from state and input to state and output, without heap, clock, floating \
+             point, unsafe code or dependency." }
+        ul {
+            li { strong { "Aspect acceptance" } " (JP3886280B2): from the codes that the receiver detects in each logic cycle to the \
+                one aspect that is displayed. Nothing displayed means stop." }
+            li { strong { "Speed supervision" } ": from measured and permitted speed to the brake command." }
+            li { strong { "Two channels" } ": both machines twice on the same inputs, states and outputs compared in every cycle; any \
+                difference latches the safe output." }
+        }
+        p { "Boundary: inputs are sets of detected aspects and speeds, once a logic cycle; outputs are the display and the brake \
+             command. Receiver, antenna, brake, hardware and operating system are outside; what is needed of them is in the "
+             a href="#conditions" { "application conditions" } "." }
+        p { "The requirements are the " (case.requirements.len()) " sentences with MUST in " code { "spec/" } ", listed under "
+            a href="#traceability" { "traceability" } ". The specific application of this document is " a href="#line" { (case.line.name) } "." }
+    }
+}
+
+/// Sections 2 and 3.
+pub fn management(case: &Case) -> Markup {
+    html! {
+        h2 #quality { "2 Quality management report" }
+        p { "What verification supports: the sources are under version control; this document names the commit, the lock file and a \
+             hash of every folder; all tests, proofs and models run by one command; a falling number of theorems, claims, models or \
+             wrong kernels stops the generation (" code { "evidence/ratchet.toml" } ")." }
+        p.cannot { "What it cannot support: organisation, competence of staff, supplier control, configuration and change management \
+             outside the repository, audits. These are for the manufacturer's quality management (EN 50126, ISO 9001)." }
+        h2 #safety { "3 Safety management report" }
+        p { "What verification supports: a hazard log of " (case.hazards.len()) " hazards with their mitigations (" a href="#hazards" { "4.7" }
+            "), requirements with rationale, traceability, the techniques of Annex A that are claimed (" a href="#techniques" { "4.11" }
+            "), tool classes (" a href="#tools" { "4.12" } ")." }
+        p.cannot { "What it cannot support: the safety plan, the independence of roles, the risk analysis and its tolerable hazard rates, \
+             the completeness of the hazard identification, safety reviews, and the allocation of a safety integrity level." }
+    }
+}
+
+/// Sections 5 to 7.
+pub fn ending(case: &Case) -> Markup {
+    let provenance = &case.provenance;
+    html! {
+        h2 #related { "5 Related safety cases" }
+        p { "None is included. Needed for a whole device: the safety cases of the hardware (processor, memory, comparator, watchdog), of \
+             the receiver, of the brake interface, and of the compiler or its qualification. What is needed of each is in the conditions." }
+        h2 #conclusion { "6 Conclusion" }
+        @for conclusion in &case.conclusions { p { (badge(conclusion.verdict)) " " (conclusion.sentence) } }
+        @let (_, words) = super::page_one::headline(case);
+        p { (words) @if !case.open_items.is_empty() { " They are listed on page one." } }
+        p.cannot { "This document concludes nothing on the parts that verification cannot support (2, 3, 5). They are to be added by those who \
+             answer for them." }
+        h2 #provenance { "7 Provenance" }
+        p { "The case holds for these sources and no others." }
+        dl.facts {
+            dt { "Generated" } dd { (date(provenance.generated_unix)) ", in " (format!("{:.0}", provenance.seconds)) " s" }
+            dt { "Commit" } dd { (provenance.commit.as_deref().unwrap_or("not a git checkout"))
+                @match provenance.dirty { Some(true) => " (with changes)", Some(false) => " (clean)", None => "" } }
+            dt { "Cargo.lock" } dd { code { (provenance.cargo_lock_sha256) } }
+            dt { "Kernel and proofs" } dd { code { (provenance.sources_sha256) } }
+            @for (name, hash) in &provenance.folders { dt { (name) "/" } dd { code { (hash) } } }
+            @for (name, version) in &provenance.tools { dt { (name) } dd { (version) } }
+            dt { "Prover flags" } dd { code { (provenance.flags.join(" ")) } }
+            dt { "Aspects in sized harnesses" } dd { (provenance.aspects) }
+            dt { "Required" } dd { (case.status.required.as_deref().unwrap_or("nothing beyond no defect")) }
+            dt { "Exit code" } dd { (case.status.exit_code) }
+        }
+        @if !case.status.reasons.is_empty() {
+            h4 { "Why the exit code is not 0" }
+            ul { @for reason in &case.status.reasons { li { (reason) } } }
+        }
+        @if !case.status.missing.is_empty() {
+            h4 { "Without a result for these sources" }
+            p.small { (case.status.missing.join(", ")) }
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! What the case is made of, read and judged piece by piece.
+
+pub mod models;
+pub mod mutants;
+pub mod proofs;
+pub mod provenance;
+pub mod requirements;
+pub mod tests;
+
+/// The ids of assumptions with a bound in words; see `bounds` in `spec/assumptions.toml`.
+pub(crate) fn owned(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}

@@ -1,0 +1,146 @@
+//! Named wrong kernels, and what rejects them.
+
+use crate::case::{Evidence, Kind};
+use crate::error::Fault;
+use crate::verdict::Verdict;
+use atc_prover::report::{MutantResult, MutantVerdict, Mutants};
+use std::path::Path;
+
+/// What a wrong kernel is, apart from any result.
+#[derive(Clone, Debug)]
+pub struct Catalogue {
+    /// Its name.
+    pub name: String,
+    /// What is wrong with it.
+    pub what: String,
+    /// The requirements that it breaks.
+    pub requirements: Vec<String>,
+}
+
+/// The wrong kernels of `proofs/mutants.toml`, in its order.
+///
+/// # Errors
+/// The file is missing or wrong: a text that does not stand in the kernel exactly once, a harness that is not there.
+pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
+    let all = atc_prover::mutants::list(root).map_err(|error| Fault::new(&"wrong kernels", error))?;
+    let one = |mutant: atc_prover::mutants::Mutant| Catalogue {
+        name: mutant.name,
+        what: mutant.what,
+        requirements: mutant.requirements,
+    };
+    Ok(all.into_iter().map(one).collect())
+}
+
+/// The evidence of every wrong kernel. `stale`: the results belong to other sources.
+pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool) -> Vec<Evidence> {
+    catalogue
+        .iter()
+        .map(|mutant| {
+            let mine: Vec<_> =
+                results.iter().flat_map(|all| &all.mutants).filter(|result| result.name == mutant.name).collect();
+            let (mut verdict, mut reason) = match mine[..] {
+                [] => (Verdict::NotRun, Some("not run".to_owned())),
+                [result] => judge(result),
+                _ => (Verdict::Undecided, Some("more than one result".to_owned())),
+            };
+            if stale && verdict < Verdict::Stale {
+                (verdict, reason) = (Verdict::Stale, Some("the result belongs to other sources".to_owned()));
+            }
+            let result = mine.first();
+            let killers = result.map(|result| result.killed_by.as_slice()).unwrap_or_default();
+            Evidence {
+                id: format!("mutant:{}", mutant.name),
+                kind: Kind::Mutant,
+                title: mutant.name.clone(),
+                statement: mutant.what.clone(),
+                verdict,
+                detail: match verdict {
+                    Verdict::Tested => "killed".to_owned(),
+                    Verdict::Failed => "survived".to_owned(),
+                    _ => String::new(),
+                },
+                reason,
+                requirements: mutant.requirements.clone(),
+                assumptions: Vec::new(),
+                claims: Vec::new(),
+                covers: Vec::new(),
+                engines: Vec::new(),
+                killed_by: killers
+                    .iter()
+                    .map(|killer| match killer.claims.len() {
+                        0 => killer.harness.clone(),
+                        _ => format!("{} ({})", killer.harness, killer.claims.join(", ")),
+                    })
+                    .collect(),
+                seconds: result.map_or(0.0, |result| result.seconds),
+                counterexample: None,
+            }
+        })
+        .collect()
+}
+
+fn judge(result: &MutantResult) -> (Verdict, Option<String>) {
+    let given = result.reason.clone().unwrap_or_else(|| "no reason given".to_owned());
+    match result.verdict {
+        MutantVerdict::Killed if result.killed_by.is_empty() => {
+            (Verdict::Undecided, Some("killed, but by nothing".to_owned()))
+        }
+        MutantVerdict::Killed => (Verdict::Tested, None),
+        MutantVerdict::Survived => (Verdict::Failed, Some("no theorem noticed it".to_owned())),
+        MutantVerdict::NotRun => (Verdict::NotRun, Some(given)),
+        MutantVerdict::Error => (Verdict::Undecided, Some(given)),
+    }
+}
+
+/// The harnesses that reject a mutant, from the evidence's own words.
+pub fn killers(evidence: &Evidence) -> impl Iterator<Item = &str> {
+    evidence.killed_by.iter().filter_map(|killer| killer.split(' ').next())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Catalogue, evidence};
+    use crate::verdict::Verdict;
+    use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
+    use std::collections::BTreeMap;
+
+    fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
+        let catalogue = Catalogue { name: "m".to_owned(), what: "w".to_owned(), requirements: vec![] };
+        let killer = Kill { harness: "t".to_owned(), claims: vec![], counterexample: None };
+        let result = MutantResult {
+            name: "m".to_owned(),
+            what: "w".to_owned(),
+            requirements: vec![],
+            file: String::new(),
+            change: [String::new(), String::new()],
+            verdict: word,
+            killed_by: if killed { vec![killer] } else { vec![] },
+            reason: None,
+            seconds: 0.0,
+        };
+        let provenance = Provenance {
+            commit: None,
+            dirty: None,
+            cargo_lock_sha256: String::new(),
+            sources_sha256: String::new(),
+            tools: BTreeMap::new(),
+            flags: vec![],
+            aspects: 4,
+            started_unix: 0,
+            seconds: 0.0,
+        };
+        let mutants = Mutants { schema: 1, provenance, mutants: vec![result] };
+        evidence(&[catalogue], Some(&mutants), stale)[0].verdict
+    }
+
+    #[test]
+    fn a_mutant_is_killed_only_by_something() {
+        use MutantVerdict::{Error, Killed, Survived};
+        assert_eq!(verdict(Killed, true, false), Verdict::Tested);
+        assert_eq!(verdict(Killed, false, false), Verdict::Undecided);
+        assert_eq!(verdict(Survived, false, false), Verdict::Failed);
+        assert_eq!(verdict(Error, true, false), Verdict::Undecided);
+        assert_eq!(verdict(Killed, true, true), Verdict::Stale);
+        assert_eq!(verdict(Survived, false, true), Verdict::Failed);
+    }
+}

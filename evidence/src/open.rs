@@ -1,0 +1,169 @@
+//! Open items: everything that is not as it should be. They stand above every summary.
+
+use crate::case::{Case, Evidence, Kind, OpenItem, Severity};
+use crate::inputs::requirements::mismatch;
+use crate::plan::Plan;
+use crate::trace::own_kills;
+use crate::verdict::{Verdict, list};
+use std::collections::BTreeMap;
+
+/// The open items of a case, the worst first. `cited`: what the citation check has to say beyond the plan.
+pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
+    let mut items = Vec::new();
+    results(&case.evidence, &mut items);
+    requirements(case, &mut items);
+    for node in &case.argument {
+        for doubt in node.defeaters.iter().filter(|doubt| doubt.open) {
+            let reason = doubt.reason.clone().unwrap_or_default();
+            items.push(item(Severity::Open, &node.id, format!("Defeater “{}”: {reason}", doubt.text)));
+        }
+    }
+    for engine in &case.engines {
+        let mut notes: Vec<String> = Vec::new();
+        for one in case.evidence.iter().flat_map(|evidence| evidence.engines.iter().map(move |one| (evidence, one))) {
+            let (evidence, result) = one;
+            if result.engine == engine.name && result.verdict.is_defect() && evidence.verdict.holds() {
+                notes.push(format!("{}: {}", evidence.id, result.note));
+            }
+        }
+        let missed: Vec<_> = case
+            .evidence
+            .iter()
+            .flat_map(|evidence| evidence.engines.iter().map(move |one| (evidence, one)))
+            .filter(|(_, one)| one.engine == engine.name && one.verdict.holds() && !one.note.is_empty())
+            .map(|(evidence, one)| format!("{}: {}", evidence.id, one.note))
+            .collect();
+        if !missed.is_empty() {
+            items.push(item(Severity::Note, &engine.name, format!("{}.", list(&missed, 3))));
+        }
+        if !notes.is_empty() {
+            let text = format!("No result, though another engine has one. {}.", list(&notes, 3));
+            items.push(item(Severity::Open, &engine.name, text));
+        } else if engine.verdict == Verdict::NotRun {
+            let text = format!("This engine has no result. To run it: `{}`.", engine.command);
+            items.push(item(Severity::Open, &engine.name, text));
+        }
+    }
+    for citation in &plan.citations {
+        if let Some(text) = mismatch(citation, &plan.requirements) {
+            items.push(item(Severity::Open, &citation.anchor, text));
+        }
+    }
+    for check in case.line.checks.iter().filter(|check| check.contains("NO")) {
+        items.push(item(Severity::Stop, &case.line.name, check.clone()));
+    }
+    for condition in case.conditions.iter().filter(|condition| condition.used_by.is_empty()) {
+        let text = format!("The assumption \"{}\" is listed and used nowhere.", condition.id);
+        items.push(item(Severity::Note, &condition.number, text));
+    }
+    if !plan.raise.is_empty() {
+        let text =
+            format!("More than it pins ({}): raise it, so that nothing can be lost again.", plan.raise.join("; "));
+        items.push(item(Severity::Note, "evidence/ratchet.toml", text));
+    }
+    match (&case.provenance.commit, case.provenance.dirty) {
+        (None, _) => items.push(item(
+            Severity::Note,
+            "provenance",
+            "Not a git checkout: the case is bound to the hashes of its sources only.".to_owned(),
+        )),
+        (Some(_), Some(true)) => items.push(item(
+            Severity::Note,
+            "provenance",
+            "The checkout differs from its commit: only the hashes say what was checked.".to_owned(),
+        )),
+        _ => {}
+    }
+    items.push(item(
+        Severity::Note,
+        "cut sets",
+        "No minimal cut sets yet: they come with the machine whose faults combine, the block counter.".to_owned(),
+    ));
+    grouped(items)
+}
+
+/// The worst first; the same text about many things is one item.
+pub fn grouped(mut items: Vec<OpenItem>) -> Vec<OpenItem> {
+    items.sort_by(|a, b| (a.severity, &a.text, &a.about).cmp(&(b.severity, &b.text, &b.about)));
+    items.dedup();
+    let mut groups: Vec<OpenItem> = Vec::new();
+    for item in items {
+        match groups.last_mut() {
+            Some(last) if last.severity == item.severity && last.text == item.text => {
+                last.about = format!("{}, {}", last.about, item.about);
+            }
+            _ => groups.push(item),
+        }
+    }
+    groups.sort();
+    groups
+}
+
+fn item(severity: Severity, about: &str, text: String) -> OpenItem {
+    OpenItem { severity, about: about.to_owned(), text }
+}
+
+/// What is wrong with single results. The same reason for many is one item.
+fn results(evidence: &[Evidence], items: &mut Vec<OpenItem>) {
+    let mut groups: BTreeMap<(Verdict, Kind, String), Vec<String>> = BTreeMap::new();
+    for one in evidence.iter().filter(|one| !one.verdict.holds()) {
+        let reason = one.reason.clone().unwrap_or_else(|| "no reason given".to_owned());
+        groups.entry((one.verdict, one.kind, reason)).or_default().push(one.title.clone());
+    }
+    for ((verdict, kind, reason), names) in groups {
+        let severity = if verdict.is_defect() { Severity::Stop } else { Severity::Open };
+        let about = if names.len() == 1 { names[0].clone() } else { format!("{} {}", names.len(), plural(kind)) };
+        let which = if names.len() == 1 { String::new() } else { format!(" ({})", list(&names, 4)) };
+        items.push(item(severity, &about, format!("{verdict}: {reason}{which}")));
+    }
+}
+
+/// The plural of a kind of evidence.
+pub fn plural(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Harness => "theorem harnesses",
+        Kind::Model => "models",
+        Kind::Mutant => "wrong kernels",
+        Kind::Test => "test suites",
+    }
+}
+
+/// What is wrong with requirements: no theorem, no code, no wrong kernel that its own theorem rejects.
+fn requirements(case: &Case, items: &mut Vec<OpenItem>) {
+    for requirement in &case.requirements {
+        let mut open = |text: &str| items.push(item(Severity::Open, &requirement.id, text.to_owned()));
+        if requirement.harnesses.is_empty() {
+            open(if requirement.tests.is_empty() {
+                "No theorem and no test names it."
+            } else {
+                "No theorem: it is only tested."
+            });
+        }
+        if requirement.code.is_empty() {
+            open("No line of the code quotes it.");
+        }
+        if requirement.mutants.is_empty() {
+            open("No named wrong kernel: nobody has shown that its proof would notice one.");
+        } else {
+            let run = |one: &&Evidence| requirement.mutants.contains(&one.id) && one.verdict.is_result();
+            let some_ran = case.evidence.iter().any(|one| run(&one));
+            if some_ran && !requirement.harnesses.is_empty() && own_kills(requirement, &case.evidence).is_empty() {
+                open("None of its wrong kernels is rejected by its own theorem.");
+            }
+        }
+        let survivors: Vec<_> = case
+            .evidence
+            .iter()
+            .filter(|one| one.verdict == Verdict::Failed && requirement.mutants.contains(&one.id))
+            .map(|one| one.title.clone())
+            .collect();
+        if !survivors.is_empty() {
+            let text = format!(
+                "The wrong kernel {} survives: the theorems on it ({}) are too weak.",
+                survivors.join(", "),
+                list(&requirement.harnesses, 4)
+            );
+            items.push(item(Severity::Stop, &requirement.id, text));
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The command as its users meet it: with real sources, and with results that are left out or wrong on purpose.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the checkout").to_path_buf()
+}
+
+fn safety_case(arguments: &[&str]) -> Output {
+    let root = root();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_safety-case"));
+    command.args(arguments).current_dir(root).output().expect("started")
+}
+
+fn text(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+/// Runs nothing: everything is "not run".
+fn bare(out: &Path, more: &[&str]) -> Output {
+    let out = out.to_str().expect("a path");
+    let without = ["--no-provers", "--no-native", "--no-models", "--no-tests"];
+    safety_case(&[&["run", "--out", out], &without[..], more].concat())
+}
+
+fn json(out: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(out.join("case.json")).expect("written")).expect("JSON")
+}
+
+#[test]
+fn a_case_without_results_says_so_and_fits_its_schema() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("case");
+    let run = bare(&out, &[]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run));
+    assert!(out.join("incomplete").exists());
+    assert!(text(&run).contains("Incomplete"), "{}", text(&run));
+    let case = json(&out);
+    let schema: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("case.schema.json")).expect("written")).expect("JSON");
+    let validator = jsonschema::validator_for(&schema).expect("a schema");
+    assert_eq!(validator.iter_errors(&case).map(|error| error.to_string()).collect::<Vec<_>>(), Vec::<String>::new());
+    let not_run = case["evidence"].as_array().expect("a list").iter().all(|one| one["verdict"] == "not-run");
+    assert!(not_run);
+    let page = std::fs::read_to_string(out.join("index.html")).expect("written");
+    assert!(page.contains("has not been run") && !page.contains("is proved for all"));
+    for file in ["gsn.yaml", "junit.xml", "hazards.csv", "srac.csv", "traceability.csv", "SHA256SUMS"] {
+        assert!(out.join(file).exists(), "{file}");
+    }
+    // The same, but proofs are required.
+    let required = bare(&out, &["--require", "proved"]);
+    assert_eq!(required.status.code(), Some(1));
+    assert!(text(&required).contains("not proved by the cbmc engine"));
+    // It is not to be verified, as it is incomplete.
+    let verified = safety_case(&["verify", out.to_str().expect("a path")]);
+    assert_eq!(verified.status.code(), Some(1));
+    assert!(text(&verified).contains("the case is incomplete"));
+}
+
+#[test]
+fn the_committed_schema_is_the_types() {
+    let committed = std::fs::read_to_string(root().join("evidence/case.schema.json")).expect("committed");
+    assert!(
+        committed == String::from_utf8_lossy(&safety_case(&["schema"]).stdout),
+        "run: safety-case schema > evidence/case.schema.json"
+    );
+}
+
+#[test]
+fn a_bad_line_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, config) = (folder.path().join("case"), folder.path().join("bad.toml"));
+    let example = std::fs::read_to_string(root().join("evidence/examples/my-line.toml")).expect("there");
+    std::fs::write(&config, example.replace("shortened_operate_ms = 100", "shortened_operate_ms = 300"))
+        .expect("written");
+    let run = bare(&out, &["--config", config.to_str().expect("a path")]);
+    assert_eq!(run.status.code(), Some(2));
+    assert!(text(&run).contains("bad.toml:18:24: rule TIME-2 is broken: T5"), "{}", text(&run));
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_folder_with_other_files_is_left_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("thesis.txt"), "years of work").expect("written");
+    let run = bare(folder.path(), &[]);
+    assert_eq!(run.status.code(), Some(2), "{}", text(&run));
+    assert!(folder.path().join("thesis.txt").exists());
+}
+
+#[test]
+fn an_import_of_other_sources_is_stale_and_one_of_no_engine_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, file) = (folder.path().join("case"), folder.path().join("kani.json"));
+    let campaign = |engine: &str| {
+        serde_json::json!({
+            "schema": 1,
+            "engine": engine,
+            "provenance": {
+                "commit": null, "dirty": null, "cargo_lock_sha256": "", "sources_sha256": "0000", "tools": {},
+                "flags": [], "aspects": 4, "started_unix": 0, "seconds": 1.0
+            },
+            "harnesses": [{
+                "name": "sup_3", "theorem": "SUP-3", "statement": "", "requirements": [], "assumptions": [],
+                "bound": "", "engine": engine, "verdict": "proved", "reason": null, "seconds": 1.0, "solver": "",
+                "claims": [], "covers": [], "counterexample": null
+            }]
+        })
+        .to_string()
+    };
+    std::fs::write(&file, campaign("kani")).expect("written");
+    let run = bare(&out, &["--import", file.to_str().expect("a path")]);
+    let case = json(&out);
+    let verdict = case["evidence"].as_array().expect("a list").iter().find(|one| one["id"] == "harness:sup_3");
+    // No claim of its own, so no result at all; and were it one, it would be stale.
+    assert_eq!(verdict.expect("there")["verdict"], "undecided", "{}", text(&run));
+    assert_eq!(run.status.code(), Some(1));
+    std::fs::write(&file, campaign("oracle of Delphi")).expect("written");
+    let refused = bare(&out, &["--import", file.to_str().expect("a path")]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused).contains("the engine \"oracle of Delphi\" is not known"));
+}
+
+#[test]
+fn a_changed_file_is_noticed_and_stale_results_are_marked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("case");
+    let log = folder.path().join("tests.log");
+    let line = "     Running unittests src/lib.rs (target/debug/deps/atc_kernel-01)\n\
+                test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s\n";
+    std::fs::write(&log, line).expect("written");
+    let (path, log) = (out.to_str().expect("a path"), log.to_str().expect("a path"));
+    let run = safety_case(&["run", "--out", path, "--no-provers", "--no-native", "--no-models", "--test-results", log]);
+    // The argument names suites that are not in this log.
+    assert!(text(&run).contains("the argument names this suite, and it is not in the run"), "{}", text(&run));
+    let all = |case: &serde_json::Value| {
+        let list = case["evidence"].as_array().expect("a list").clone();
+        list.into_iter().find(|one| one["id"] == "test:all").expect("there")["verdict"].clone()
+    };
+    assert_eq!(all(&json(&out)), "tested");
+
+    // The case says that it was made from another kernel.
+    let stored = std::fs::read_to_string(out.join("case.json")).expect("written");
+    let hash = json(&out)["provenance"]["folders"]["kernel"].as_str().expect("a hash").to_owned();
+    std::fs::write(out.join("case.json"), stored.replace(&hash, "0000")).expect("written");
+    let verified = safety_case(&["verify", path, "--models", "0"]);
+    assert!(text(&verified).contains("case.json: its contents have changed"), "{}", text(&verified));
+    assert!(text(&verified).contains("kernel is not what the case was made from"), "{}", text(&verified));
+    let rendered = safety_case(&["render", "--from", path]);
+    assert!(text(&rendered).contains("kernel has changed since the engines ran"), "{}", text(&rendered));
+    assert_eq!(all(&json(&out)), "stale");
+    assert!(out.join("incomplete").exists());
+}
