@@ -10,7 +10,7 @@ use crate::open;
 use crate::plan::Plan;
 use crate::srac;
 use crate::trace;
-use crate::verdict::Verdict;
+use crate::verdict::{Verdict, list};
 use atc_models::Outcome;
 use atc_prover::report::Mutants;
 use std::collections::BTreeMap;
@@ -155,6 +155,7 @@ pub fn status(case: &Case, required: Required) -> Status {
         }
     }
     if required == Required::Proved {
+        let mut weak: BTreeMap<(Verdict, &str), Vec<String>> = BTreeMap::new();
         for one in case.evidence.iter().filter(|one| !one.verdict.is_defect()) {
             let enough = match one.kind {
                 Kind::Harness => {
@@ -170,8 +171,11 @@ pub fn status(case: &Case, required: Required) -> Status {
                     Kind::Model => "not checked",
                     Kind::Mutant | Kind::Test => "not rejected by a theorem",
                 };
-                reasons.push(format!("{} is {}, {wanted}", one.id, one.verdict));
+                weak.entry((one.verdict, wanted)).or_default().push(one.id.clone());
             }
+        }
+        for ((verdict, wanted), ids) in weak {
+            reasons.push(format!("{verdict}, {wanted}: {}", list(&ids, 3)));
         }
     }
     Status {

@@ -21,8 +21,8 @@ fn hazards(case: &Case) -> Markup {
         h3 #hazards { "4.7 Hazard log" }
         p { "Hazards at the boundary of the device. The verdict is the worst of what mitigates the hazard. Rates and risk are for \
              the application's risk analysis." }
-        table {
-            thead { tr { th { "Hazard" } th style="width:23%" { "Causes" } th { "Mitigated by" } th { "Verdict" } th { "Left to the user" } } }
+        table.fixed {
+            thead { tr { th style="width:18%" { "Hazard" } th style="width:19%" { "Causes" } th style="width:25%" { "Mitigated by" } th style="width:13%" { "Verdict" } th style="width:25%" { "Left to the user" } } }
             @for hazard in &case.hazards {
                 tr id=(hazard.id) {
                     td { p { strong { (hazard.id) } " " (hazard.title) } p.small.soft { (hazard.severity) } }
@@ -53,10 +53,10 @@ fn conditions(case: &Case) -> Markup {
         p { "Derived from what the proofs, their bounds, the models and the argument assume. An assumption that is not in this list, \
              or that nobody owns, stops the generation of this document." }
         table.fixed {
-            thead { tr { th style="width:9%" { "Number" } th style="width:23%" { "Condition" } th style="width:21%" { "Why" } th style="width:22%" { "Check" } th style="width:11%" { "Owner" } th style="width:14%" { "Used by" } } }
+            thead { tr { th style="width:9%" { "Number" } th style="width:23%" { "Condition" } th style="width:21%" { "Why" } th style="width:21%" { "Check" } th style="width:12%" { "Owner" } th style="width:14%" { "Used by" } } }
             @for one in &case.conditions {
                 tr id=(one.number) {
-                    td.nowrap { strong { (one.number) } p.small.soft { (one.hazards.join(", ")) } }
+                    td { strong { (one.number) } p.small.soft { (one.hazards.join(", ")) } }
                     td { (one.statement) p.small.soft { (one.id) } }
                     td { (one.why) }
                     td { (one.check) }
@@ -78,7 +78,7 @@ fn traceability(case: &Case) -> Markup {
         p { "Requirement, the lines of code that quote it word for word, theorems, wrong kernels, models, tests. The quotations are \
              compared here by the generator itself, and by duvet in " code { "ci/test" } "." }
         table.fixed {
-            thead { tr { th style="width:25%" { "Requirement" } th style="width:15%" { "Code" } th style="width:12%" { "Theorems" } th style="width:13%" { "Wrong kernels" } th style="width:12%" { "Models" } th style="width:11%" { "Tests" } th style="width:12%" { "Verdict" } } }
+            thead { tr { th style="width:23%" { "Requirement" } th style="width:14%" { "Code" } th style="width:12%" { "Theorems" } th style="width:13%" { "Wrong kernels" } th style="width:12%" { "Models" } th style="width:11%" { "Tests" } th style="width:15%" { "Verdict" } } }
             @for one in &case.requirements {
                 tr id={ "requirement-" (one.id) } {
                     td { p { strong { (one.id) } " " (one.title) } p.small { (one.sentence) } p.small.soft { (one.at) } }

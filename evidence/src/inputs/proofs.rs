@@ -192,12 +192,14 @@ fn judge(harness: &Catalogue, run: &Campaigned) -> Judged {
         _ => (Verdict::Undecided, Said::Error),
     };
     let claims: Vec<_> = harness.claims.iter().map(|point| claim(point, result, holds, word, !proves)).collect();
+    // Without an answer nothing is known of a cover point, whatever the report has in its place.
+    let answered = !matches!(result.verdict, Said::NotRun | Said::Timeout | Said::Error);
     let covers: Vec<_> = harness
         .covers
         .iter()
         .map(|(name, text)| {
-            let hit = result.covers.iter().find(|cover| cover.name == *name).map(|cover| cover.hit);
-            Cover { name: name.clone(), text: text.clone(), hit }
+            let found = result.covers.iter().find(|cover| cover.name == *name);
+            Cover { name: name.clone(), text: text.clone(), hit: found.filter(|_| answered).map(|cover| cover.hit) }
         })
         .collect();
     let (mut verdict, mut reason) = overall(harness, result, engine, holds, &claims, &covers);

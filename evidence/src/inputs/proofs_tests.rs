@@ -116,6 +116,12 @@ fn a_killed_prover_is_no_result() {
         let result = HarnessResult { verdict: word, reason: Some("killed".to_owned()), ..good() };
         assert_eq!(verdict(result), Verdict::Undecided, "{word:?}");
     }
+    // Nor is it vacuous: what was not reached before it was killed may be reachable.
+    let mut late = HarnessResult { verdict: Said::Timeout, reason: Some("600 s".to_owned()), ..good() };
+    late.covers[0].hit = false;
+    let (all, _) = evidence(&[harness()], &[campaign("cbmc", vec![late])]);
+    assert_eq!((all[0].verdict, all[0].covers[0].hit), (Verdict::Undecided, None));
+    assert_eq!(all[0].reason.as_deref(), Some("cbmc: time limit: 600 s"));
     // A word that is not known is refused when a report is read.
     let json = serde_json::to_value(good()).map(|mut value| {
         value["verdict"] = "PROVED".into();
