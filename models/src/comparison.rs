@@ -108,17 +108,12 @@ impl<D: Device, const N: usize> Comparison<D, N> {
             Claim::<Self>::always(
                 "not-above-conventional",
                 "where the conventional device shows something, the device shows nothing higher",
-                |_, s| {
-                    s.train.shown.conventional == Display::NOTHING
-                        || s.train.shown.normative <= s.train.shown.conventional
-                },
+                |_, s| s.train.shown.not_above_conventional(),
             ),
             Claim::<Self>::always(
                 "not-above-as-claimed",
                 "where the machine as claimed shows something, the device shows nothing higher",
-                |_, s| {
-                    s.train.shown.as_claimed == Display::NOTHING || s.train.shown.normative <= s.train.shown.as_claimed
-                },
+                |_, s| s.train.shown.not_above_as_claimed(),
             ),
             Claim::<Self>::always(
                 "rise-has-evidence",

@@ -78,6 +78,18 @@ pub struct Displays {
     pub as_claimed: Display,
 }
 
+impl Displays {
+    /// Whether the device shows nothing higher than the conventional one, where that shows something.
+    pub fn not_above_conventional(&self) -> bool {
+        self.conventional == Display::NOTHING || self.normative <= self.conventional
+    }
+
+    /// Whether the device shows nothing higher than the machine as claimed, where that shows something.
+    pub fn not_above_as_claimed(&self) -> bool {
+        self.as_claimed == Display::NOTHING || self.normative <= self.as_claimed
+    }
+}
+
 /// The three devices and what they show. `S` is the state of the one under test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Train<S, const N: usize> {

@@ -102,7 +102,6 @@ mod tests {
     use super::{Catalogue, evidence};
     use crate::verdict::Verdict;
     use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
-    use std::collections::BTreeMap;
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
         let catalogue = Catalogue { name: "m".to_owned(), what: "w".to_owned(), requirements: vec![] };
@@ -118,17 +117,7 @@ mod tests {
             reason: None,
             seconds: 0.0,
         };
-        let provenance = Provenance {
-            commit: None,
-            dirty: None,
-            cargo_lock_sha256: String::new(),
-            sources_sha256: String::new(),
-            tools: BTreeMap::new(),
-            flags: vec![],
-            aspects: 4,
-            started_unix: 0,
-            seconds: 0.0,
-        };
+        let provenance = Provenance { aspects: 4, ..Provenance::default() };
         let mutants = Mutants { schema: 1, provenance, mutants: vec![result] };
         evidence(&[catalogue], Some(&mutants), stale)[0].verdict
     }

@@ -3,7 +3,6 @@
 use super::{Campaigned, Catalogue, catalogue, evidence};
 use crate::verdict::Verdict;
 use atc_prover::report::{Campaign, ClaimResult, CoverResult, HarnessResult, Provenance, Verdict as Said};
-use std::collections::BTreeMap;
 
 fn harness() -> Catalogue {
     Catalogue {
@@ -42,17 +41,7 @@ fn good() -> HarnessResult {
 }
 
 fn provenance() -> Provenance {
-    Provenance {
-        commit: None,
-        dirty: None,
-        cargo_lock_sha256: String::new(),
-        sources_sha256: String::new(),
-        tools: BTreeMap::new(),
-        flags: vec![],
-        aspects: 4,
-        started_unix: 0,
-        seconds: 0.0,
-    }
+    Provenance { aspects: 4, ..Provenance::default() }
 }
 
 fn campaign(engine: &str, results: Vec<HarnessResult>) -> Campaigned {

@@ -42,7 +42,7 @@ impl Verdict {
 }
 
 /// What exactly was checked, and with what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// The commit that is checked out; absent outside a git checkout.
     pub commit: Option<String>,
