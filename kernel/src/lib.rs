@@ -9,6 +9,7 @@
 //! |---|---|---|
 //! | [`aspect`] | on-board aspect acceptance with the shortened operate time | JP3886280B2 |
 //! | [`supervision`] | speed against permitted speed: the brake | JP3886280B2 \[0009\] |
+//! | [`block`] | train detection by block counting | JPS5937270B2 |
 //! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
 //! | [`time`], [`speed`] | the units that all of them share | |
 //!
@@ -19,11 +20,12 @@
 //! * **One invariant.** Every state has one `is_valid`; every proof assumes it before a step and shows it after.
 //!   The initial state is valid and the most restrictive.
 //! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
-//!   a lower [`aspect::Display`], a higher [`supervision::Brake`].
+//!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`].
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod aspect;
+pub mod block;
 pub mod duplex;
 pub mod speed;
 pub mod supervision;
