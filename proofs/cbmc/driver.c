@@ -8,50 +8,64 @@
    Claims and cover points have numbers; each number is an assertion of its own, so that it has a verdict of its own.
    A trap (panic, overflow check, index out of bounds, division by zero, unreachable) is an assertion too.
 
-   Linear memory is an array of 32-bit words with typed, aligned accesses, because wasm2c's own go through
-   __builtin_memcpy, which CBMC does not see into; an access that is not aligned or out of bounds is an assertion. */
+   Linear memory is an array of 32-bit words with accesses of our own, because wasm2c's go through
+   __builtin_memcpy, which CBMC does not see into; an access that is out of bounds is an assertion. */
 #include "harness.h"
 
 static u32 words[MEMORY / 4];
 
+/* The word of an access that lies in one: n bytes, at a multiple of n. */
 #define AT(a, n) \
   (__CPROVER_assert((a) + (n) <= MEMORY, "trap: out of bounds (memory, or the stack has run out)"), \
    __CPROVER_assume((a) + (n) <= MEMORY), \
-   __CPROVER_assert(((a) & ((n) - 1)) == 0, "trap: unaligned access"), \
    words[(a) / 4])
-static inline u32 i32_load(wasm_rt_memory_t *m, u64 a) { return AT(a, 4); }
-static inline u32 i32_load16_u(wasm_rt_memory_t *m, u64 a) { return (u16)(AT(a, 2) >> (8 * (a & 2))); }
-static inline u32 i32_load16_s(wasm_rt_memory_t *m, u64 a) { return (u32)(s32)(s16)i32_load16_u(m, a); }
 static inline u32 i32_load8_u(wasm_rt_memory_t *m, u64 a) { return (u8)(AT(a, 1) >> (8 * (a & 3))); }
 static inline u32 i32_load8_s(wasm_rt_memory_t *m, u64 a) { return (u32)(s32)(s8)i32_load8_u(m, a); }
+/* WebAssembly allows any address. Where the address is a constant, as most are, the choice costs nothing. */
+static inline u32 i32_load16_u(wasm_rt_memory_t *m, u64 a) {
+  if ((a & 1) == 0) return (u16)(AT(a, 2) >> (8 * (a & 2)));
+  return i32_load8_u(m, a) | i32_load8_u(m, a + 1) << 8;
+}
+static inline u32 i32_load16_s(wasm_rt_memory_t *m, u64 a) { return (u32)(s32)(s16)i32_load16_u(m, a); }
+static inline u32 i32_load(wasm_rt_memory_t *m, u64 a) {
+  if ((a & 3) == 0) return AT(a, 4);
+  return i32_load16_u(m, a) | i32_load16_u(m, a + 2) << 16;
+}
 static inline u64 i64_load32_u(wasm_rt_memory_t *m, u64 a) { return i32_load(m, a); }
 static inline u64 i64_load32_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s32)i32_load(m, a); }
 static inline u64 i64_load16_u(wasm_rt_memory_t *m, u64 a) { return i32_load16_u(m, a); }
 static inline u64 i64_load16_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s16)i32_load16_u(m, a); }
 static inline u64 i64_load8_u(wasm_rt_memory_t *m, u64 a) { return i32_load8_u(m, a); }
 static inline u64 i64_load8_s(wasm_rt_memory_t *m, u64 a) { return (u64)(s64)(s8)i32_load8_u(m, a); }
-/* 64 bits wide, but the stack's arrays of 16 and 32 bits are copied so: aligned to 2 is enough. */
-static inline u64 i64_load(wasm_rt_memory_t *m, u64 a) {
-  return (u64)i32_load16_u(m, a) | (u64)i32_load16_u(m, a + 2) << 16 | (u64)i32_load16_u(m, a + 4) << 32
-    | (u64)i32_load16_u(m, a + 6) << 48;
-}
-static inline void i32_store16(wasm_rt_memory_t *m, u64 a, u32 v) {
-  u32 s = 8 * (a & 2), w = AT(a, 2);
-  words[a / 4] = (w & ~(0xffffu << s)) | (v & 0xffff) << s;
-}
+static inline u64 i64_load(wasm_rt_memory_t *m, u64 a) { return (u64)i32_load(m, a) | (u64)i32_load(m, a + 4) << 32; }
 static inline void i32_store8(wasm_rt_memory_t *m, u64 a, u32 v) {
   u32 s = 8 * (a & 3), w = AT(a, 1);
   words[a / 4] = (w & ~(0xffu << s)) | (v & 0xff) << s;
 }
-static inline void i32_store(wasm_rt_memory_t *m, u64 a, u32 v) { AT(a, 4); words[a / 4] = v; }
+static inline void i32_store16(wasm_rt_memory_t *m, u64 a, u32 v) {
+  if ((a & 1) == 0) {
+    u32 s = 8 * (a & 2), w = AT(a, 2);
+    words[a / 4] = (w & ~(0xffffu << s)) | (v & 0xffff) << s;
+  } else {
+    i32_store8(m, a, v);
+    i32_store8(m, a + 1, v >> 8);
+  }
+}
+static inline void i32_store(wasm_rt_memory_t *m, u64 a, u32 v) {
+  if ((a & 3) == 0) {
+    AT(a, 4);
+    words[a / 4] = v;
+  } else {
+    i32_store16(m, a, v);
+    i32_store16(m, a + 2, v >> 16);
+  }
+}
 static inline void i64_store8(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store8(m, a, (u32)v); }
 static inline void i64_store16(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store16(m, a, (u32)v); }
 static inline void i64_store32(wasm_rt_memory_t *m, u64 a, u64 v) { i32_store(m, a, (u32)v); }
 static inline void i64_store(wasm_rt_memory_t *m, u64 a, u64 v) {
-  i32_store16(m, a, (u32)v);
-  i32_store16(m, a + 2, (u32)(v >> 16));
-  i32_store16(m, a + 4, (u32)(v >> 32));
-  i32_store16(m, a + 6, (u32)(v >> 48));
+  i32_store(m, a, (u32)v);
+  i32_store(m, a + 4, (u32)(v >> 32));
 }
 
 /* A data segment, byte by byte. The runner unwinds this loop as far as the data reach. */

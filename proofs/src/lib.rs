@@ -14,6 +14,7 @@ mod harness;
 mod engine;
 
 pub mod aspect;
+pub mod block;
 pub mod duplex;
 pub mod supervision;
 pub mod time;
@@ -41,4 +42,4 @@ pub const fn bound(aspects: usize) -> &'static str {
 }
 
 /// All harnesses, module by module.
-pub const HARNESSES: &[&[Harness]] = &[time::ALL, aspect::ALL, supervision::ALL, duplex::ALL];
+pub const HARNESSES: &[&[Harness]] = &[time::ALL, aspect::ALL, supervision::ALL, block::ALL, duplex::ALL];

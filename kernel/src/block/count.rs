@@ -116,8 +116,7 @@ pub struct Input {
     pub reset: Option<TrainCount>,
     /// What the block ahead asks to hold on this side of the border, in this same cycle.
     pub ahead_hold: Hold,
-    /// The block ahead has counted in a train that is still pending here, or does not count and reports everything occupied,
-    /// or the line ends here.
+    /// The block ahead has a train that is still pending here, or the line ends here.
     pub ahead_entered: bool,
 }
 
@@ -263,6 +262,11 @@ pub const fn step(block: Block, state: State, input: Input) -> (State, Output) {
     (next, output)
 }
 
+/// Whether the check-in rises, counted or not.
+pub(super) const fn rises(state: State, input: Input) -> bool {
+    input.check_in && state.check_in_for.0 == 0
+}
+
 /// The state after the edges of this cycle, and whether a check-in was counted and a check-out took effect.
 const fn count(block: Block, state: State, input: Input) -> (State, bool, bool) {
     let stays_on = block.pass.0.saturating_add(1);
@@ -271,7 +275,7 @@ const fn count(block: Block, state: State, input: Input) -> (State, bool, bool) 
         (true, true) => state.check_in_for.0.saturating_add(1),
         (true, false) => stays_on,
     };
-    let entering = input.check_in && state.check_in_for.0 == 0;
+    let entering = rises(state, input);
     let leaving = input.check_out && !state.check_out;
     //= spec/block.md#blk-3-contradictions
     //# A check-in at the highest number of trains, a check-out when no train is left that is not pending, and a check-in that stays on for longer than the pass time MUST each latch a fault, judged by the count before the cycle.
@@ -294,7 +298,7 @@ const fn count(block: Block, state: State, input: Input) -> (State, bool, bool) 
     let counted_in = counting && entering;
     let pending = state.pending.saturating_add((counting && leaving) as u8);
     //= spec/block.md#blk-6-border
-    //# A check-out MUST take effect only when the block ahead has counted the train in, or does not count and reports everything occupied, or the line ends there; until then the train stays in the count.
+    //# A check-out MUST take effect only when the block ahead has the train, or the line ends there; until then the train stays in the count.
     let counted_out = pending > 0 && input.ahead_entered;
     let next = State {
         count: state.count.saturating_add(counted_in as u8).saturating_sub(counted_out as u8),

@@ -1,5 +1,6 @@
 //! A line: blocks chained in the direction of travel, with what passes over their borders.
 
+use super::count::rises;
 use super::{Block, Hold, Input, Output, SectionSet, State, Status, TrainCount, step};
 use crate::Machine;
 
@@ -169,7 +170,7 @@ pub struct LineOutput<const B: usize> {
     pub before_hold: Hold,
 }
 
-/// A border between two blocks: trains that the block ahead has counted in and the block behind has not let go yet, 0 to 16.
+/// A border between two blocks: trains whose check-in ahead has risen and that the block behind has not let go yet, 0 to 16.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Border(pub u8);
 
@@ -177,27 +178,23 @@ impl Border {
     /// No more is remembered: what is lost in excess only keeps a train in a count for longer.
     pub const MOST: Self = Self(super::MAX_SECTIONS);
 
-    /// With what the block ahead has counted in this cycle. One that does not count has no reports.
-    const fn counted_ahead(self, ahead: Output) -> Self {
-        match ahead.status {
-            Status::Counting if ahead.counted_in && self.0 < Self::MOST.0 => Self(self.0.saturating_add(1)),
-            Status::Counting => self,
-            Status::Unverified | Status::Fault(_) => Self(0),
-        }
+    /// With one train more, unless 16 are remembered.
+    const fn with_one(self) -> Self {
+        if self.0 < Self::MOST.0 { Self(self.0.saturating_add(1)) } else { self }
     }
 
     /// Whether the block ahead takes over a train in this cycle.
-    const fn takes_over(self, ahead: Output) -> bool {
+    const fn takes_over(self) -> bool {
         //= spec/block.md#blk-10-take-over
-        //# A block that counts MUST take over one train from the block behind for each train that it has counted in, however long before, and no others; a block that does not count takes over every train.
-        self.0 > 0 || !matches!(ahead.status, Status::Counting)
+        //# A block MUST take over one train from the block behind for each rising edge of its check-in, however long before and whether it was counted or not, and no others.
+        self.0 > 0
     }
 
-    /// Without what the block behind has let go in this cycle. A reset on either side, or a block that does not count, ends
-    /// every account.
-    const fn let_go(self, ahead: Output, behind: Output, reset: bool) -> Self {
-        match (ahead.status, behind.status) {
-            (Status::Counting, Status::Counting) if !reset => Self(self.0.saturating_sub(behind.counted_out as u8)),
+    /// Without what the block behind has let go in this cycle. A reset on either side, or a block behind that does not count,
+    /// ends the account: what was checked in until then has been verified, or will be.
+    const fn let_go(self, behind: Output, reset: bool) -> Self {
+        match behind.status {
+            Status::Counting if !reset => Self(self.0.saturating_sub(behind.counted_out as u8)),
             _ => Self(0),
         }
     }
@@ -217,7 +214,7 @@ impl<const B: usize> LineState<B> {
     /// Every block unverified.
     pub const INITIAL: Self = Self { blocks: [State::INITIAL; B], borders: [Border(0); B] };
 
-    /// The invariant of `line`: every block's, and a border remembers nothing unless both its blocks count.
+    /// The invariant of `line`: every block's, and a border remembers nothing unless the block behind it counts.
     pub fn is_valid(&self, line: &Line<B>) -> bool {
         let counts = |place: usize| matches!(self.blocks[place].parts().status, Status::Counting);
         let mut valid = true;
@@ -225,7 +222,7 @@ impl<const B: usize> LineState<B> {
             let border = self.borders[place];
             valid &= self.blocks[place].is_valid(line.blocks[line.at(place)]);
             valid &= border.0 <= Border::MOST.0;
-            valid &= border.0 == 0 || place > 0 && counts(place) && counts(place - 1);
+            valid &= border.0 == 0 || place > 0 && counts(place - 1);
         }
         valid
     }
@@ -272,20 +269,23 @@ impl<const B: usize> Machine for Line<B> {
         let mut output = Self::SAFE;
         let mut hold = input.beyond.hold;
         let mut entered = input.beyond.entered;
-        let mut ahead = None;
+        let (mut border, mut reset) = (Border(0), false);
         for place in (0..B).rev() {
             let number = self.at(place);
             let (block, detection) = (self.blocks[number], input.blocks[number]);
-            let (after, report) = step(block, state.blocks[place], self.orient(block, detection, hold, entered));
+            let (before, read) = (state.blocks[place], self.orient(block, detection, hold, entered));
+            let (after, report) = step(block, before, read);
             next.blocks[place] = after;
-            if let Some((border, report_ahead, reset)) = ahead {
-                let border: Border = border;
-                next.borders[place + 1] = border.let_go(report_ahead, report, reset || detection.reset.is_some());
+            if place + 1 < B {
+                next.borders[place + 1] = border.let_go(report, reset || detection.reset.is_some());
             }
-            let border = state.borders[place].counted_ahead(report);
-            entered = border.takes_over(report);
+            border = state.borders[place];
+            if rises(before, read) {
+                border = border.with_one();
+            }
+            reset = detection.reset.is_some();
+            entered = border.takes_over();
             hold = report.behind_hold;
-            ahead = Some((border, report, detection.reset.is_some()));
             output.blocks[number] = match self.direction {
                 Direction::Up => report,
                 Direction::Down => Output { occupied: report.occupied.reversed(block.sections()), ..report },

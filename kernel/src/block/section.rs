@@ -78,13 +78,15 @@ impl SectionSet {
     /// The set, and with each section the `hold` sections behind it, on the side of the entry.
     #[must_use]
     pub const fn with_sections_behind(self, hold: Hold) -> Self {
+        // Each round at most doubles what is held behind a section: 1, 3, 7, 15.
         let mut held = self.0;
-        let mut distance = 1;
-        while distance < MAX_SECTIONS {
-            if distance <= hold.0 {
-                held |= self.0 >> distance;
-            }
-            distance += 1;
+        let mut left = hold.0;
+        let mut most = 1;
+        while most < MAX_SECTIONS {
+            let more = if left < most { left } else { most };
+            held |= held >> more;
+            left = left.saturating_sub(more);
+            most <<= 1;
         }
         Self(held)
     }

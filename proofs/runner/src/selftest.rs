@@ -18,8 +18,14 @@ enum Expected {
 }
 
 /// Harness, bytes of stack, expected verdict, what the trap is.
-const CASES: [(&str, u32, Expected, &str); 8] = [
+const CASES: [(&str, u32, Expected, &str); 9] = [
     ("cells", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "loads and stores of linear memory"),
+    (
+        "unaligned",
+        STACK,
+        Expected::Verdicts(&[0, 2, 3], &[1], &[0, 1, 2, 3], &[0]),
+        "wide accesses at addresses of any kind",
+    ),
     ("constants", STACK, Expected::Verdicts(&[0], &[1], &[0, 1], &[0]), "constant tables in data segments"),
     ("stack", 1024, Expected::Failure("trap: out of bounds"), "a stack that is too small"),
     ("verdicts", STACK, Expected::Verdicts(&[0, 2, 3], &[1], &[0, 1], &[0]), "a verdict for each claim, and vacuity"),
