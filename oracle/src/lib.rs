@@ -10,10 +10,12 @@ pub mod kmh;
 pub mod machine;
 pub mod protocol;
 pub mod schema;
+mod sections;
 mod serve;
 mod session;
 pub mod trace;
 
 pub use kmh::{Kmh, KmhError};
+pub use sections::Sections;
 pub use serve::serve;
 pub use session::{MAX_LINE, Session};

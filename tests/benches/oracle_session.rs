@@ -1,26 +1,29 @@
 //! The oracle in this process: parse a step, step the kernel, write the output. Without pipes.
 
 use atc_oracle::Session;
-use atc_tests::workload;
+use atc_tests::{traffic, workload};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn oracle_session(criterion: &mut Criterion) {
-    let (start, steps) = workload::lines();
-    let steps: Vec<&str> = steps.lines().collect();
     let mut group = criterion.benchmark_group("oracle");
     group.throughput(Throughput::Elements(1));
-    group.bench_function("step, in process", |bencher| {
-        let mut session = Session::new();
-        let mut reply = Vec::new();
-        session.answer(start.trim_end().as_bytes(), &mut reply);
-        assert!(reply.starts_with(b"{\"started\""));
-        let mut input = steps.iter().cycle();
-        bencher.iter(|| {
-            reply.clear();
-            session.answer(input.next().map_or(&b""[..], |line| line.as_bytes()), &mut reply);
-            assert!(reply.starts_with(b"{\"output\""));
+    for (name, (start, steps)) in
+        [("step, in process", workload::lines()), ("block-count step, in process", traffic::lines())]
+    {
+        let steps: Vec<&str> = steps.lines().collect();
+        group.bench_function(name, |bencher| {
+            let mut session = Session::new();
+            let mut reply = Vec::new();
+            session.answer(start.trim_end().as_bytes(), &mut reply);
+            assert!(reply.starts_with(b"{\"started\""));
+            let mut input = steps.iter().cycle();
+            bencher.iter(|| {
+                reply.clear();
+                session.answer(input.next().map_or(&b""[..], |line| line.as_bytes()), &mut reply);
+                assert!(reply.starts_with(b"{\"output\""));
+            });
         });
-    });
+    }
     group.finish();
 }
 

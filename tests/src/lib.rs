@@ -1,8 +1,10 @@
-//! Tests across the folders. This library is what they share: timing charts drawn in ASCII, the devices that a chart
+//! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
 //! is checked against, and the input of the benchmarks.
 
+pub mod block_chart;
 pub mod device;
 pub mod timing_chart;
+pub mod traffic;
 pub mod workload;
 
 /// The examples of the README, compiled and run.

@@ -142,7 +142,7 @@ fn a_bad_trace_is_named_with_its_line_and_nothing_is_written() {
 #[test]
 fn the_examples_are_drawn_and_the_files_are_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    for name in ["figure-3", "figure-6", "figure-7", "supervision"] {
+    for name in ["figure-3", "figure-6", "figure-7", "figure-8", "supervision", "block-count"] {
         let trace = examples().join(format!("{name}.jsonl"));
         // The requests alone, and with the replies of a session in which they were sent ahead.
         let requests = fs::read(&trace).expect("an example");

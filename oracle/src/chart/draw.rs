@@ -157,6 +157,7 @@ impl<'a> Plot<'a> {
                 }
                 Mark::Sign { at, sign } => self.sign(body, *at, *sign, y + height - 3.0),
                 Mark::Curve { points, tone, top } => self.curve(body, points, *tone, *top, (y + 8.0, y + height - 8.0)),
+                Mark::Steps { points, top } => self.steps(body, points, *top, (y + 16.0, y + height - 7.0)),
             }
         }
     }
@@ -260,6 +261,37 @@ impl<'a> Plot<'a> {
                 curve = curve.set("stroke-dasharray", "7 3");
             }
             body.append(curve);
+        }
+    }
+
+    /// A staircase, with each number over its step; where there is none, a gap.
+    fn steps(&self, body: &mut Group, steps: &[(u64, Option<u8>)], top: u8, rows: (f64, f64)) {
+        let (high, low) = rows;
+        let height = |number: u8| low - f64::from(number.min(top)) / f64::from(top.max(1)) * (low - high);
+        let ends = steps.iter().skip(1).map(|step| step.0).chain([self.scene.cycles]);
+        let (mut stair, mut written): (Vec<(f64, f64)>, _) = (Vec::new(), LEFT);
+        let mut stairs = Vec::new();
+        for ((from, number), to) in steps.iter().zip(ends) {
+            let Some((left, right)) = self.clip(*from, to) else { continue };
+            let Some(number) = *number else {
+                stairs.push(std::mem::take(&mut stair));
+                continue;
+            };
+            let y = height(number);
+            body.append(rectangle(left, y, right, low).set("fill", "#e4e8ee"));
+            stair.extend([(left, y), (right, y)]);
+            let content = number.to_string();
+            let half = width(&content) / 2.0;
+            let middle = f64::midpoint(left, right);
+            // A number that would stand on its neighbour is left out: the height says it.
+            if middle - half >= written {
+                body.append(text(&content, middle, y - 3.0, "middle"));
+                written = middle + half + 2.0;
+            }
+        }
+        stairs.push(stair);
+        for stair in stairs.iter().filter(|stair| !stair.is_empty()) {
+            body.append(polyline(stair).set("stroke", INK).set("stroke-width", 1.6));
         }
     }
 

@@ -18,11 +18,12 @@ pub(super) struct Paint {
 pub(super) fn paint(tone: Tone) -> Paint {
     let (fill, edge, ink) = match tone {
         Tone::Signal => ("#e4e8ee", INK, INK),
-        Tone::Operate => ("#a9cdec", "#1f5f99", INK),
+        Tone::Operate | Tone::Detected => ("#a9cdec", "#1f5f99", INK),
         Tone::Shortened | Tone::Service => ("#ffc48a", "#b35900", INK),
-        Tone::Recovery => ("#b5dfae", "#2f7d32", INK),
-        Tone::Mask => ("#fff0a8", "#9a7d00", INK),
+        Tone::Recovery | Tone::Held => ("#b5dfae", "#2f7d32", INK),
+        Tone::Mask | Tone::Pending => ("#fff0a8", "#9a7d00", INK),
         Tone::Dropped => ("#cfcfcf", "#555555", INK),
+        Tone::All => ("#f7c8c2", "#a01b10", INK),
         Tone::Emergency => ("#f2a39b", "#a01b10", INK),
         Tone::Limit => ("#ffffff", "#a01b10", INK),
         Tone::Blank => ("#ffffff", "#777777", "#444444"),

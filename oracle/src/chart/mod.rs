@@ -5,6 +5,7 @@
 //! stands from the end of that cycle on, `[k+1, k+2)`. So every drawn span has its true length.
 
 pub mod aspect;
+pub mod block;
 mod draw;
 mod ink;
 pub mod supervision;
@@ -110,6 +111,13 @@ pub enum Mark {
         /// The highest value of the row's scale.
         top: f64,
     },
+    /// A whole number over time: steps of `(cycle, number)`, with each number written at its step. None: there is none.
+    Steps {
+        /// The numbers, each from its cycle on.
+        points: Vec<(u64, Option<u8>)>,
+        /// The highest number of the row's scale, 1 or more.
+        top: u8,
+    },
 }
 
 /// What a colour stands for.
@@ -133,6 +141,14 @@ pub enum Tone {
     Emergency,
     /// A limit.
     Limit,
+    /// A section reported occupied because a train is heard in it.
+    Detected,
+    /// A section reported occupied for the tail of a train ahead.
+    Held,
+    /// A section reported occupied because every one is.
+    All,
+    /// Check-outs that the block ahead has not taken over.
+    Pending,
     /// Nothing.
     Blank,
     /// Not what the kernel says.

@@ -1,6 +1,7 @@
 //! The machines that the oracle speaks for: each is one file here, and one line in [`KINDS`].
 
 pub mod aspect;
+pub mod block;
 pub mod supervision;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -111,7 +112,7 @@ pub struct Kind {
 }
 
 /// Every machine of this oracle.
-pub const KINDS: &[Kind] = &[kind::<aspect::Aspect>(), kind::<supervision::Supervised>()];
+pub const KINDS: &[Kind] = &[kind::<aspect::Aspect>(), kind::<supervision::Supervised>(), kind::<block::Counted>()];
 
 /// The machine of that name.
 pub fn find(name: &str) -> Option<&'static Kind> {
