@@ -1,4 +1,4 @@
-//! What the models assume of ground, channel and receiver: each is a condition that somebody must keep.
+//! What the models assume of ground, channel, receiver, trains and staff: each is a condition that somebody must keep.
 
 /// An assumption: its id and its sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,5 +46,68 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         id: "change-is-heard",
         text: "The ground sends an aspect for T1 or more, and none is interrupted.",
         without: "After a change to a lower aspect the old one stays displayed until T2+T3, instead of T1.",
+    },
+    Assumption {
+        id: "live-transmitter",
+        text: "The transmitter of every train works from before it enters a block until it has left.",
+        without: "A train that enters with a dead transmitter is neither counted nor detected, and reported free: \
+               one cause is enough.",
+    },
+    Assumption {
+        id: "train-whole",
+        text: "No train leaves a part of itself behind.",
+        without: "A rear part that is left behind is reported free once the rest of its train is further on than \
+               the hold.",
+    },
+    Assumption {
+        id: "no-reversing-over-exit",
+        text: "No train reverses into a block over its exit end.",
+        without: "It is counted out twice; with one missed detection a train is reported free.",
+    },
+    Assumption {
+        id: "entries-apart",
+        text: "Two trains pass a check-in at least the pass time apart.",
+        without: "Over a check-in that is stuck on not all of them are counted; with one missed detection a train \
+               is reported free.",
+    },
+    Assumption {
+        id: "hold-covers-train",
+        text: "The held sections behind a head are at least as long as the longest train, also behind a head \
+               that is past the check-out and not yet at the border.",
+        without: "A tail is reported free with no fault at all.",
+    },
+    Assumption {
+        id: "heard-by-one",
+        text: "At every moment exactly one detector hears a head, also where it crosses from one section to \
+               the next.",
+        without: "A head that two detectors hear makes up for another that is missed, and a phantom makes up for \
+               a head that none hears: one fault is enough.",
+    },
+    Assumption {
+        id: "loops-overlap",
+        text: "At the border of two blocks a head passes first the check-in ahead, then the place where the \
+               detector ahead takes over from the one behind, then the check-out behind.",
+        without: "A head that is heard in a block that does not count it makes up for another one there that is \
+               missed: one fault is enough.",
+    },
+    Assumption {
+        id: "independent-detectors",
+        text: "A missed detection and a phantom detection do not come together in one block.",
+        without: "A phantom makes up for a train that is missed, which is then reported free.",
+    },
+    Assumption {
+        id: "check-in-fail-safe",
+        text: "A check-in never misses a train: it fails to the state on.",
+        without: "With one missed detection a train that was not counted is reported free.",
+    },
+    Assumption {
+        id: "check-out-not-spurious",
+        text: "A check-out is never on without a train.",
+        without: "With one missed detection a train that was counted out is reported free.",
+    },
+    Assumption {
+        id: "verified-reset",
+        text: "The number of a reset is that of the trains in the block, all clear of its ends.",
+        without: "With one missed detection a train that was left out is reported free.",
     },
 ];

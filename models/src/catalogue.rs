@@ -7,6 +7,7 @@ use crate::interruption::Interruption;
 use crate::line::{COARSE, DEFAULT, EARLY, FINE, LATE, Line, SHORTEST};
 use atc_kernel::aspect::Acceptance;
 
+mod block;
 mod reception;
 
 /// Every model over the kernel's machine.
@@ -15,6 +16,7 @@ pub fn catalogue() -> Vec<Entry> {
     entries.extend(interruptions());
     entries.extend(reception::entries());
     entries.extend(bursts());
+    entries.extend(block::entries());
     entries
 }
 

@@ -4,10 +4,9 @@
 //! from either. So nothing is taken from it on trust: every expanded state is counted here, and a search is complete
 //! only if as many states were expanded as exist.
 
-use crate::line::Line;
-use crate::outcome::{Expectation, Found, Outcome, PropertyOutcome, Trace, Verdict};
-use atc_kernel::aspect::AspectSet;
-use stateright::{Checker, Model, Path, Property};
+use crate::outcome::{CutSet, Expectation, FailureMode, Found, Outcome, PropertyOutcome, Trace, Verdict};
+use crate::spin::Twin;
+use stateright::{Checker, Model, Property};
 use std::collections::HashMap;
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -32,16 +31,20 @@ pub trait Subject: Clone + Send + Sync + Sized + 'static {
     fn next(&self, state: &Self::State, action: &Self::Action) -> Option<Self::State>;
     /// What is claimed of it.
     fn claims(&self) -> Vec<Claim<Self>>;
-    /// The line that it models.
-    fn line(&self) -> Line;
-    /// How many aspects the line has.
-    fn aspects(&self) -> usize;
-    /// What the receiver detected in the cycle `action` from `state`.
-    fn detected(&self, state: &Self::State, action: &Self::Action) -> AspectSet;
-    /// What the ground sent in it; `None` if the model has no ground.
-    fn sent(&self, state: &Self::State, action: &Self::Action) -> Option<AspectSet>;
-    /// If the last state closes a loop: of how many cycles.
-    fn loop_length(&self, _last: &Self::State) -> Option<usize> {
+    /// Its parameters in words.
+    fn parameters(&self) -> String;
+    /// A path from an initial state, run through the kernel's own machine.
+    fn trace(&self, path: &[(Self::State, Option<Self::Action>)]) -> Trace;
+    /// The minimal sets of faults that reach its hazard. `None`: not every state was visited.
+    fn cut_sets(&self, _limits: Limits) -> Option<Vec<CutSet>> {
+        Some(Vec::new())
+    }
+    /// What each single fault does. `None`: not every state was visited.
+    fn failure_modes(&self, _limits: Limits) -> Option<Vec<FailureMode>> {
+        Some(Vec::new())
+    }
+    /// The same model in Promela, if it is written there too.
+    fn twin(&self) -> Option<Twin> {
         None
     }
 }
@@ -193,6 +196,31 @@ pub(crate) struct Search {
     pub depth: usize,
     pub seconds: f64,
     pub properties: Vec<PropertyOutcome>,
+    pub cut_sets: Vec<CutSet>,
+    pub failure_modes: Vec<FailureMode>,
+}
+
+/// What a bare visit of every state counted: no claim is judged, and no trace is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Visit {
+    /// Whether every state was visited.
+    pub complete: bool,
+    /// Different states.
+    pub unique: usize,
+    /// States generated, repeats included.
+    pub generated: usize,
+    /// Time taken.
+    pub seconds: f64,
+}
+
+/// Visits every state of a model with `threads` threads.
+pub fn visit<S: Subject>(subject: &S, threads: usize) -> Visit {
+    let start = Instant::now();
+    let checked = Checked::new(subject.clone(), None, Limits::default());
+    let checker = checked.checker().threads(threads.max(1)).spawn_bfs().join();
+    let unique = checker.unique_state_count();
+    let complete = unique > 0 && checker.model().expanded.load(Ordering::Relaxed) == unique;
+    Visit { complete, unique, generated: checker.state_count(), seconds: start.elapsed().as_secs_f64() }
 }
 
 /// Searches the whole model with `threads` threads, then once more for the shortest trace to each state that a
@@ -203,7 +231,9 @@ pub(crate) fn search<S: Subject>(subject: &S, threads: usize, limits: Limits) ->
     let model = checker.model();
     model.searching.store(false, Ordering::Relaxed);
     let unique = checker.unique_state_count();
-    let complete = unique > 0 && model.expanded.load(Ordering::Relaxed) == unique;
+    let (cut_sets, failure_modes) = (subject.cut_sets(limits), subject.failure_modes(limits));
+    let complete =
+        unique > 0 && model.expanded.load(Ordering::Relaxed) == unique && cut_sets.is_some() && failure_modes.is_some();
     let decided = checker.discoveries();
     let properties = subject
         .claims()
@@ -223,7 +253,16 @@ pub(crate) fn search<S: Subject>(subject: &S, threads: usize, limits: Limits) ->
         })
         .collect();
     let seconds = start.elapsed().as_secs_f64();
-    Search { complete, unique, generated: checker.state_count(), depth: checker.max_depth(), seconds, properties }
+    Search {
+        complete,
+        unique,
+        generated: checker.state_count(),
+        depth: checker.max_depth(),
+        seconds,
+        properties,
+        cut_sets: cut_sets.unwrap_or_default(),
+        failure_modes: failure_modes.unwrap_or_default(),
+    }
 }
 
 fn verdict(expectation: Expectation, discovered: bool, complete: bool) -> Verdict {
@@ -241,17 +280,7 @@ fn shortest<S: Subject>(subject: &S, claim: &Claim<S>, limits: Limits) -> Option
     let checker = Checked::new(subject.clone(), Some(claim.name), limits).checker().spawn_bfs().join();
     checker.model().searching.store(false, Ordering::Relaxed);
     let mut paths: HashMap<_, _> = checker.discoveries();
-    paths.remove(claim.name).map(|path| trace(subject, path))
-}
-
-fn trace<S: Subject>(subject: &S, path: Path<S::State, S::Action>) -> Trace {
-    let steps = path.into_vec();
-    let loop_length = steps.last().and_then(|(last, _)| subject.loop_length(last));
-    let detections = steps.iter().filter_map(|(state, action)| {
-        let action = action.as_ref()?;
-        Some((subject.detected(state, action), subject.sent(state, action)))
-    });
-    Trace::replay(subject.line(), subject.aspects(), detections, loop_length)
+    paths.remove(claim.name).map(|path| subject.trace(&path.into_vec()))
 }
 
 /// What a model is about: everything of an [`Entry`] but the model.
@@ -279,12 +308,14 @@ pub struct Entry {
     pub statement: String,
     /// The requirements and theorems that it checks, as in the specification.
     pub requirements: &'static [&'static str],
-    /// Times, aspects and environment in words.
+    /// Parameters and environment in words.
     pub parameters: String,
     /// The assumptions in force, by id.
     pub in_force: &'static [&'static str],
     /// The assumptions that are deliberately lifted, by id.
     pub lifted: &'static [&'static str],
+    /// The same model in Promela, if it is written there too.
+    pub twin: Option<Twin>,
     search: Box<dyn Fn(usize, Limits) -> Search + Send + Sync>,
     explore: Box<dyn Fn(SocketAddr) + Send + Sync>,
 }
@@ -293,7 +324,7 @@ impl Entry {
     /// The model `subject`, and what it is about.
     pub fn new<S: Subject>(about: About, subject: S) -> Self {
         let explored = subject.clone();
-        let parameters = format!("{}; {}", subject.line().describe(subject.aspects()), about.environment);
+        let parameters = format!("{}; {}", subject.parameters(), about.environment);
         Self {
             name: about.name,
             statement: about.statement,
@@ -301,6 +332,7 @@ impl Entry {
             parameters,
             in_force: about.in_force,
             lifted: about.lifted,
+            twin: subject.twin(),
             search: Box::new(move |threads, limits| search(&subject, threads, limits)),
             explore: Box::new(move |address| {
                 let _ = Checked::new(explored.clone(), None, Limits::default()).checker().serve(address);

@@ -5,6 +5,8 @@
 
 use crate::check::{Claim, Subject};
 use crate::line::Line;
+use crate::outcome::Trace;
+use crate::replay::{self, Receiving};
 use crate::train::{Device, Runs, Train};
 use atc_kernel::aspect::{AspectSet, Display};
 use std::marker::PhantomData;
@@ -81,6 +83,16 @@ impl<D: Device, const N: usize> Subject for Comparison<D, N> {
         claims
     }
 
+    fn parameters(&self) -> String {
+        self.line().describe(self.aspects())
+    }
+
+    fn trace(&self, path: &[(Self::State, Option<Self::Action>)]) -> Trace {
+        replay::trace(self, path)
+    }
+}
+
+impl<D: Device, const N: usize> Receiving for Comparison<D, N> {
     fn line(&self) -> Line {
         self.line
     }

@@ -5,6 +5,8 @@
 
 use crate::check::{Claim, Subject};
 use crate::line::Line;
+use crate::outcome::Trace;
+use crate::replay::{self, Receiving};
 use crate::train::{Device, Runs, Train};
 use atc_kernel::aspect::{AspectSet, Display, Times};
 
@@ -208,6 +210,16 @@ impl<D: Device> Subject for Interruption<D> {
         claims
     }
 
+    fn parameters(&self) -> String {
+        self.line().describe(self.aspects())
+    }
+
+    fn trace(&self, path: &[(Self::State, Option<Self::Action>)]) -> Trace {
+        replay::trace(self, path)
+    }
+}
+
+impl<D: Device> Receiving for Interruption<D> {
     fn line(&self) -> Line {
         self.line
     }

@@ -10,12 +10,17 @@
 //! | [`interruption`] | one aspect alone, interrupted for every length |
 //! | [`reception`] | ground, channel and train: the exposure to a stale aspect |
 //! | [`bursts`] | how few bursts keep a stale aspect displayed for ever |
+//! | [`block`] | trains, tails, borders and faults of block counting |
+//! | [`spin`] | the second opinion: models in Promela, searched by SPIN |
+//! | [`replay`] | what the models of aspect acceptance have in common, and their traces |
 //! | [`claimed`] | the machine as claimed by the patent, to compare with |
 //!
 //! [`catalogue`] lists the models with their parameters, [`check`] searches one.
 #![forbid(unsafe_code)]
 
 pub mod assumptions;
+pub mod bench;
+pub mod block;
 pub mod bursts;
 mod catalogue;
 mod check;
@@ -24,9 +29,14 @@ pub mod comparison;
 pub mod interruption;
 pub mod line;
 mod outcome;
+mod pool;
 pub mod reception;
+pub mod replay;
+pub mod spin;
 pub mod train;
 
 pub use catalogue::catalogue;
-pub use check::{About, Checked, Claim, Entry, Limits, Subject, check, check_within, explore};
-pub use outcome::{Config, Expectation, Outcome, PropertyOutcome, Trace, TraceStep, Verdict};
+pub use check::{About, Checked, Claim, Entry, Limits, Subject, Visit, check, check_within, explore, visit};
+pub use outcome::{CutSet, Expectation, FailureMode, Outcome, PropertyOutcome, Step, Trace, Verdict};
+pub use pool::in_parallel;
+pub use spin::{Agreement, SecondOpinion, second_opinions};

@@ -1,13 +1,14 @@
-//! The `models` command: checks the models, lists them, or explores one in a browser.
+//! The `models` command: checks the models, lists them, asks SPIN for a second opinion, or explores one in a browser.
 
-use atc_models::{Entry, Outcome, catalogue, check, explore};
+use atc_models::bench::{Row, bench, model};
+use atc_models::spin::opinions_on;
+use atc_models::{Agreement, Entry, Outcome, SecondOpinion, catalogue, check, explore, in_parallel};
 use clap::{Parser, Subcommand};
+use serde::Serialize;
 use std::collections::BTreeSet;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::{fs, thread};
 
 /// Stateright models of the train control system, over the real kernel.
@@ -34,6 +35,30 @@ enum Command {
     },
     /// List the models.
     List,
+    /// Ask SPIN for a second opinion on the models that are written in Promela too. Exit code 1 if it differs.
+    Spin {
+        /// Write the opinions to this file as JSON.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Models to look at, at the same time; as many as there are cores if absent.
+        #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=256))]
+        jobs: Option<u16>,
+        /// Exit code 1 also if SPIN is not here.
+        #[arg(long)]
+        require: bool,
+        /// Names, as `models list` prints them.
+        #[arg(value_name = "NAME")]
+        names: Vec<String>,
+    },
+    /// Measure states per second: Stateright over the kernel against SPIN's compiled checker.
+    Bench {
+        /// The cores of the runs on several; all of the machine if absent.
+        #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(2..=64))]
+        cores: Option<u16>,
+        /// Runs of each checker, of which the shortest counts.
+        #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=100))]
+        runs: u16,
+    },
     /// Serve Stateright's Explorer for one model.
     Explore {
         /// The name, as `models list` prints it.
@@ -46,7 +71,12 @@ enum Command {
 
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
-        Command::Check { json, jobs, names } => check_all(json.as_deref(), jobs.map(usize::from), &names),
+        Command::Check { json, jobs, names } => check_all(json.as_deref(), threads(jobs), &names),
+        Command::Spin { json, jobs, require, names } => second(json.as_deref(), threads(jobs), require, &names),
+        Command::Bench { cores, runs } => {
+            measure(threads(cores), usize::from(runs));
+            Ok(true)
+        }
         Command::List => {
             list();
             Ok(true)
@@ -91,40 +121,67 @@ fn chosen(names: &[String]) -> Result<Vec<Entry>, String> {
     Ok(all.into_iter().filter(|entry| wanted.is_empty() || wanted.contains(entry.name)).collect())
 }
 
-fn check_all(json: Option<&Path>, jobs: Option<usize>, names: &[String]) -> Result<bool, String> {
+/// As many as asked for, or as there are cores.
+fn threads(asked: Option<u16>) -> usize {
+    asked.map_or_else(|| thread::available_parallelism().map_or(1, usize::from), usize::from)
+}
+
+fn check_all(json: Option<&Path>, jobs: usize, names: &[String]) -> Result<bool, String> {
     let entries = chosen(names)?;
-    let jobs = jobs.or_else(|| thread::available_parallelism().ok().map(usize::from)).unwrap_or(1);
-    let next = AtomicUsize::new(0);
-    let outcomes: Mutex<Vec<(usize, Outcome)>> = Mutex::new(Vec::new());
-    println!("{:<30} {:>10} {:>10} {:>6} {:>8}  verdict", "model", "states", "generated", "depth", "seconds");
-    thread::scope(|scope| {
-        for _ in 0..jobs.min(entries.len()) {
-            scope.spawn(|| {
-                loop {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(entry) = entries.get(place) else { return };
-                    let outcome = check(entry, 1);
-                    let mut done = outcomes.lock().unwrap_or_else(PoisonError::into_inner);
-                    print(&outcome);
-                    done.push((place, outcome));
-                }
-            });
-        }
-    });
-    let mut outcomes = outcomes.into_inner().unwrap_or_else(PoisonError::into_inner);
-    outcomes.sort_by_key(|(place, _)| *place);
-    let outcomes: Vec<_> = outcomes.into_iter().map(|(_, outcome)| outcome).collect();
-    if let Some(file) = json {
-        write(file, &outcomes).map_err(|error| format!("cannot write {}: {error}", file.display()))?;
-    }
+    println!("{:<40} {:>10} {:>10} {:>6} {:>8}  verdict", "model", "states", "generated", "depth", "seconds");
+    let outcomes = in_parallel(&entries, jobs, |entry| check(entry, 1), print);
+    write_to(json, &outcomes)?;
     let met = outcomes.iter().filter(|outcome| outcome.ok()).count();
     println!("{met} of {} models as expected", entries.len());
     Ok(met == entries.len())
 }
 
+fn second(json: Option<&Path>, jobs: usize, require: bool, names: &[String]) -> Result<bool, String> {
+    let mut entries = chosen(names)?;
+    if let Some(single) = entries.iter().find(|entry| !names.is_empty() && entry.twin.is_none()) {
+        let twins: Vec<_> =
+            catalogue().into_iter().filter(|entry| entry.twin.is_some()).map(|entry| entry.name).collect();
+        return Err(format!("{} is not written in Promela; there are {}", single.name, twins.join(", ")));
+    }
+    entries.retain(|entry| entry.twin.is_some());
+    println!("{:<40} {:>10} {:>10} {:>8}  verdict", "model", "states", "spin", "seconds");
+    let opinions = opinions_on(&entries, jobs, |(outcome, second)| {
+        let states = second.states.map_or_else(|| "-".to_owned(), |states| states.to_string());
+        let verdict = match second.verdict {
+            Agreement::Agrees => "agrees",
+            Agreement::Differs => "DIFFERS",
+            Agreement::NotRun if second.is_wrong() => "NO RESULT",
+            Agreement::NotRun => "not run",
+        };
+        let reason = second.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+        let (model, own) = (&second.model, outcome.unique_states);
+        println!("{model:<40} {own:>10} {states:>10} {:>8.2}  {verdict}{reason}", second.seconds);
+    });
+    write_to(json, &opinions)?;
+    let agree = opinions.iter().filter(|second| second.verdict == Agreement::Agrees).count();
+    println!("spin agrees on {agree} of {} models", opinions.len());
+    Ok(!opinions.iter().any(SecondOpinion::is_wrong) && (!require || agree == opinions.len()))
+}
+
+fn measure(cores: usize, runs: usize) {
+    println!("{}; the shortest of {runs} runs", model());
+    println!("{:<60} {:>5} {:>10} {:>10} {:>8} {:>12}", "checker", "cores", "states", "steps", "seconds", "states/s");
+    for Row { checker, cores, figures } in bench(cores, runs) {
+        match figures {
+            Ok((states, steps, seconds)) => {
+                // Whole states per second; the loss of precision is of no interest.
+                #[expect(clippy::cast_precision_loss)]
+                let rate = states as f64 / seconds;
+                println!("{checker:<60} {cores:>5} {states:>10} {steps:>10} {seconds:>8.2} {rate:>12.0}");
+            }
+            Err(why) => println!("{checker:<60} {cores:>5} {why}"),
+        }
+    }
+}
+
 fn print(outcome: &Outcome) {
     println!(
-        "{:<30} {:>10} {:>10} {:>6} {:>8.2}  {}",
+        "{:<40} {:>10} {:>10} {:>6} {:>8.2}  {}",
         outcome.model,
         outcome.unique_states,
         outcome.generated_states,
@@ -146,11 +203,16 @@ fn print(outcome: &Outcome) {
     }
 }
 
-fn write(file: &Path, outcomes: &[Outcome]) -> std::io::Result<()> {
+fn write_to<T: Serialize>(json: Option<&Path>, what: &[T]) -> Result<(), String> {
+    let Some(file) = json else { return Ok(()) };
+    write(file, what).map_err(|error| format!("cannot write {}: {error}", file.display()))
+}
+
+fn write<T: Serialize>(file: &Path, what: &[T]) -> std::io::Result<()> {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(".part");
     let part = file.with_file_name(name);
-    let mut text = serde_json::to_string_pretty(outcomes)?;
+    let mut text = serde_json::to_string_pretty(what)?;
     text.push('\n');
     let done = fs::write(&part, text).and_then(|()| fs::rename(&part, file));
     if done.is_err() {

@@ -1,11 +1,9 @@
 //! What a check says: verdicts, figures and traces, for people, for the safety case and for the oracle.
 
 use crate::check::Search;
-use crate::line::{self, ASPECTS_KM_H, Line};
-use crate::train::{Displays, Train};
-use atc_kernel::aspect::{Acceptance, AspectSet};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// What is expected of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -72,7 +70,7 @@ pub struct Outcome {
     pub statement: String,
     /// The requirements and theorems that it checks.
     pub requirements: Vec<String>,
-    /// Times, aspects and environment in words.
+    /// Parameters and environment in words.
     pub parameters: String,
     /// The assumptions in force, by id.
     pub assumptions_in_force: Vec<String>,
@@ -90,6 +88,40 @@ pub struct Outcome {
     pub seconds: f64,
     /// Every property, in the order of the model.
     pub properties: Vec<PropertyOutcome>,
+    /// Every minimal set of faults that reaches the hazard, up to the size that was searched.
+    #[serde(default)]
+    pub cut_sets: Vec<CutSet>,
+    /// What each single fault does.
+    #[serde(default)]
+    pub failure_modes: Vec<FailureMode>,
+}
+
+/// A set of faults that together reach the hazard, and no part of which does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CutSet {
+    /// The kinds of fault, in kebab-case, sorted; one that stands twice happens twice.
+    pub faults: Vec<String>,
+    /// What happens, in a sentence.
+    pub text: String,
+    /// The assumptions of which each alone excludes it.
+    pub excluded_by: Vec<String>,
+    /// The shortest way there.
+    pub trace: Trace,
+}
+
+/// What a single fault does, at worst.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FailureMode {
+    /// The kind of fault, in kebab-case.
+    pub fault: String,
+    /// What it is, in a sentence.
+    pub text: String,
+    /// Whether no section with a head or a tail is ever reported free.
+    pub safe: bool,
+    /// What is reported: "none", "all occupied while it lasts", "all occupied until a reset".
+    pub effect: String,
+    /// The states that were searched for it.
+    pub states: usize,
 }
 
 impl Outcome {
@@ -124,108 +156,46 @@ impl From<Found> for Outcome {
             max_depth: found.search.depth,
             seconds: found.search.seconds,
             properties: found.search.properties,
+            cut_sets: found.search.cut_sets,
+            failure_modes: found.search.failure_modes,
         }
     }
 }
 
-/// The configuration of the oracle, protocol 1, that a trace belongs to.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Config {
-    /// The length of a logic cycle.
-    pub cycle_ms: u32,
-    /// The permitted speeds, the lowest first.
-    pub aspects_km_h: Vec<u16>,
-    /// T1.
-    pub operate_ms: u32,
-    /// T2.
-    pub recovery_ms: u32,
-    /// T3.
-    pub mask_ms: u32,
-    /// T4.
-    pub interruption_ms: u32,
-    /// T5.
-    pub shortened_operate_ms: u32,
+/// One cycle of a trace, in the words of the oracle's protocol.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// What the machine reads.
+    pub input: Value,
+    /// What the kernel's machine answers: always the kernel's.
+    pub output: Value,
+    /// What else the model knows of this cycle, by name; the machine's model says what.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub words: BTreeMap<String, Value>,
 }
 
-/// One cycle of a trace. Speeds in km/h; no speed where nothing is displayed.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TraceStep {
-    /// What the ground sent; absent in a model without a ground.
-    #[serde(skip_serializing_if = "Option::is_none", default)]
-    pub sent_km_h: Option<Vec<u16>>,
-    /// What the receiver detected throughout the cycle.
-    pub detected_km_h: Vec<u16>,
-    /// The display of the normative device: always the kernel's.
-    pub normative_km_h: Option<u16>,
-    /// The display of the conventional device.
-    pub conventional_km_h: Option<u16>,
-    /// The display of the machine as claimed.
-    pub as_claimed_km_h: Option<u16>,
-}
-
-/// A run of the devices from their initial states.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A run of a machine from its initial state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trace {
-    /// The line.
-    pub config: Config,
+    /// The oracle's name of the machine.
+    pub machine: String,
+    /// Its configuration in the oracle's protocol 1.
+    pub config: Value,
     /// The cycles in order.
-    pub steps: Vec<TraceStep>,
+    pub steps: Vec<Step>,
     /// The number of the step (from 0) from which the trace may repeat for ever.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub loop_start: Option<usize>,
 }
 
 impl Trace {
-    /// Runs the real devices over `detections` (detected, sent); the last `loop_length` cycles may repeat.
-    pub(crate) fn replay(
-        line: Line,
-        aspects: usize,
-        detections: impl Iterator<Item = (AspectSet, Option<AspectSet>)>,
-        loop_length: Option<usize>,
-    ) -> Self {
-        let device = Acceptance::<{ ASPECTS_KM_H.len() }> { times: line.ticks() };
-        let mut train = Train::<_, { ASPECTS_KM_H.len() }>::initial(&device);
-        let steps: Vec<_> = detections
-            .map(|(detected, sent)| {
-                train = train.step(&device, detected);
-                let Displays { normative, conventional, as_claimed } = train.shown;
-                TraceStep {
-                    sent_km_h: sent.map(line::speeds),
-                    detected_km_h: line::speeds(detected),
-                    normative_km_h: line::speed(normative),
-                    conventional_km_h: line::speed(conventional),
-                    as_claimed_km_h: line::speed(as_claimed),
-                }
-            })
-            .collect();
-        let loop_start = loop_length.and_then(|length| steps.len().checked_sub(length));
-        Self { config: Config::of(line, aspects), steps, loop_start }
-    }
-
-    /// The trace in the oracle's protocol 1: a start, then a step and the output it must get, in turn; with the display of
-    /// the normative device. One JSON value a line.
+    /// The trace in the oracle's protocol 1: a start, then a step and the output it must get, in turn. One JSON value a line.
     pub fn trace_jsonl(&self) -> String {
-        let start = json!({"start": {"protocol": 1, "machine": "aspect-acceptance", "config": self.config}});
+        let start = json!({"start": {"protocol": 1, "machine": self.machine, "config": self.config}});
         let mut text = format!("{start}\n");
         for step in &self.steps {
-            let input = json!({"step": {"detected_km_h": step.detected_km_h}});
-            let output = json!({"output": {"display_km_h": step.normative_km_h}});
-            text.extend([input, output].map(|line| format!("{line}\n")));
+            text.extend([json!({"step": step.input}), json!({"output": step.output})].map(|line| format!("{line}\n")));
         }
         text
-    }
-}
-
-impl Config {
-    fn of(line: Line, aspects: usize) -> Self {
-        Self {
-            cycle_ms: line.cycle.0,
-            aspects_km_h: ASPECTS_KM_H.iter().take(aspects).copied().collect(),
-            operate_ms: line.times.operate.0,
-            recovery_ms: line.times.recovery.0,
-            mask_ms: line.times.mask.0,
-            interruption_ms: line.times.interruption.0,
-            shortened_operate_ms: line.times.shortened_operate.0,
-        }
     }
 }

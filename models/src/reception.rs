@@ -9,7 +9,9 @@
 
 use crate::check::{Claim, Subject};
 use crate::line::Line;
+use crate::outcome::Trace;
 use crate::reception::claims::Purpose;
+use crate::replay::{self, Receiving};
 use crate::train::{Device, Train};
 use atc_kernel::aspect::AspectSet;
 
@@ -214,6 +216,16 @@ impl<D: Device, const N: usize> Subject for Reception<D, N> {
         self.purpose_claims()
     }
 
+    fn parameters(&self) -> String {
+        self.line().describe(self.aspects())
+    }
+
+    fn trace(&self, path: &[(Self::State, Option<Self::Action>)]) -> Trace {
+        replay::trace(self, path)
+    }
+}
+
+impl<D: Device, const N: usize> Receiving for Reception<D, N> {
     fn line(&self) -> Line {
         self.line
     }
