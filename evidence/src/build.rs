@@ -1,11 +1,14 @@
 //! The case from the plan and the results.
 
 use crate::argument;
-use crate::case::{Case, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Status, Technique, Tool};
+use crate::case::{
+    Case, Condition, Engine, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Status, Technique, Tool,
+};
 use crate::hazard;
 use crate::inputs::proofs::Campaigned;
+use crate::inputs::second::Opinion;
 use crate::inputs::tests::{self, Run};
-use crate::inputs::{models, mutants, proofs};
+use crate::inputs::{faults, models, mutants, proofs, second};
 use crate::open;
 use crate::plan::Plan;
 use crate::srac;
@@ -26,6 +29,8 @@ pub struct Results {
     pub outcomes: Vec<Outcome>,
     /// Why a model has no outcome.
     pub no_outcome: String,
+    /// What another checker says of the models.
+    pub opinions: Vec<Opinion>,
     /// The tests.
     pub tests: Run,
     /// What all of it belongs to.
@@ -43,9 +48,12 @@ pub enum Required {
 
 /// Builds the case.
 pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
-    let (mut evidence, engines) = proofs::evidence(&plan.harnesses, &results.campaigns);
+    let (mut evidence, mut engines) = proofs::evidence(&plan.harnesses, &results.campaigns);
     let (modelled, models) = models::evidence(&plan.models, &results.outcomes, &results.no_outcome);
     evidence.extend(modelled);
+    let second_opinions = second::opinions(&results.opinions, &models);
+    second::enter(&second_opinions, &mut evidence);
+    engines.push(second::engine(&second_opinions));
     let (killed, stale) = results.mutants.as_ref().map_or((None, false), |(all, stale)| (Some(all), *stale));
     evidence.extend(mutants::evidence(&plan.mutants, killed, stale));
     evidence.extend(suites(plan, &results.tests));
@@ -56,17 +64,21 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
         condition.used_by.sort();
         condition.used_by.dedup();
     }
+    let cut_sets = faults::cut_sets(&results.outcomes, &conditions);
+    for set in &cut_sets {
+        used(&mut conditions, &set.number, |id| set.excluded_by.iter().any(|one| one.assumption == id));
+    }
     let nodes = argument::build(&plan.data.argument, &evidence, &conditions, &engines);
-    let hazards = hazard::log(&plan.data.hazards, &nodes, &evidence, &conditions);
+    let hazards = hazard::log(&plan.data.hazards, &nodes, &evidence, &conditions, &cut_sets);
     let mut case = Case {
         schema: SCHEMA,
-        title: "Train control kernel: aspect acceptance, speed supervision, two channels".to_owned(),
+        title: "Train control kernel: aspect acceptance, speed supervision, two channels, block counting".to_owned(),
         conclusions: argument::conclusions(&nodes, &evidence, &conditions),
         status: Status::default(),
         open_items: Vec::new(),
         requirements: trace::table(&plan.requirements, &plan.citations, &plan.mentions, &evidence),
         line: plan.line.case(&evidence),
-        techniques: techniques(plan, &evidence),
+        techniques: techniques(plan, &evidence, &engines),
         tools: tools(plan, &results.provenance),
         provenance: results.provenance,
         argument: nodes,
@@ -75,10 +87,20 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
         conditions,
         hazards,
         models,
+        cut_sets,
+        failure_modes: faults::failure_modes(&results.outcomes),
+        second_opinions,
     };
     case.open_items = open::items(plan, &case);
     case.status = status(&case, required);
     case
+}
+
+/// Enters a user with the conditions that it uses.
+fn used(conditions: &mut [Condition], user: &str, uses: impl Fn(&str) -> bool) {
+    for condition in conditions.iter_mut().filter(|condition| uses(&condition.id)) {
+        condition.used_by.push(user.to_owned());
+    }
 }
 
 /// The suites of the run, and those that are named somewhere and are not there.
@@ -99,7 +121,7 @@ fn suites(plan: &Plan, run: &Run) -> Vec<Evidence> {
     found
 }
 
-fn techniques(plan: &Plan, evidence: &[Evidence]) -> Vec<Technique> {
+fn techniques(plan: &Plan, evidence: &[Evidence], engines: &[Engine]) -> Vec<Technique> {
     let known: Vec<_> = evidence.iter().map(|one| one.id.clone()).collect();
     let text = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     plan.data
@@ -110,11 +132,18 @@ fn techniques(plan: &Plan, evidence: &[Evidence]) -> Vec<Technique> {
             let ids: Vec<_> =
                 one.evidence.iter().flat_map(|id| argument::resolve(id, &known).unwrap_or_default()).collect();
             let verdicts = evidence.iter().filter(|one| ids.contains(&one.id)).map(|one| one.verdict);
+            let engine = |name: &String| engines.iter().find(|engine| engine.name == *name);
+            let by = one.engines.iter().map(|name| engine(name).map_or(Verdict::NotRun, |engine| engine.verdict));
             Technique {
                 name: one.name.clone(),
                 claimed: text(&one.claimed),
-                evidence: one.evidence.clone(),
-                verdict: Verdict::worst(verdicts),
+                verdict: Verdict::worst(verdicts.chain(by)),
+                evidence: one
+                    .evidence
+                    .iter()
+                    .cloned()
+                    .chain(one.engines.iter().map(|name| format!("engine:{name}")))
+                    .collect(),
             }
         })
         .collect()

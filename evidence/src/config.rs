@@ -1,6 +1,7 @@
 //! The specific application: one line's parameters, checked by the kernel's own constructors, and what follows.
 
 use crate::case::{Derived, Evidence, Kind, Line, LineTime};
+use crate::detection::{self, Detection, FileBlock, FileDetection};
 use crate::error::{Fault, line_of};
 use atc_kernel::aspect::{AspectTable, TableError, Times, TimesError, TimesMs};
 use atc_kernel::speed::KmhTenths;
@@ -19,6 +20,10 @@ struct File {
     times: FileTimes,
     #[serde(default)]
     supervision: FileSupervision,
+    #[serde(default)]
+    detection: Option<FileDetection>,
+    #[serde(default, rename = "block")]
+    blocks: Vec<FileBlock>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -50,6 +55,7 @@ pub struct Checked {
     times: Times,
     table: AspectTable,
     supervision: Supervision,
+    detection: Option<Detection>,
 }
 
 /// The patent's example, for a case without a line of one's own.
@@ -108,11 +114,12 @@ pub fn parse(source: &str, text: &str) -> Result<Checked, Fault> {
         Fault::new(&at(span), format!("rule TIME-4 is broken: {rule}"))
     })?;
     let supervision = supervision(&file, &at)?;
+    let detection = detection::parse(source, &at, cycle, file.detection.as_ref(), &file.blocks)?;
     let name = file.name.trim().to_owned();
     if name.is_empty() {
         return Err(Fault::new(&source, "the line has no name"));
     }
-    Ok(Checked { name, source: source.to_owned(), cycle, asked, times: checked, table, supervision })
+    Ok(Checked { name, source: source.to_owned(), cycle, asked, times: checked, table, supervision, detection })
 }
 
 fn supervision(file: &File, at: &dyn Fn(std::ops::Range<usize>) -> String) -> Result<Supervision, Fault> {
@@ -159,6 +166,7 @@ impl Checked {
             cycle_ms: self.cycle.0,
             aspects_km_h: self.table.speeds().iter().map(|speed| f64::from(speed.0) / 10.0).collect(),
             times: rows.map(|(symbol, name, asked, ticks)| self.time(symbol, name, asked, ticks)).into(),
+            blocks: self.detection.as_ref().map_or_else(Vec::new, Detection::blocks),
             derived: self.derived(),
             notes: self.notes(),
             theorems: evidence
@@ -249,6 +257,7 @@ impl Checked {
             "",
             "SUP-1, SUP-2",
         ));
+        rows.extend(self.detection.iter().flat_map(Detection::derived));
         rows
     }
 
@@ -292,6 +301,7 @@ impl Checked {
                     .to_owned(),
             );
         }
+        notes.extend(self.detection.iter().flat_map(Detection::notes));
         notes
     }
 
@@ -308,12 +318,14 @@ impl Checked {
             && rounds(self.asked.mask, mask, false)
             && self.ms(times.interruption().0) <= u64::from(self.asked.interruption.0);
         let rounding = if exact { "rounded in the safe direction: yes" } else { "rounded in the safe direction: NO" };
-        vec![
+        let mut checks = vec![
             "TIME-2: the times are accepted by the kernel's constructor".to_owned(),
             format!("TIME-1: T1 and T5 up, T2, T3 and T4 down by less than one cycle, {rounding}"),
             format!("TIME-4: {} aspects, strictly rising", self.table.speeds().len()),
             "SUP-3: the supervision parameters are accepted by the kernel's constructor".to_owned(),
-        ]
+        ];
+        checks.extend(self.detection.iter().flat_map(Detection::checks));
+        checks
     }
 
     /// Whether every data check passed.

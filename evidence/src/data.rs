@@ -173,6 +173,9 @@ pub struct Technique {
     /// Evidence ids, as in a goal.
     #[serde(default)]
     pub evidence: Vec<String>,
+    /// Engines that must have a result for the claim to hold.
+    #[serde(default)]
+    pub engines: Vec<String>,
 }
 
 /// A tool.

@@ -1,7 +1,7 @@
 //! The hazard log: what mitigates each hazard, as far as it is shown, and what is left to the user.
 
 use crate::argument::leaves;
-use crate::case::{Condition, Evidence, Hazard, Node};
+use crate::case::{Condition, CutSet, Evidence, Hazard, Node};
 use crate::data;
 use crate::error::Fault;
 use crate::verdict::Verdict;
@@ -33,7 +33,13 @@ pub fn check(hazards: &[data::Hazard], argument: &data::Argument) -> Result<(), 
 }
 
 /// The log with what the run has shown.
-pub fn log(hazards: &[data::Hazard], nodes: &[Node], evidence: &[Evidence], conditions: &[Condition]) -> Vec<Hazard> {
+pub fn log(
+    hazards: &[data::Hazard],
+    nodes: &[Node],
+    evidence: &[Evidence],
+    conditions: &[Condition],
+    cut_sets: &[CutSet],
+) -> Vec<Hazard> {
     let known: Vec<_> = evidence.iter().map(|one| one.id.clone()).collect();
     hazards
         .iter()
@@ -62,6 +68,11 @@ pub fn log(hazards: &[data::Hazard], nodes: &[Node], evidence: &[Evidence], cond
                     .iter()
                     .filter(|condition| condition.hazards.contains(&hazard.id))
                     .map(|condition| condition.number.clone())
+                    .collect(),
+                cut_sets: cut_sets
+                    .iter()
+                    .filter(|set| set.hazards.contains(&hazard.id))
+                    .map(|set| set.number.clone())
                     .collect(),
                 remains: hazard.remains.split_whitespace().collect::<Vec<_>>().join(" "),
             }

@@ -15,6 +15,7 @@ pub mod case;
 pub mod cli;
 pub mod config;
 pub mod data;
+pub mod detection;
 pub mod error;
 pub mod gsn;
 pub mod hazard;

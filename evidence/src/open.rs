@@ -74,11 +74,16 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
         )),
         _ => {}
     }
-    items.push(item(
-        Severity::Note,
-        "cut sets",
-        "No minimal cut sets yet: they come with the machine whose faults combine, the block counter.".to_owned(),
-    ));
+    let searched = case.evidence.iter().any(|one| one.kind == Kind::Model && one.verdict.is_result());
+    if searched && case.cut_sets.is_empty() {
+        let text =
+            "No model enumerates minimal cut sets: nobody knows which faults together reach a hazard.".to_owned();
+        items.push(item(Severity::Open, "cut sets", text));
+    }
+    for mode in case.failure_modes.iter().filter(|mode| !mode.safe) {
+        let text = format!("The single fault \"{}\" is not safe: only a condition excludes it.", mode.fault);
+        items.push(item(Severity::Note, &mode.model, text));
+    }
     grouped(items)
 }
 

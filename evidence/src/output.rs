@@ -116,6 +116,10 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
             files.push((format!("traces/{name}-{number}.svg"), chart.svg.clone()));
         }
     }
+    for set in &case.cut_sets {
+        files.push((format!("traces/{}.jsonl", set.number), set.chart.trace.clone()));
+        files.push((format!("traces/{}.svg", set.number), set.chart.svg.clone()));
+    }
     Ok(files)
 }
 

@@ -3,6 +3,7 @@
 use crate::argument::{conclusions, resolve, roll_up};
 use crate::build::{Required, status};
 use crate::case::{Case, Kind, OpenItem, Severity};
+use crate::inputs::second::ENGINE;
 use crate::verdict::Verdict;
 
 /// Whether a change in this folder makes this kind of evidence stale.
@@ -57,16 +58,25 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     for requirement in &mut case.requirements {
         requirement.verdict = worst(&requirement.harnesses).unwrap_or(Verdict::NotRun);
     }
+    for opinion in case.second_opinions.iter_mut().filter(|opinion| opinion.verdict.holds()) {
+        if changed.iter().any(|folder| touches(folder, Kind::Model)) {
+            opinion.verdict = Verdict::Stale;
+        }
+    }
+    for engine in case.engines.iter_mut().filter(|engine| engine.verdict.holds()) {
+        if changed.iter().any(|folder| touches(folder, if engine.name == ENGINE { Kind::Model } else { Kind::Harness }))
+        {
+            engine.verdict = Verdict::Stale;
+        }
+    }
     for technique in &mut case.techniques {
-        technique.verdict = worst(&technique.evidence);
+        let engines = technique.evidence.iter().filter_map(|id| id.strip_prefix("engine:"));
+        let by: Vec<_> = engines.filter_map(|name| case.engines.iter().find(|engine| engine.name == name)).collect();
+        technique.verdict =
+            Verdict::worst(worst(&technique.evidence).into_iter().chain(by.iter().map(|one| one.verdict)));
     }
     for (id, theorem) in &mut case.line.theorems {
         *theorem = verdict(id).unwrap_or(Verdict::NotRun);
-    }
-    for engine in case.engines.iter_mut().filter(|engine| engine.verdict.holds()) {
-        if changed.iter().any(|folder| touches(folder, Kind::Harness)) {
-            engine.verdict = Verdict::Stale;
-        }
     }
     case.conclusions = conclusions(&case.argument, &case.evidence, &case.conditions);
     case.open_items = crate::open::grouped(std::mem::take(&mut case.open_items));

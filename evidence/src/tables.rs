@@ -17,6 +17,7 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
             one.requirements.join(" "),
             one.verdict.to_string(),
             one.residual.join(" "),
+            one.cut_sets.join(" "),
             one.remains.clone(),
         ]
     });
@@ -46,7 +47,8 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
             one.verdict.to_string(),
         ]
     });
-    Ok(vec![
+    let mut files = faults(case)?;
+    files.extend([
         (
             "hazards.csv".to_owned(),
             table(
@@ -59,6 +61,7 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
                     "requirements",
                     "verdict",
                     "conditions",
+                    "cut sets",
                     "remains",
                 ],
                 hazards,
@@ -77,6 +80,43 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
                 ["requirement", "sentence", "at", "code", "theorems", "wrong kernels", "models", "tests", "verdict"],
                 requirements,
             )?,
+        ),
+    ]);
+    Ok(files)
+}
+
+/// Cut sets and failure modes.
+fn faults(case: &Case) -> Result<Vec<(String, String)>, String> {
+    let cut_sets = case.cut_sets.iter().map(|one| {
+        let owners: Vec<_> = one.excluded_by.iter().map(|by| format!("{}: {}", by.condition, by.owner)).collect();
+        [
+            one.number.clone(),
+            one.faults.join("; "),
+            one.text.clone(),
+            one.hazards.join(" "),
+            owners.join("; "),
+            one.found_by.join(" "),
+        ]
+    });
+    let failure_modes = case.failure_modes.iter().map(|one| {
+        let safe = if one.safe { "yes" } else { "no" };
+        [
+            one.fault.clone(),
+            one.text.clone(),
+            safe.to_owned(),
+            one.effect.clone(),
+            one.states.to_string(),
+            one.model.clone(),
+        ]
+    });
+    Ok(vec![
+        (
+            "cut-sets.csv".to_owned(),
+            table(["number", "faults", "what happens", "hazards", "excluded by", "found by"], cut_sets)?,
+        ),
+        (
+            "failure-modes.csv".to_owned(),
+            table(["fault", "what it is", "safe", "what is reported", "states", "model"], failure_modes)?,
         ),
     ])
 }

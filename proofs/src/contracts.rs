@@ -2,6 +2,7 @@
 //! (`cargo kani -p atc-proofs -Z function-contracts`)
 
 use atc_kernel::aspect::AspectSet;
+use atc_kernel::block::{self, SectionSet};
 use atc_kernel::time::{divide_down, divide_up};
 
 #[kani::proof_for_contract(AspectSet::lowest)]
@@ -18,4 +19,27 @@ fn rounding_up() {
 #[kani::proof_for_contract(divide_down)]
 fn rounding_down() {
     let _ = divide_down(kani::any(), crate::time::CYCLE_MS);
+}
+
+#[kani::proof_for_contract(SectionSet::first)]
+fn first_sections() {
+    let _ = SectionSet::first(kani::any());
+}
+
+#[kani::proof_for_contract(SectionSet::with_sections_behind)]
+#[kani::unwind(5)]
+fn sections_behind() {
+    let Some(hold) = block::Hold::new(kani::any()) else { return };
+    let _ = SectionSet::from_bits(kani::any()).with_sections_behind(hold);
+}
+
+#[kani::proof_for_contract(SectionSet::reversed)]
+fn reversed_sections() {
+    let _ = SectionSet::from_bits(kani::any()).reversed(kani::any());
+}
+
+#[kani::proof_for_contract(block::step)]
+#[kani::unwind(5)]
+fn block_step() {
+    crate::block::any_step(&mut crate::engine::model::Kani);
 }

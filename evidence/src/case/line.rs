@@ -18,6 +18,8 @@ pub struct Line {
     pub aspects_km_h: Vec<f64>,
     /// Each time: name, meaning, asked for in ms, cycles, kept in ms.
     pub times: Vec<LineTime>,
+    /// The blocks of its train detection, from the low end; none if it has no block counting.
+    pub blocks: Vec<LineBlock>,
     /// What follows: name, value, how it is computed.
     pub derived: Vec<Derived>,
     /// What the user should look at.
@@ -44,6 +46,16 @@ pub struct LineTime {
     pub kept_ms: u64,
     /// `up`, `down` or `exact`, and a limit that was applied.
     pub rounding: String,
+}
+
+/// One block of the line's train detection.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineBlock {
+    /// The lengths of its sections in metres, from the low end.
+    pub sections_m: Vec<u16>,
+    /// The most trains that may be in it.
+    pub max_trains: u8,
 }
 
 /// A figure that follows from the parameters.

@@ -1,5 +1,6 @@
 //! The safety case as data. Everything that is rendered is rendered from this, and this is what `case.json` holds.
 
+mod faults;
 mod line;
 mod register;
 
@@ -8,17 +9,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-pub use line::{Derived, Line, LineTime};
+pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
+pub use line::{Derived, Line, LineBlock, LineTime};
 pub use register::{Condition, Hazard, Requirement, Technique, Tool};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 1.
+    /// The version of this shape: 2.
     pub schema: u32,
     /// What the case is about.
     pub title: String,
@@ -44,6 +46,12 @@ pub struct Case {
     pub requirements: Vec<Requirement>,
     /// The models' parameters, properties and traces.
     pub models: Vec<Model>,
+    /// The minimal sets of faults that reach a hazard in the models.
+    pub cut_sets: Vec<CutSet>,
+    /// What each single fault does in the models.
+    pub failure_modes: Vec<FailureMode>,
+    /// What another checker says of the models.
+    pub second_opinions: Vec<SecondOpinion>,
     /// Techniques of EN 50716 Annex A and what is claimed of each.
     pub techniques: Vec<Technique>,
     /// Tools by class.
@@ -222,7 +230,7 @@ pub struct Cover {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EngineResult {
-    /// `cbmc`, `kani`, `creusot`, `native`.
+    /// `cbmc`, `kani`, `creusot`, `native`; for a model `spin`.
     pub engine: String,
     /// What it says.
     pub verdict: Verdict,
@@ -236,7 +244,7 @@ pub struct EngineResult {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Engine {
-    /// `cbmc`, `kani`, `creusot`, `native`.
+    /// `cbmc`, `kani`, `creusot`, `native`, `spin`.
     pub name: String,
     /// What it looks at.
     pub what: String,
@@ -334,6 +342,8 @@ pub struct Property {
     pub expected: String,
     /// What was found.
     pub found: String,
+    /// For a hazard: the assumptions and requirements of which each alone excludes it.
+    pub excluded_by: Vec<String>,
     /// Whether the expectation is met.
     pub verdict: Verdict,
 }

@@ -24,7 +24,7 @@ pub struct Condition {
     pub check: String,
     /// Who answers for it.
     pub owner: String,
-    /// Who uses it: evidence and argument nodes.
+    /// Who uses it: evidence, argument nodes and cut sets.
     pub used_by: Vec<String>,
 }
 
@@ -48,6 +48,8 @@ pub struct Hazard {
     pub verdict: Verdict,
     /// The conditions that are left to the user: SRAC numbers.
     pub residual: Vec<String>,
+    /// The minimal cut sets that reach it: CS numbers.
+    pub cut_sets: Vec<String>,
     /// What remains in words.
     pub remains: String,
 }
@@ -86,7 +88,7 @@ pub struct Technique {
     pub name: String,
     /// What is claimed.
     pub claimed: String,
-    /// The evidence ids behind the claim; empty if it is a matter of construction.
+    /// The evidence ids behind the claim, and engines (`engine:…`); empty if it is a matter of construction.
     pub evidence: Vec<String>,
     /// The worst verdict of that evidence; nothing if it is a matter of construction.
     pub verdict: Option<Verdict>,

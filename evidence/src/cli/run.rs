@@ -5,7 +5,8 @@ use crate::build::{Required, Results, build};
 use crate::config;
 use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
-use crate::inputs::{mutants, provenance, tests};
+use crate::inputs::second::Opinion;
+use crate::inputs::{faults, mutants, provenance, second, tests};
 use crate::output::Folder;
 use crate::plan::{Plan, plan};
 use crate::prover;
@@ -40,6 +41,18 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let folder = Folder::begin(&out).map_err(one)?;
     let jobs = options.jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)).max(1);
 
+    // The models first: a cut set that nobody owns ends the run before the provers have taken their time.
+    let (outcomes, no_outcome) = if options.no_models {
+        (Vec::new(), "left out by --no-models".to_owned())
+    } else {
+        (models(&plan, jobs, options.time_limit), "no outcome".to_owned())
+    };
+    let requirements: Vec<_> = plan.requirements.iter().map(|one| one.id.clone()).collect();
+    faults::check(&outcomes, &plan.data.assumptions, &requirements)?;
+    let opinions = if options.no_models { Vec::new() } else { opinions(jobs) };
+    let names: Vec<_> = plan.models.iter().map(|model| model.name.clone()).collect();
+    second::check(&opinions, &names)?;
+
     let mut campaigns = imported;
     let mut killed = None;
     let provers = prover::options(jobs, options.time_limit);
@@ -65,23 +78,24 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         let stale = results.provenance.sources_sha256 != sources;
         killed = Some((results, stale));
     }
-    let (outcomes, no_outcome) = if options.no_models {
-        (Vec::new(), "left out by --no-models".to_owned())
-    } else {
-        (models(&plan, jobs, options.time_limit), "no outcome".to_owned())
-    };
     let tests = suites(options, &root, &folder).map_err(one)?;
     // What changed while the engines ran is not what they saw.
     let after = provenance::collect(&root, sources).map_err(one)?;
     let changed = provenance::differences(&provenance, &after);
+    for one in opinions.iter().filter(|one| !one.version.is_empty()) {
+        provenance.tools.insert(one.tool.clone(), one.version.clone());
+    }
     provenance.aspects = atc_proofs::ASPECTS;
     provenance.generated_unix = provenance::now();
     provenance.seconds = start.elapsed().as_secs_f64();
     provenance.tools.insert("safety-case".to_owned(), env!("CARGO_PKG_VERSION").to_owned());
 
     let required = if options.require == Some(Require::Proved) { Required::Proved } else { Required::NoDefect };
-    let mut case =
-        build(&plan, Results { campaigns, mutants: killed, outcomes, no_outcome, tests, provenance }, required);
+    let mut case = build(
+        &plan,
+        Results { campaigns, mutants: killed, outcomes, no_outcome, opinions, tests, provenance },
+        required,
+    );
     if !changed.is_empty() {
         stale::mark(&mut case, &changed);
     }
@@ -126,6 +140,15 @@ fn models(plan: &Plan, jobs: usize, limit: u64) -> Vec<Outcome> {
         .collect();
     bar.finish_and_clear();
     outcomes
+}
+
+/// What another checker says of the models.
+fn opinions(threads: usize) -> Vec<Opinion> {
+    let bar = bar(1, "spin");
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let found = atc_models::second_opinions(threads).into_iter().map(Opinion::from).collect();
+    bar.finish_and_clear();
+    found
 }
 
 fn suites(options: &Run, root: &Path, folder: &Folder) -> Result<tests::Run, Fault> {

@@ -12,6 +12,8 @@ const PILL: f64 = 21.0;
 const LAYER_GAP: f64 = 46.0;
 /// Characters that fit into a box.
 const COLUMNS: usize = 23;
+/// And into the box of a context.
+const CONTEXT_COLUMNS: usize = 42;
 
 struct Box {
     x: f64,
@@ -33,23 +35,25 @@ pub fn svg(case: &Case, root: &Node) -> String {
     let mut body = String::new();
     for layer in &layers {
         let between = width / count(layer.len());
+        // A context that is taller than its node reaches above it.
+        y += layer.iter().map(|node| above(case, node, layer.len() == 1)).fold(0.0, f64::max);
         let mut bottom: f64 = y;
         for (place, node) in layer.iter().enumerate() {
             let middle = between * (count(place) + 0.5);
             let wide = if layer.len() == 1 { 2.0 } else { 1.0 };
-            let lines = wrap(&node.text, if layer.len() == 1 { COLUMNS * 2 } else { COLUMNS });
-            let height = LINE * (count(lines.len()) + 2.0) + 10.0;
+            let lines = wrap(&node.text, columns(layer.len() == 1));
+            let height = tall(lines.len());
             let half = WIDTH * wide / 2.0;
             shape(&mut body, node, (middle - half, y, WIDTH * wide, height), &lines);
             for (number, context) in contexts(case, node).iter().enumerate() {
                 let left = number % 2 == 0;
-                let text = wrap(&context.text, 42);
-                let tall = LINE * (count(text.len()) + 1.0) + 10.0;
+                let text = wrap(&context.text, CONTEXT_COLUMNS);
+                let high = context_height(&text);
                 let broad = WIDTH * 1.75;
                 let x = if left { middle - half - 36.0 - broad } else { middle + half + 36.0 };
                 let at = if left { (middle - half, x + broad) } else { (middle + half, x) };
                 let centre = y + height / 2.0;
-                shape(&mut body, context, (x, centre - tall / 2.0, broad, tall), &text);
+                shape(&mut body, context, (x, centre - high / 2.0, broad, high), &text);
                 let _ = write!(body, r#"<path d="M{:.1} {centre:.1} L{:.1} {centre:.1}" class="ctx"/>"#, at.0, at.1);
             }
             let stack: Vec<_> = node
@@ -94,6 +98,28 @@ pub fn svg(case: &Case, root: &Node) -> String {
         r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:.0} {height:.0}" width="{width:.0}" height="{height:.0}" role="img" aria-label="Argument for {}"><style>{STYLE}</style><defs><marker id="tip" viewBox="0 0 8 8" refX="3" refY="4" markerWidth="9" markerHeight="9" orient="auto"><path d="M0 0 L8 4 L0 8 z" fill="#57606a"/></marker></defs>{edges}{body}</svg>"##,
         escape(&root.id)
     )
+}
+
+/// A node that is alone in its layer is twice as wide.
+fn columns(alone: bool) -> usize {
+    if alone { COLUMNS * 2 } else { COLUMNS }
+}
+
+/// The height of a goal with so many lines, its id and its verdict.
+fn tall(lines: usize) -> f64 {
+    LINE * (count(lines) + 2.0) + 10.0
+}
+
+fn context_height(text: &[String]) -> f64 {
+    LINE * (count(text.len()) + 1.0) + 10.0
+}
+
+/// How far the contexts of a node reach above it.
+fn above(case: &Case, node: &Node, alone: bool) -> f64 {
+    let height = tall(wrap(&node.text, columns(alone)).len());
+    let contexts = contexts(case, node);
+    let highest = contexts.iter().map(|context| context_height(&wrap(&context.text, CONTEXT_COLUMNS)));
+    (highest.fold(0.0, f64::max) - height).max(0.0) / 2.0
 }
 
 const STYLE: &str = "text{font:11.5px system-ui,-apple-system,'Segoe UI',Roboto,'Liberation Sans',sans-serif;fill:#1b1f24}\

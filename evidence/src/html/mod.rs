@@ -2,6 +2,7 @@
 
 mod argument;
 mod drawing;
+mod faults;
 mod page_one;
 mod registers;
 mod report;
@@ -55,7 +56,7 @@ fn contents() -> Markup {
         ("models", "4.5 Models and hazards found", true),
         ("tests", "4.6 Tests", true),
         ("hazards", "4.7 Hazard log", true),
-        ("cutsets", "4.8 Minimal cut sets", true),
+        ("cutsets", "4.8 Cut sets, failure modes", true),
         ("conditions", "4.9 Application conditions", true),
         ("traceability", "4.10 Traceability", true),
         ("techniques", "4.11 Techniques", true),

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 pub fn render(case: &Case) -> Markup {
     html! {
         (hazards(case))
+        (super::faults::render(case))
         (conditions(case))
         (traceability(case))
         (techniques(case))
@@ -19,7 +20,7 @@ pub fn render(case: &Case) -> Markup {
 fn hazards(case: &Case) -> Markup {
     html! {
         h3 #hazards { "4.7 Hazard log" }
-        p { "Hazards at the boundary of the device. The verdict is the worst of what mitigates the hazard. Rates and risk are for \
+        p { "Hazards at the boundary of the machines. The verdict is the worst of what mitigates the hazard. Rates and risk are for \
              the application's risk analysis." }
         table.fixed {
             thead { tr { th style="width:18%" { "Hazard" } th style="width:19%" { "Causes" } th style="width:25%" { "Mitigated by" } th style="width:13%" { "Verdict" } th style="width:25%" { "Left to the user" } } }
@@ -33,16 +34,12 @@ fn hazards(case: &Case) -> Markup {
                         p { (hazard.remains) }
                         p.small { @for (place, number) in hazard.residual.iter().enumerate() {
                             @if place > 0 { ", " } a href={ "#" (number) } { (number) } } }
+                        @if !hazard.cut_sets.is_empty() {
+                            p.small { "Minimal cut sets: " @for number in &hazard.cut_sets { a href={ "#" (number) } { (number) } " " } }
+                        }
                     }
                 }
             }
-        }
-        h3 #cutsets { "4.8 Minimal cut sets" }
-        table {
-            thead { tr { th { "Top event" } th { "Minimal cut set" } th { "Order" } th { "Found by" } } }
-            tr { td colspan="4" .soft { "Empty. Cut sets come with the block machine (train detection by block counting), whose faults \
-                combine. In the machines of this case the fault of one channel is covered by DUP-1, and faults of reception are the \
-                hazards that the models find (4.5)." } }
         }
     }
 }
@@ -157,6 +154,19 @@ fn line(line: &Line) -> Markup {
                     td.num { (time.kept_ms) " ms" }
                     td.num { (margin(time.asked_ms, time.kept_ms)) }
                     td { (time.rounding) }
+                }
+            }
+        }
+        @if !line.blocks.is_empty() {
+            table {
+                thead { tr { th { "Block" } th { "Lengths of its sections, from the low end" } th.num { "Length" } th.num { "Most trains" } } }
+                @for (block, number) in line.blocks.iter().zip(1..) {
+                    tr {
+                        td { strong { (number) } }
+                        td { @for (place, length) in block.sections_m.iter().enumerate() { @if place > 0 { ", " } (length) } " m" }
+                        td.num { (block.sections_m.iter().copied().map(u32::from).sum::<u32>()) " m" }
+                        td.num { (block.max_trains) }
+                    }
                 }
             }
         }

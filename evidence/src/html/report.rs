@@ -8,18 +8,20 @@ use maud::{Markup, html};
 pub fn definition(case: &Case) -> Markup {
     html! {
         h2 #system { "1 System definition" }
-        p { "The generic product is the kernel package " code { "atc-kernel" } ": three machines of an automatic train control \
+        p { "The generic product is the kernel package " code { "atc-kernel" } ": four machines of an automatic train control \
              system, each a pure and total function from state and input to state and output, without heap, clock, floating \
              point, unsafe code or dependency." }
         ul {
             li { strong { "Aspect acceptance" } " (JP3886280B2): from the codes that the receiver detects in each logic cycle to the \
                 one aspect that is displayed. Nothing displayed means stop." }
             li { strong { "Speed supervision" } ": from measured and permitted speed to the brake command." }
-            li { strong { "Two channels" } ": both machines twice on the same inputs, states and outputs compared in every cycle; any \
+            li { strong { "Two channels" } ": any of the machines twice on the same inputs, states and outputs compared in every cycle; any \
                 difference latches the safe output." }
+            li { strong { "Block counting" } " (JPS5937270B2), on the ground: from the checks at the ends of a block and the detectors of its \
+                sections to the sections that are reported occupied; blocks chained to a line, with holds for the tails of trains." }
         }
-        p { "Boundary: inputs are sets of detected aspects and speeds, once a logic cycle; outputs are the display and the brake \
-             command. Receiver, antenna, brake, hardware and operating system are outside; what is needed of them is in the "
+        p { "Boundary: inputs are sets of detected aspects and speeds, check levels, detections and resets, once a logic cycle; outputs are the \
+             display, the brake command and the occupied sections. Receiver, antenna, brake, checks and detectors, hardware and operating system are outside; what is needed of them is in the "
              a href="#conditions" { "application conditions" } "." }
         p { "The requirements are the " (case.requirements.len()) " sentences with MUST in " code { "spec/" } ", listed under "
             a href="#traceability" { "traceability" } ". The specific application of this document is " a href="#line" { (case.line.name) } "." }

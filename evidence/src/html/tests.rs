@@ -1,7 +1,10 @@
 //! The headline, and that nothing reassuring stands above what is open.
 
 use super::{document, headline};
-use crate::case::{Case, Conclusion, Derived, Evidence, Kind, Line, OpenItem, Provenance, SCHEMA, Severity, Status};
+use crate::case::{
+    Case, Chart, Conclusion, CutSet, Derived, Evidence, Excluded, FailureMode, Kind, Line, OpenItem, Provenance,
+    SCHEMA, SecondOpinion, Severity, Status,
+};
 use crate::verdict::Verdict;
 
 fn case(verdict: Verdict, open: Option<Severity>) -> Case {
@@ -44,6 +47,9 @@ fn case(verdict: Verdict, open: Option<Severity>) -> Case {
         hazards: vec![],
         requirements: vec![],
         models: vec![],
+        cut_sets: vec![],
+        failure_modes: vec![],
+        second_opinions: vec![],
         techniques: vec![],
         tools: vec![],
         line: Line {
@@ -52,6 +58,7 @@ fn case(verdict: Verdict, open: Option<Severity>) -> Case {
             cycle_ms: 10,
             aspects_km_h: vec![25.0],
             times: vec![],
+            blocks: vec![],
             derived: Vec::<Derived>::new(),
             notes: vec![],
             theorems: vec![],
@@ -88,4 +95,60 @@ fn the_page_needs_nothing_else_and_escapes_its_text() {
     for outside in ["<script", "src=", "<link", "@import", "url(http"] {
         assert!(!page.contains(outside), "{outside}");
     }
+}
+
+#[test]
+fn a_cut_set_stands_with_its_owner_and_its_chart() {
+    let mut case = case(Verdict::Proved, None);
+    assert!(document(&case).contains("The models have not been run."));
+    let words = |text: &str| text.to_owned();
+    case.cut_sets = vec![CutSet {
+        number: words("CS-1"),
+        faults: vec![words("check-in-lost"), words("missed-detection")],
+        text: words("A section is reported free."),
+        hazards: vec![words("H-7")],
+        excluded_by: vec![Excluded {
+            condition: words("SRAC-9"),
+            assumption: words("check-in-fail-safe"),
+            owner: words("the maker of the loops"),
+        }],
+        found_by: vec![words("model:m")],
+        chart: Chart { name: words("CS-1"), caption: words("c"), svg: words("<svg>way</svg>"), trace: words("") },
+    }];
+    let mode = |safe| FailureMode {
+        fault: words("check-in-lost"),
+        text: words("t"),
+        safe,
+        effect: words("all occupied"),
+        states: 1_000,
+        model: words("model:m"),
+    };
+    case.failure_modes = vec![mode(true), mode(true), mode(false)];
+    let page = document(&case);
+    for part in ["check-in lost", "the maker of the loops", "<svg>way</svg>", "SRAC-9", "2 faults", ">unsafe<"] {
+        assert!(page.contains(part), "{part}");
+    }
+    // The same word of two models is one row, with the states of both; another word is another row.
+    assert!(page.contains("2\u{202f}000") && page.contains(">1\u{202f}000<"));
+}
+
+#[test]
+fn a_second_opinion_that_differs_is_seen() {
+    let mut case = case(Verdict::Proved, None);
+    assert!(document(&case).contains("No other checker has looked at a model."));
+    let opinion = |verdict| SecondOpinion {
+        model: "model:m".to_owned(),
+        tool: "spin".to_owned(),
+        version: Some("6.5.2".to_owned()),
+        first_states: Some(7),
+        states: Some(8),
+        verdict,
+        reason: None,
+        seconds: 1.0,
+    };
+    case.second_opinions = vec![opinion(Verdict::Failed)];
+    assert!(document(&case).contains("<strong>differs</strong>"));
+    case.second_opinions = vec![opinion(Verdict::ModelChecked)];
+    let page = document(&case);
+    assert!(page.contains("agrees") && page.contains("6.5.2") && !page.contains("<strong>differs</strong>"));
 }

@@ -24,8 +24,9 @@ fn of(case: &Case, kind: Kind) -> impl Iterator<Item = &Evidence> {
 fn engines(case: &Case) -> Markup {
     html! {
         h3 #engines { "4.2 Engines" }
-        p { "All engines run the same harnesses. A harness has the best result of any engine, unless one refutes it. Two engines \
-             that look at different things and agree are worth more than one." }
+        p { "All provers run the same harnesses. A harness has the best result of any engine, unless one refutes it. Two engines \
+             that look at different things and agree are worth more than one. For the models " code { "spin" } " is the second engine \
+             beside Stateright (4.5)." }
         table {
             thead { tr { th { "Engine" } th { "Looks at" } th { "Worst result" } th { "Results" } th { "To run it" } } }
             @for engine in &case.engines {
@@ -128,6 +129,8 @@ fn models(case: &Case) -> Markup {
                 }
             }
         }
+        (super::faults::second_opinions(case))
+        h4 { "Model by model" }
         p { "The same hazard in another model is not drawn twice; every trace and chart is in " code { "traces/" } "." }
         @for model in &case.models { (details(case, model)) }
     }

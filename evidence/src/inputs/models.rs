@@ -1,11 +1,12 @@
 //! State-space models: what was searched, what was found, and the charts of the hazards.
 
-use super::owned;
+use super::{owned, truth};
 use crate::case::{Chart, Claim, Evidence, Kind, Model, Property};
 use crate::verdict::Verdict;
-use atc_models::{Expectation, Outcome, PropertyOutcome, Trace, Verdict as Search};
+use atc_models::{Expectation, Outcome, PropertyOutcome, Step, Trace, Verdict as Search};
 use atc_oracle::chart::{self, View};
 use atc_oracle::trace::{Replies, Trace as Record};
+use serde_json::Value;
 
 /// What a model is, apart from any result.
 #[derive(Clone, Debug)]
@@ -32,6 +33,11 @@ pub fn catalogue() -> Vec<Catalogue> {
             assumptions: owned(entry.in_force),
         })
         .collect()
+}
+
+/// The evidence id of a model.
+pub fn id(name: &str) -> String {
+    format!("model:{name}")
 }
 
 /// The evidence of every model, and what belongs with it. A model without an outcome is not run.
@@ -112,21 +118,34 @@ fn property(one: &PropertyOutcome, complete: bool) -> Property {
         Search::NotFound => "not found",
         Search::Incomplete => "not decided",
     };
-    Property { name: one.name.clone(), text: one.text.clone(), expected, found: found.to_owned(), verdict }
+    Property {
+        name: one.name.clone(),
+        text: one.text.clone(),
+        expected,
+        found: found.to_owned(),
+        excluded_by: one.excluded_by.clone(),
+        verdict,
+    }
 }
 
-/// The timing chart of a property's trace, drawn by the oracle, which runs it through the kernel again.
+/// The timing chart of a property's trace.
 fn draw(one: &PropertyOutcome) -> Option<Chart> {
     // A way to a cover point is of no interest to the reader of a case.
     let wanted = one.expectation == Expectation::HazardFound || one.verdict == Search::Failed;
-    let trace = one.trace.as_ref().filter(|_| wanted)?;
+    one.trace.as_ref().filter(|_| wanted).map(|trace| chart(&one.name, &one.text, trace))
+}
+
+/// The timing chart of a trace, drawn by the oracle, which runs it through the kernel again.
+pub fn chart(name: &str, text: &str, trace: &Trace) -> Chart {
     // A hazard of the machine as claimed: its display is drawn beside the kernel's.
-    let claimed = one.text.contains("as claimed") && trace.steps.iter().any(|s| s.as_claimed_km_h != s.normative_km_h);
-    let (text, replies) =
-        if claimed { (as_claimed(trace), Replies::AsRecorded) } else { (trace.trace_jsonl(), Replies::MustAgree) };
-    let view = View { title: Some(one.name.clone()), ..View::default() };
-    let drawn = Record::parse(&text).and_then(|record| chart::svg(&record, replies, &view));
-    let mut caption = one.text.clone();
+    let differs = |step: &Step| claimed_display(step).is_some_and(|shown| *shown != step.output["display_km_h"]);
+    let claimed = text.contains("as claimed") && trace.steps.iter().any(differs);
+    let (shown, replies) =
+        if claimed { (as_claimed(trace), Replies::AsRecorded) } else { (truth::one_more(trace), Replies::MustAgree) };
+    let view = View { title: Some(name.to_owned()), ..View::default() };
+    let drawn = Record::parse(&shown).and_then(|record| chart::svg(&record, replies, &view));
+    let record = if claimed { shown } else { trace.trace_jsonl() };
+    let mut caption = format!("{text}{}", truth::words(trace));
     if claimed {
         caption.push_str(" Recorded: the display of the machine as claimed.");
     }
@@ -137,20 +156,27 @@ fn draw(one: &PropertyOutcome) -> Option<Chart> {
         caption = format!("{caption} (It could not be drawn: {error})");
         String::new()
     });
-    Some(Chart { name: one.name.clone(), caption, svg, trace: text })
+    Chart { name: name.to_owned(), caption, svg, trace: record }
 }
 
 fn as_claimed(trace: &Trace) -> String {
     let mut other = trace.clone();
     for step in &mut other.steps {
-        step.normative_km_h = step.as_claimed_km_h;
+        if let Some(shown) = claimed_display(step).cloned() {
+            step.output["display_km_h"] = shown;
+        }
     }
     other.trace_jsonl()
 }
 
+/// What the machine as claimed displays, in a model that has it.
+fn claimed_display(step: &Step) -> Option<&Value> {
+    step.words.get("as_claimed_km_h")
+}
+
 fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
     Evidence {
-        id: format!("model:{}", model.name),
+        id: id(&model.name),
         kind: Kind::Model,
         title: model.name.clone(),
         statement: model.statement.clone(),
@@ -170,7 +196,7 @@ fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
 
 fn nothing(model: &Catalogue) -> Model {
     Model {
-        id: format!("model:{}", model.name),
+        id: id(&model.name),
         parameters: Vec::new(),
         unique_states: None,
         properties: Vec::new(),
@@ -199,7 +225,8 @@ pub fn thousands(number: usize) -> String {
 mod tests {
     use super::{Catalogue, evidence};
     use crate::verdict::Verdict;
-    use atc_models::{Config, Expectation, Outcome, PropertyOutcome, Trace, Verdict as Search};
+    use atc_models::{Expectation, Outcome, PropertyOutcome, Trace, Verdict as Search};
+    use serde_json::Value;
 
     fn verdict(expectation: Expectation, search: Search, trace: bool, complete: bool) -> Verdict {
         let property = PropertyOutcome {
@@ -214,16 +241,7 @@ mod tests {
     }
 
     fn empty() -> Trace {
-        let config = Config {
-            cycle_ms: 10,
-            aspects_km_h: vec![25],
-            operate_ms: 300,
-            recovery_ms: 400,
-            mask_ms: 400,
-            interruption_ms: 800,
-            shortened_operate_ms: 100,
-        };
-        Trace { config, steps: vec![], loop_start: None }
+        Trace { machine: String::new(), config: Value::Null, steps: vec![], loop_start: None }
     }
 
     fn outcome(properties: Vec<PropertyOutcome>, complete: bool) -> Verdict {
@@ -242,6 +260,8 @@ mod tests {
             max_depth: 1,
             seconds: 0.0,
             properties,
+            cut_sets: vec![],
+            failure_modes: vec![],
         };
         evidence(&[catalogue], &[outcome], "").0[0].verdict
     }

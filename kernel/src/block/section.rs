@@ -27,6 +27,8 @@ impl SectionSet {
     }
 
     /// The `count` sections next to the entry end; all 16 from 16 on.
+    #[cfg_attr(kani, kani::ensures(|set| set.0 & set.0.wrapping_add(1) == 0))]
+    #[cfg_attr(kani, kani::ensures(|set| set.0.count_ones() == if count >= 16 { 16 } else { count as u32 }))]
     pub const fn first(count: u8) -> Self {
         // At most 16 bits are set, so the low half has them all.
         Self(if count >= MAX_SECTIONS { u16::MAX } else { (1 << count) - 1 })
@@ -77,6 +79,8 @@ impl SectionSet {
 
     /// The set, and with each section the `hold` sections behind it, on the side of the entry.
     #[must_use]
+    #[cfg_attr(kani, kani::ensures(|held| held.0 & self.0 == self.0 && held.0.leading_zeros() >= self.0.leading_zeros()))]
+    #[cfg_attr(kani, kani::ensures(|held| hold.0 > 0 || held.0 == self.0))]
     pub const fn with_sections_behind(self, hold: Hold) -> Self {
         // Each round at most doubles what is held behind a section: 1, 3, 7, 15.
         let mut held = self.0;
@@ -93,6 +97,8 @@ impl SectionSet {
 
     /// The set seen from the other end of a block of `sections` sections: section `i` becomes `sections − 1 − i`.
     #[must_use]
+    #[cfg_attr(kani, kani::ensures(|other| other.0.count_ones() <= self.0.count_ones()))]
+    #[cfg_attr(kani, kani::ensures(|other| sections >= 16 || other.0 >> sections == 0))]
     pub const fn reversed(self, sections: u8) -> Self {
         let beyond = MAX_SECTIONS.saturating_sub(sections) as u32;
         Self(if beyond >= 16 { 0 } else { self.0.reverse_bits() >> beyond })

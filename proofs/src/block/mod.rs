@@ -146,6 +146,12 @@ fn any_cycle_with<E: Engine + ?Sized>(e: &mut E, reset: fn(&mut E) -> Option<Tra
     Some(Cycle { block, before, input, after: next.parts(), next, output })
 }
 
+/// One cycle of a block from any valid state, with or without a reset: for the contract of the step.
+#[cfg(kani)]
+pub(crate) fn any_step(e: &mut crate::engine::model::Kani) {
+    let _ = any_cycle_with(e, any_reset);
+}
+
 /// The heads of all trains in the block, by section, and how many trains there are: at least one for each head.
 #[derive(Clone, Copy)]
 struct Trains {

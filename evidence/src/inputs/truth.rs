@@ -1,0 +1,91 @@
+//! What a model knows and the machine does not: where the heads really are, and what fails. For the captions of charts.
+
+use atc_models::Trace;
+use serde_json::Value;
+
+/// The faults and the heads of a trace in a sentence; nothing if the model does not tell.
+pub fn words(trace: &Trace) -> String {
+    let sections = trace.config["sections"].as_i64().unwrap_or(0);
+    let faults = trace.steps.iter().rev().find_map(|step| step.words.get("faults")).map(names).unwrap_or_default();
+    let heads: Vec<_> =
+        trace.steps.iter().filter_map(|step| step.words.get("heads")).map(|value| heads(value, sections)).collect();
+    let mut text = String::new();
+    if !faults.is_empty() {
+        text = format!(" Faulty: {}.", faults.join(", "));
+    }
+    if heads.len() == trace.steps.len() && !heads.is_empty() {
+        let all = heads.iter().zip(1..).map(|(heads, cycle)| format!("{cycle}: {heads}"));
+        text = format!("{text} Heads really in section, by cycle: {}.", all.collect::<Vec<_>>().join("; "));
+    }
+    text
+}
+
+fn names(value: &Value) -> Vec<String> {
+    value.as_array().into_iter().flatten().filter_map(|name| Some(name.as_str()?.to_owned())).collect()
+}
+
+/// The sections with a head; a negative number is a train that is not there, one from `sections` on is beyond the exit.
+fn heads(value: &Value, sections: i64) -> String {
+    let mut all: Vec<_> =
+        value.as_array().into_iter().flatten().filter_map(Value::as_i64).filter(|head| *head >= 0).collect();
+    all.sort_unstable();
+    let inside = all.iter().filter(|head| **head < sections).map(ToString::to_string);
+    let inside = inside.collect::<Vec<_>>().join(" and ");
+    if inside.is_empty() { "none".to_owned() } else { inside }
+}
+
+/// The record with one more cycle of the same inputs and no reset, so that a chart shows the report of the last one: an output
+/// stands from the end of its cycle on.
+pub fn one_more(trace: &Trace) -> String {
+    let mut record = trace.trace_jsonl();
+    if let Some(last) = trace.steps.last().filter(|_| trace.machine == "block-count") {
+        let mut input = last.input.clone();
+        if let Some(reset) = input.get_mut("reset") {
+            *reset = Value::Null;
+        }
+        record.extend([serde_json::json!({ "step": input }).to_string(), "\n".to_owned()]);
+    }
+    record
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{one_more, words};
+    use atc_models::{Step, Trace};
+    use serde_json::json;
+    use std::collections::BTreeMap;
+
+    fn trace() -> Trace {
+        let step = |heads, faults, reset| Step {
+            input: json!({ "present": [1], "reset": reset }),
+            output: json!({}),
+            words: BTreeMap::from([("heads".to_owned(), json!(heads)), ("faults".to_owned(), json!(faults))]),
+        };
+        Trace {
+            machine: "block-count".to_owned(),
+            config: json!({ "sections": 3 }),
+            steps: vec![step([-1, -1], Vec::<&str>::new(), None), step([2, 0], vec!["missed in section 0"], Some(2))],
+            loop_start: None,
+        }
+    }
+
+    #[test]
+    fn heads_and_faults_are_told() {
+        let text = words(&trace());
+        assert_eq!(text, " Faulty: missed in section 0. Heads really in section, by cycle: 1: none; 2: 0 and 2.");
+        let mut beyond = trace();
+        beyond.steps[1].words.insert("heads".to_owned(), json!([3, 1]));
+        assert!(words(&beyond).ends_with("2: 1."));
+        beyond.steps[0].words.clear();
+        assert_eq!(words(&beyond), " Faulty: missed in section 0.");
+    }
+
+    #[test]
+    fn the_last_cycle_is_held_without_its_reset() {
+        let record = one_more(&trace());
+        let last: serde_json::Value = serde_json::from_str(record.lines().last().unwrap_or_default()).expect("JSON");
+        assert_eq!(last, json!({ "step": { "present": [1], "reset": null } }));
+        let other = Trace { machine: "aspect-acceptance".to_owned(), ..trace() };
+        assert_eq!(one_more(&other), other.trace_jsonl());
+    }
+}
