@@ -80,6 +80,17 @@ pub fn block_inputs() -> Vec<Input> {
     inputs.collect()
 }
 
+/// Runs `count` cycles of a block of 16 sections.
+pub fn run_block(count: u64) -> atc_kernel::block::Output {
+    let (parameters, inputs) = (block(), block_inputs());
+    let mut state = atc_kernel::block::State::INITIAL;
+    let mut output = <Block as atc_kernel::Machine>::SAFE;
+    for input in inputs.iter().cycle().take(usize::try_from(count).unwrap_or(usize::MAX)) {
+        (state, output) = atc_kernel::block::step(parameters, state, *input);
+    }
+    output
+}
+
 /// The same as lines of the protocol: the start, and one period of steps.
 pub fn lines() -> (String, String) {
     let mut lines = crate::block_chart::lines(&config(), &block_inputs());
