@@ -4,6 +4,7 @@ use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdic
 use atc_prover::{Options, Tools, campaign, harnesses, mutants, native, root, select, selftest};
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -115,10 +116,7 @@ fn main() -> ExitCode {
 
 fn run(command: Command) -> Result<bool, String> {
     match command {
-        Command::List => {
-            list();
-            Ok(true)
-        }
+        Command::List => list().map(|()| true),
         Command::Prove { names, engine: EngineName::Cbmc, json, run } => prove(&names, json, &run.options()),
         Command::Prove { names, engine: EngineName::Native, json, run } => {
             let result = atc_prover::campaign::native_campaign(&run.options(), &select(&names)?)?;
@@ -136,17 +134,26 @@ fn run(command: Command) -> Result<bool, String> {
     }
 }
 
-fn list() {
+/// Prints the harnesses; a reader that has read enough is no error.
+fn list() -> Result<(), String> {
+    let mut text = String::new();
     for harness in harnesses() {
-        println!("{} ({}): {}", harness.name, harness.theorem, harness.statement.trim());
-        harness.claims.iter().for_each(|claim| println!("    claim  {}: {}", claim.name, claim.text));
-        harness.covers.iter().for_each(|cover| println!("    cover  {}: {}", cover.name, cover.text));
-        println!(
-            "    proves {}; assumes {:?}; {}",
+        let points = |kind: &str, points: &[atc_proofs::Point]| {
+            points.iter().map(|point| format!("    {kind:<6} {}: {}\n", point.name, point.text)).collect::<String>()
+        };
+        text += &format!("{} ({}): {}\n", harness.name, harness.theorem, harness.statement.trim());
+        text += &points("claim", harness.claims);
+        text += &points("cover", harness.covers);
+        text += &format!(
+            "    proves {}; assumes {:?}; {}\n",
             harness.requirements.join(", "),
             harness.assumptions,
             harness.bound
         );
+    }
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot print: {error}")),
+        _ => Ok(()),
     }
 }
 

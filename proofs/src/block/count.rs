@@ -1,10 +1,8 @@
 //! The count: T-BLK-2 (faults), T-BLK-3, and the parameters, the invariant and the machine.
 
-use super::{
-    all, any_block, any_byte, any_cycle, any_cycle_with, any_flag, any_hold, any_input, any_parts, any_reset, ones,
-};
+use super::{all, any_block, any_byte, any_cycle_with, any_flag, any_hold, any_input, any_parts, any_reset, has, ones};
 use atc_kernel::Machine;
-use atc_kernel::block::{Block, BlockError, Fault, Input, State, Status, step};
+use atc_kernel::block::{Block, BlockError, Fault, Input, SectionSet, State, Status, step};
 use atc_kernel::time::Ticks;
 
 harness! {
@@ -30,12 +28,12 @@ harness! {
         Disagree: "an unequal count that is in force",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let (before, after, input) = (cycle.before, cycle.after, cycle.input);
         let agree = cycle.counts() && u32::from(after.count) == ones(cycle.detected());
         e.claim(Claim::Agree as u32, cycle.output.agree == agree && cycle.output.status == after.status);
         e.claim(Claim::All as u32, agree || cycle.output.occupied.bits() == all(cycle.sections()));
-        e.claim(Claim::Latched as u32, before.status == Status::Counting || after.status == before.status);
+        e.claim(Claim::Latched as u32, input.reset.is_some() || before.status == Status::Counting || after.status == before.status);
         let (rises_in, rises_out) = (input.check_in && before.check_in_for == 0, input.check_out && !before.check_out);
         let stays_on = input.check_in && u32::from(before.check_in_for) + 1 > u32::from(cycle.block.pass().0);
         let at_maximum = rises_in && before.count == cycle.block.max_trains().0;
@@ -48,8 +46,8 @@ harness! {
             Status::Counting => !contradicted,
             Status::Unverified => false,
         };
-        e.claim(Claim::Faults as u32, before.status != Status::Counting || named);
-        let counting = before.status == Status::Counting;
+        e.claim(Claim::Faults as u32, input.reset.is_some() || before.status != Status::Counting || named);
+        let counting = before.status == Status::Counting && input.reset.is_none();
         e.cover(Cover::AtZero as u32, counting && at_zero && before.pending > 0);
         e.cover(Cover::AtMaximum as u32, counting && at_maximum && rises_out && before.count > before.pending);
         e.cover(Cover::StaysOn as u32, counting && stays_on);
@@ -99,7 +97,8 @@ harness! {
         e.assume(!leaves || trains > 0);
         e.assume(!rises_out || leaves);
         let trains_after = (trains + u32::from(enters)).saturating_sub(u32::from(leaves));
-        let since_after = if enters { 0 } else { since + 1 };
+        // Everything from the pass time on is alike.
+        let since_after = if enters { 0 } else { (since + 1).min(0xFFFF) };
         e.assume(input.reset.is_none_or(|verified| u32::from(verified.0) == trains_after));
 
         let bad = cycle.counts() && under(after.count, after.pending, after.check_in_for, trains_after, since_after);
@@ -193,6 +192,37 @@ harness! {
 }
 
 harness! {
+    /// A set of sections has what it has, and contains another if and only if it has all of that.
+    blk_set(e)
+    theorem "T-BLK-5";
+    requirements ["BLK-1"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Has: "a section is in the set if and only if its bit is set; none is from 16 on",
+        All: "a set contains another if and only if it has every section of that",
+    }
+    covers {
+        Beyond: "a section that no block has",
+        Contained: "a set contains another that is not the same",
+    }
+    {
+        let (one, other) = (e.word("a set (bits)", 0..=7), e.word("another set (bits)", 0..=7));
+        let section = any_byte(e, "section looked at", 0..=17);
+        let (set, part) = (SectionSet::from_bits(one), SectionSet::from_bits(other));
+        e.claim(Claim::Has as u32, set.contains(section) == has(one, section));
+        let mut contained = true;
+        for place in 0..16 {
+            contained &= has(one, place) || !has(other, place);
+        }
+        e.claim(Claim::All as u32, set.contains_all(part) == contained);
+        e.cover(Cover::Beyond as u32, section == 17);
+        e.cover(Cover::Contained as u32, contained && one != other);
+    }
+}
+
+harness! {
     /// Validity is inductive: the initial state, which is unverified, is valid, and every step keeps it so. As a machine a
     /// block is its step, and its safe output contains every report that it can make.
     blk_machine(e)
@@ -236,6 +266,7 @@ harness! {
             safe.occupied.contains_all(cycle.output.occupied)
                 && safe.occupied.bits() == u16::MAX
                 && safe.behind_hold.sections() == 16
+                && cycle.output.behind_hold.sections() <= 16
                 && !safe.agree
                 && !safe.counted_in
                 && !safe.counted_out,

@@ -99,16 +99,16 @@ fn same(one: Output, other: Output) -> bool {
         && one.counted_out == other.counted_out
 }
 
-fn any_detection<E: Engine + ?Sized>(e: &mut E, block: Block, resets: bool) -> Detection {
+fn any_detection<E: Engine + ?Sized>(e: &mut E, block: Block) -> Detection {
     Detection {
         low_check: any_flag(e, "check at the low end (odd: on)"),
         high_check: any_flag(e, "check at the high end (odd: on)"),
         present: SectionSet::from_bits(e.word("detections from the low end (bits)", 0..=block.all().bits())),
-        reset: if resets { any_reset(e) } else { None },
+        reset: any_reset(e),
     }
 }
 
-fn any_cycle<E: Engine + ?Sized>(e: &mut E, resets: bool) -> Option<Cycle> {
+fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
     let case = e.choose("sizes of the two blocks", SIZES.len());
     let mut sizes = SIZES[0];
     for (place, pair) in SIZES.into_iter().enumerate() {
@@ -138,7 +138,7 @@ fn any_cycle<E: Engine + ?Sized>(e: &mut E, resets: bool) -> Option<Cycle> {
     let border = any_byte(e, "border (trains)", 0..=16);
     let state = LineState { blocks: before.map(State::from_parts), borders: [Border(0), Border(border)] };
     e.assume(state.is_valid(&line));
-    let detections = [any_detection(e, blocks[BEHIND], resets), any_detection(e, blocks[AHEAD], resets)];
+    let detections = [any_detection(e, blocks[BEHIND]), any_detection(e, blocks[AHEAD])];
     let beyond = Beyond {
         hold: any_hold(e, "asked from beyond the exit (sections)", 3)?,
         entered: any_flag(e, "beyond the exit the train is taken over (odd: yes)"),
@@ -172,7 +172,7 @@ harness! {
         Down: "travel downwards",
     }
     {
-        let Some(cycle) = any_cycle(e, true) else { return };
+        let Some(cycle) = any_cycle(e) else { return };
         let (behind, ahead) = (cycle.report(BEHIND), cycle.report(AHEAD));
         let let_go = u32::from(behind.counted_out);
         let border = u32::from(cycle.border);
@@ -217,7 +217,7 @@ harness! {
         Up: "travel upwards, with a hold across the border",
     }
     {
-        let Some(cycle) = any_cycle(e, true) else { return };
+        let Some(cycle) = any_cycle(e) else { return };
         let (behind, ahead) = (cycle.report(BEHIND), cycle.report(AHEAD));
         let beyond = cycle.beyond;
         e.claim(Claim::Ahead as u32, same(ahead, cycle.alone(AHEAD, beyond.hold, beyond.entered)));
@@ -261,7 +261,7 @@ harness! {
     t_blk_4_line(e)
     theorem "T-BLK-4";
     requirements ["BLK-5"];
-    assumptions ["no-phantom", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound BOUND;
     cases SIZES.len();
     claims {
@@ -275,7 +275,7 @@ harness! {
         Down: "travel downwards, a tail across the border",
     }
     {
-        let Some(cycle) = any_cycle(e, false) else { return };
+        let Some(cycle) = any_cycle(e) else { return };
         let (behind, ahead) = (cycle.report(BEHIND), cycle.report(AHEAD));
         let heads = e.word("sections ahead with a head (bits)", 0..=7) & all(cycle.blocks[AHEAD].sections());
         let detected = cycle.oriented(AHEAD, cycle.detections[AHEAD].present).bits();
@@ -297,5 +297,81 @@ harness! {
         e.cover(Cover::Crosses as u32, agreed && over <= sections);
         e.cover(Cover::Through as u32, agreed && over > sections);
         e.cover(Cover::Down as u32, agreed && cycle.direction == Direction::Down);
+    }
+}
+
+harness! {
+    /// A line of three blocks is its blocks: every border has its own account, and asks and takes over in the same cycle. It
+    /// starts valid, with nothing on account, and steps from any state.
+    t_blk_5_three(e)
+    theorem "T-BLK-5";
+    requirements ["BLK-5", "BLK-10", "BLK-11", "GEN-1", "GEN-2"];
+    assumptions [];
+    bound "blocks of 2, 1 and 2 sections";
+    cases 1;
+    claims {
+        Report: "each block reports what it would alone, with what the next one asks and takes over, and its state is that of its step",
+        Account: "each border's account moves by its own edges, trains let go and resets",
+        Start: "the initial state is valid, every block unverified and nothing on account; the safe output reports all and asks for the longest hold",
+        First: "the border at the entry remembers nothing",
+    }
+    covers {
+        Corrupt: "a step from a state that is not valid",
+        Both: "two borders take over in one cycle",
+    }
+    {
+        let Some(hold) = any_hold(e, "tail hold (sections)", 4) else { return };
+        let pass = Ticks(e.word("pass time (cycles)", 1..=3));
+        let made = [2u8, 1, 2].map(|sections| Block::new(sections, any_byte(e, "highest number of trains", 1..=u16::from(sections)), hold, pass));
+        let [Ok(first), Ok(second), Ok(third)] = made else { return e.assume(false) };
+        let blocks = [first, second, third];
+        let down = any_flag(e, "direction (odd: down)");
+        let low = if down { [third, second, first] } else { blocks };
+        let direction = if down { Direction::Down } else { Direction::Up };
+        let Ok(line) = Line::new(low, &[Metres(1); 5], Metres(0), direction) else { return e.assume(false) };
+        let start = line.initial();
+        let mut starts = start.is_valid(&line);
+        for place in 0..3 {
+            starts &= start.blocks[place].parts().status == Status::Unverified && start.borders[place] == Border(0);
+        }
+        let safe = <Line<3> as Machine>::SAFE;
+        for report in safe.blocks {
+            starts &= report.occupied.bits() == u16::MAX && report.behind_hold.sections() == 16 && !report.agree;
+        }
+        e.claim(Claim::Start as u32, starts && safe.before_hold.sections() == 16);
+        let before = [any_parts(e, first), any_parts(e, second), any_parts(e, third)];
+        let borders = [any_byte(e, "border (trains)", 0..=2), any_byte(e, "border (trains)", 0..=2), any_byte(e, "border (trains)", 0..=2)];
+        let detections = [any_detection(e, first), any_detection(e, second), any_detection(e, third)];
+        let Some(asked) = any_hold(e, "asked from beyond the exit (sections)", 3) else { return };
+        let beyond = Beyond { hold: asked, entered: any_flag(e, "beyond the exit the train is taken over (odd: yes)") };
+        let state = LineState { blocks: before.map(State::from_parts), borders: borders.map(Border) };
+        let read = if down { [detections[2], detections[1], detections[0]] } else { detections };
+        let (next, output) = line.step(state, LineInput { blocks: read, beyond });
+        let (mut reports, mut account) = (true, true);
+        let (mut asked, mut entered, mut edges, mut reset, mut taken) = (beyond.hold, beyond.entered, 0_u32, false, 0);
+        for place in [2, 1, 0] {
+            let (block, detection) = (blocks[place], detections[place]);
+            let (check_in, check_out) = if down { (detection.high_check, detection.low_check) } else { (detection.low_check, detection.high_check) };
+            let seen = |set: SectionSet| if down { set.reversed(block.sections()) } else { set };
+            let input = Input { check_in, check_out, present: seen(detection.present), reset: detection.reset, ahead_hold: asked, ahead_entered: entered };
+            let (after, alone) = step(block, state.blocks[place], input);
+            let report = output.blocks[if down { 2 - place } else { place }];
+            reports &= same(report, Output { occupied: seen(alone.occupied), ..alone }) && next.blocks[place] == after;
+            if place < 2 {
+                let keeps = alone.status == Status::Counting && !reset && detection.reset.is_none();
+                let expected = if keeps { edges.saturating_sub(u32::from(alone.counted_out)) } else { 0 };
+                account &= u32::from(next.borders[place + 1].0) == expected;
+                taken += u32::from(alone.counted_out);
+            }
+            let was = u32::from(borders[place]);
+            let rises = check_in && before[place].check_in_for == 0;
+            edges = if rises && was < 16 { was + 1 } else { was };
+            (asked, entered, reset) = (alone.behind_hold, was > 0 || rises, detection.reset.is_some());
+        }
+        e.claim(Claim::Report as u32, reports && output.before_hold == asked);
+        e.claim(Claim::Account as u32, account);
+        e.claim(Claim::First as u32, next.borders[0] == Border(0));
+        e.cover(Cover::Corrupt as u32, !state.is_valid(&line));
+        e.cover(Cover::Both as u32, taken == 2);
     }
 }

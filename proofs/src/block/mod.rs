@@ -13,9 +13,9 @@ use crate::{Engine, Harness};
 use atc_kernel::block::{Block, Fault, Hold, Input, Output, Parts, SectionSet, State, Status, TrainCount, step};
 use atc_kernel::time::Ticks;
 
-pub use count::{blk_8, blk_machine, blk_total, t_blk_2, t_blk_3};
+pub use count::{blk_8, blk_machine, blk_set, blk_total, t_blk_2, t_blk_3};
 pub use geometry::{blk_9, blk_9_size, t_blk_4_geometry};
-pub use line::{blk_11, t_blk_3_border, t_blk_4_line, t_blk_5_line};
+pub use line::{blk_11, t_blk_3_border, t_blk_4_line, t_blk_5_line, t_blk_5_three};
 pub use report::{t_blk_1, t_blk_4, t_blk_5_report, t_blk_6};
 pub use reset::{t_blk_2_reset, t_blk_5};
 
@@ -31,12 +31,14 @@ pub const ALL: &[Harness] = &[
     t_blk_4_geometry::HARNESS,
     t_blk_5::HARNESS,
     t_blk_5_line::HARNESS,
+    t_blk_5_three::HARNESS,
     t_blk_5_report::HARNESS,
     t_blk_6::HARNESS,
     blk_8::HARNESS,
     blk_9::HARNESS,
     blk_9_size::HARNESS,
     blk_11::HARNESS,
+    blk_set::HARNESS,
     blk_total::HARNESS,
     blk_machine::HARNESS,
 ];
@@ -129,10 +131,6 @@ impl Cycle {
     fn counts(&self) -> bool {
         self.after.status == Status::Counting
     }
-}
-
-fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
-    any_cycle_with(e, |_| None)
 }
 
 /// One cycle, with the reset that `reset` draws.

@@ -1,6 +1,6 @@
 //! What is reported: T-BLK-1, T-BLK-4 (the machine's half), T-BLK-5 (exactness of the report) and T-BLK-6.
 
-use super::{all, any_byte, any_cycle, any_trains, has, ones};
+use super::{all, any_byte, any_cycle_with, any_reset, any_trains, has, ones};
 
 harness! {
     /// With a count that is not under the trains, and no detector that hears a train where there is none, every section with
@@ -8,7 +8,7 @@ harness! {
     t_blk_1(e)
     theorem "T-BLK-1";
     requirements ["BLK-1", "BLK-2"];
-    assumptions ["no-phantom", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound "";
     cases 1;
     claims {
@@ -21,7 +21,7 @@ harness! {
         Full: "every section has a head, and all are detected",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let trains = any_trains(e, cycle.block);
         let (heads, detected) = (trains.heads, cycle.detected());
         e.assume(detected & !heads == 0);
@@ -40,7 +40,7 @@ harness! {
     t_blk_4(e)
     theorem "T-BLK-4";
     requirements ["BLK-5"];
-    assumptions ["no-phantom", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound "";
     cases 1;
     claims {
@@ -55,15 +55,15 @@ harness! {
         Agreed: "the counts agree and a tail is held",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let trains = any_trains(e, cycle.block);
         e.assume(cycle.detected() & !trains.heads == 0);
         e.assume(u32::from(cycle.output.count.0) >= trains.number);
         let (hold, ahead) = (cycle.block.hold().sections(), cycle.input.ahead_hold.sections());
         let head = any_byte(e, "a head's section", 0..=5);
         let distance = any_byte(e, "sections behind", 1..=3);
-        e.assume(has(trains.heads, head) && (1..=16).contains(&distance));
-        let held = distance <= hold;
+        e.assume((1..=16).contains(&distance));
+        let held = distance <= hold && has(trains.heads, head);
         let occupied = cycle.output.occupied.bits();
         let behind = cycle.output.behind_hold.sections();
         e.claim(Claim::Here as u32, !held || distance > head || has(occupied, head.wrapping_sub(distance)));
@@ -99,7 +99,7 @@ harness! {
         Free: "in agreement a section is free",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let section = any_byte(e, "section looked at", 0..=5);
         let sections = cycle.sections();
         e.assume(section < 16);
@@ -149,7 +149,7 @@ harness! {
         Over: "a head is reported free with a count that is over the trains",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let trains = any_trains(e, cycle.block);
         let (heads, detected) = (trains.heads, cycle.detected());
         let (missed, phantom) = (ones(heads & !detected), ones(detected & !heads));

@@ -1,6 +1,6 @@
 //! Resets (T-BLK-2) and the exactness of the count (T-BLK-5).
 
-use super::{any_cycle, any_cycle_with, any_reset, ones};
+use super::{any_cycle_with, any_reset, ones};
 use atc_kernel::block::Status;
 
 harness! {
@@ -74,17 +74,18 @@ harness! {
         Both: "a check-in and a check-out in one cycle",
     }
     {
-        let Some(cycle) = any_cycle(e) else { return };
+        let Some(cycle) = any_cycle_with(e, any_reset) else { return };
         let (before, after, input, output) = (cycle.before, cycle.after, cycle.input, cycle.output);
         let rises_in = input.check_in && before.check_in_for == 0;
         let rises_out = input.check_out && !before.check_out;
-        let counts = cycle.counts();
+        let counts = cycle.counts() && input.reset.is_none();
+        let reset = input.reset.is_some();
         let asked = u32::from(before.pending) + u32::from(counts && rises_out);
         let moved = u32::from(before.count) + u32::from(output.counted_in) == u32::from(after.count) + u32::from(output.counted_out);
-        e.claim(Claim::Count as u32, moved && output.count.0 == after.count);
-        e.claim(Claim::CountedIn as u32, output.counted_in == (counts && rises_in));
-        e.claim(Claim::CountedOut as u32, output.counted_out == (asked > 0 && input.ahead_entered));
-        e.claim(Claim::Pending as u32, u32::from(after.pending) + u32::from(output.counted_out) == asked);
+        e.claim(Claim::Count as u32, (reset || moved) && output.count.0 == after.count);
+        e.claim(Claim::CountedIn as u32, reset || output.counted_in == (counts && rises_in));
+        e.claim(Claim::CountedOut as u32, reset || output.counted_out == (asked > 0 && input.ahead_entered));
+        e.claim(Claim::Pending as u32, reset || u32::from(after.pending) + u32::from(output.counted_out) == asked);
         let limit = u32::from(cycle.block.pass().0) + 1;
         let on_for = if input.check_in { (u32::from(before.check_in_for) + 1).min(limit) } else { 0 };
         e.claim(Claim::Levels as u32, u32::from(after.check_in_for) == on_for && after.check_out == input.check_out);
