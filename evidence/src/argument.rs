@@ -293,4 +293,4 @@ pub fn conclusions(nodes: &[Node], evidence: &[Evidence], conditions: &[Conditio
 
 #[cfg(test)]
 #[path = "argument_tests.rs"]
-mod tests;
+pub(crate) mod tests;

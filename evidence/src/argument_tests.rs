@@ -52,6 +52,7 @@ pub fn evidence(id: &str, verdict: Verdict) -> Evidence {
         },
         title: name.to_owned(),
         statement: String::new(),
+        at: None,
         verdict,
         detail: "4 aspects".to_owned(),
         reason: None,

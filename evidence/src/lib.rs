@@ -3,7 +3,7 @@
 //! Reading order: [`verdict`] (what a result is worth, and that a parent takes its worst child), [`plan`] (what is to
 //! be shown, and the checks before anything runs), [`inputs`] (what the engines say, judged piece by piece),
 //! [`argument`] (goals bound to evidence), [`build`] (the case), [`case`] (the case as data), and the renderings:
-//! [`html`], [`gsn`], [`junit`], [`tables`].
+//! [`html`], [`gsn`], [`junit`], [`sarif`], [`tables`].
 //!
 //! The case is one value, [`case::Case`]; every output is a function of it. Nothing here decides what is true: it
 //! reads what engines report, credits nothing that a report does not show, and never says more than its weakest part.
@@ -26,6 +26,7 @@ pub mod open;
 pub mod output;
 pub mod plan;
 pub mod prover;
+pub mod sarif;
 pub mod srac;
 pub mod stale;
 pub mod tables;

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::error::Fault;
 use crate::inputs::provenance::sha256;
-use crate::{gsn, html, junit, tables};
+use crate::{gsn, html, junit, sarif, tables};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -99,6 +99,7 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
         ("case.json".to_owned(), format!("{json}\n")),
         ("case.schema.json".to_owned(), schema()),
         ("junit.xml".to_owned(), junit::xml(case).map_err(|error| fault("junit.xml", error))?),
+        (sarif::FILE.to_owned(), sarif::json(case).map_err(|error| fault(sarif::FILE, error))?),
     ];
     files.extend(gsn::files(case));
     files.extend(tables::files(case).map_err(|error| fault("tables", error))?);

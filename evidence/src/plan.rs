@@ -53,7 +53,11 @@ pub fn plan(root: &Path, line: Checked, mutants: Vec<mutants::Catalogue>) -> Res
     let citations = requirements::citations(root, QUOTING).map_err(one)?;
     let ids: Vec<_> = requirements.iter().map(|requirement| requirement.id.clone()).collect();
     let mentions = trace::mentions(root, &ids).map_err(one)?;
-    let (harnesses, models) = (proofs::catalogue(), models::catalogue());
+    let (mut harnesses, models) = (proofs::catalogue(), models::catalogue());
+    let mut places = proofs::places(root).map_err(one)?;
+    for harness in &mut harnesses {
+        harness.at = places.remove(&harness.name);
+    }
     let uses = srac::uses(&data.assumptions, &harnesses, &models, &data.argument);
     let raise = ratchet(data.ratchet, &count(&harnesses, &models, &mutants, &requirements))?;
     let plan = Plan { data, harnesses, models, mutants, requirements, citations, mentions, uses, line, raise };

@@ -125,6 +125,7 @@ mod tests {
             bound: bound.to_owned(),
             claims: vec![],
             covers: vec![],
+            at: None,
         }
     }
 

@@ -45,7 +45,7 @@ fn a_case_without_results_says_so_and_fits_its_schema() {
     assert!(not_run);
     let page = std::fs::read_to_string(out.join("index.html")).expect("written");
     assert!(page.contains("has not been run") && !page.contains("is proved for all"));
-    for file in ["gsn.yaml", "junit.xml", "hazards.csv", "srac.csv", "traceability.csv", "SHA256SUMS"] {
+    for file in ["gsn.yaml", "junit.xml", "case.sarif", "hazards.csv", "srac.csv", "traceability.csv", "SHA256SUMS"] {
         assert!(out.join(file).exists(), "{file}");
     }
     // The same, but proofs are required.
@@ -56,6 +56,53 @@ fn a_case_without_results_says_so_and_fits_its_schema() {
     let verified = safety_case(&["verify", out.to_str().expect("a path")]);
     assert_eq!(verified.status.code(), Some(1));
     assert!(text(&verified).contains("the case is incomplete"));
+}
+
+/// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.
+fn line(result: &serde_json::Value) -> Option<String> {
+    let place = &result["locations"][0]["physicalLocation"];
+    let file = place["artifactLocation"]["uri"].as_str()?;
+    assert_eq!(place["artifactLocation"]["uriBaseId"], "SRCROOT");
+    let number = usize::try_from(place["region"]["startLine"].as_u64().expect("a line")).expect("small");
+    let text = std::fs::read_to_string(root().join(file)).expect("relative to the checkout");
+    Some(text.lines().nth(number - 1).expect("a line of the file").to_owned())
+}
+
+#[test]
+fn the_sarif_names_all_evidence_that_was_not_run_and_where_it_stands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("case");
+    bare(&out, &[]);
+    let written = std::fs::read_to_string(out.join("case.sarif")).expect("written");
+    let sarif: serde_json::Value = serde_json::from_str(&written).expect("JSON");
+    let schema = serde_json::from_str(include_str!("sarif.schema.json")).expect("JSON");
+    let validator = jsonschema::validator_for(&schema).expect("a schema");
+    assert_eq!(validator.iter_errors(&sarif).map(|error| error.to_string()).collect::<Vec<_>>(), Vec::<String>::new());
+    assert_eq!(sarif["runs"][0]["invocations"][0]["executionSuccessful"], false);
+
+    let mutants = std::fs::read_to_string(root().join("proofs/mutants.toml")).expect("there");
+    let mutants: toml::Table = toml::from_str(&mutants).expect("TOML");
+    let results = sarif["runs"][0]["results"].as_array().expect("a list");
+    for one in json(&out)["evidence"].as_array().expect("a list") {
+        let mine = |result: &&serde_json::Value| result["partialFingerprints"]["evidenceId/v1"] == one["id"];
+        let [result] = results.iter().filter(mine).collect::<Vec<_>>()[..] else { panic!("one result: {}", one["id"]) };
+        assert_eq!((&result["ruleId"], &result["level"]), (&"not-run".into(), &"warning".into()));
+        let id = one["id"].as_str().expect("an id");
+        if let Some(name) = id.strip_prefix("harness:") {
+            assert_eq!(line(result).expect("a place").trim(), format!("{name}(e)"));
+        } else if let Some(name) = id.strip_prefix("mutant:") {
+            let all = mutants["mutant"].as_array().expect("a list");
+            let mutant = all.iter().find(|one| one["name"].as_str() == Some(name)).expect("there");
+            let find = mutant["find"].as_str().and_then(|text| text.lines().next()).expect("a text");
+            assert!(line(result).expect("a place").contains(find), "{id}");
+        }
+    }
+    // The open items have a result each, but those that only group the evidence.
+    let items = results.iter().filter(|result| result["partialFingerprints"]["openItem/v1"].is_string()).count();
+    let case = json(&out);
+    let open = case["open_items"].as_array().expect("a list").iter();
+    let more = open.filter(|one| !one["text"].as_str().expect("a text").starts_with("not-run: ")).count();
+    assert!(more > 0 && items == more, "{items} of {more}");
 }
 
 #[test]

@@ -14,13 +14,13 @@ pub use line::{Derived, Line, LineBlock, LineTime};
 pub use register::{Condition, Hazard, Requirement, Technique, Tool};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 2.
+    /// The version of this shape: 3.
     pub schema: u32,
     /// What the case is about.
     pub title: String,
@@ -178,6 +178,8 @@ pub struct Evidence {
     pub title: String,
     /// What it shows, in plain English.
     pub statement: String,
+    /// Where it stands, from the checkout: a harness's `file:line`, or that of the text which a wrong kernel changes.
+    pub at: Option<String>,
     /// What it amounts to.
     pub verdict: Verdict,
     /// Bound, states and parameters, or numbers: what belongs with the verdict.

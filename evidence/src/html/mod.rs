@@ -121,4 +121,4 @@ fn anchor(id: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

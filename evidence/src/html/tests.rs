@@ -7,13 +7,14 @@ use crate::case::{
 };
 use crate::verdict::Verdict;
 
-fn case(verdict: Verdict, open: Option<Severity>) -> Case {
+pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
     let text = String::new;
     let evidence = Evidence {
         id: "harness:t".to_owned(),
         kind: Kind::Harness,
         title: "t".to_owned(),
         statement: "a < b & c".to_owned(),
+        at: None,
         verdict,
         detail: text(),
         reason: None,

@@ -180,6 +180,7 @@ fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
         kind: Kind::Model,
         title: model.name.clone(),
         statement: model.statement.clone(),
+        at: None,
         verdict,
         detail: String::new(),
         reason: Some(reason.to_owned()).filter(|reason| !reason.is_empty()),

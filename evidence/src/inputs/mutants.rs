@@ -1,7 +1,7 @@
 //! Named wrong kernels, and what rejects them.
 
 use crate::case::{Evidence, Kind};
-use crate::error::Fault;
+use crate::error::{Fault, read};
 use crate::verdict::Verdict;
 use atc_prover::report::{MutantResult, MutantVerdict, Mutants};
 use std::path::Path;
@@ -15,6 +15,8 @@ pub struct Catalogue {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
+    /// The text that it changes: `kernel/src/….rs:12`.
+    pub at: Option<String>,
 }
 
 /// The wrong kernels of `proofs/mutants.toml`, in its order.
@@ -23,12 +25,18 @@ pub struct Catalogue {
 /// The file is missing or wrong: a text that does not stand in the kernel exactly once, a harness that is not there.
 pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
     let all = atc_prover::mutants::list(root).map_err(|error| Fault::new(&"wrong kernels", error))?;
-    let one = |mutant: atc_prover::mutants::Mutant| Catalogue {
-        name: mutant.name,
-        what: mutant.what,
-        requirements: mutant.requirements,
+    let one = |mutant: atc_prover::mutants::Mutant| {
+        let file = format!("kernel/src/{}", mutant.file);
+        let text = read(&root.join(&file))?;
+        let line = text.find(&mutant.find).map(|place| text[..place].matches('\n').count() + 1);
+        Ok(Catalogue {
+            name: mutant.name,
+            what: mutant.what,
+            requirements: mutant.requirements,
+            at: line.map(|line| format!("{file}:{line}")),
+        })
     };
-    Ok(all.into_iter().map(one).collect())
+    all.into_iter().map(one).collect()
 }
 
 /// The evidence of every wrong kernel. `stale`: the results belong to other sources.
@@ -53,6 +61,7 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
                 kind: Kind::Mutant,
                 title: mutant.name.clone(),
                 statement: mutant.what.clone(),
+                at: mutant.at.clone(),
                 verdict,
                 detail: match verdict {
                     Verdict::Tested => "killed".to_owned(),
@@ -104,7 +113,7 @@ mod tests {
     use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
-        let catalogue = Catalogue { name: "m".to_owned(), what: "w".to_owned(), requirements: vec![] };
+        let catalogue = Catalogue { name: "m".to_owned(), what: "w".to_owned(), requirements: vec![], at: None };
         let killer = Kill { harness: "t".to_owned(), claims: vec![], counterexample: None };
         let result = MutantResult {
             name: "m".to_owned(),

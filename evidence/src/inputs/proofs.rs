@@ -4,9 +4,13 @@
 //! result with its own verdict, every cover point must be hit, and a word that is not known counts as no result.
 
 use super::owned;
+use super::requirements::tree;
 use crate::case::{Claim, Cover, Engine, EngineResult, Evidence, Kind};
+use crate::error::{Fault, read};
 use crate::verdict::Verdict;
 use atc_prover::report::{Campaign, HarnessResult, Verdict as Said};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// What a harness is, apart from any result.
 #[derive(Clone, Debug)]
@@ -27,6 +31,8 @@ pub struct Catalogue {
     pub claims: Vec<(String, String)>,
     /// Its cover points: name and text.
     pub covers: Vec<(String, String)>,
+    /// `proofs/src/….rs:12`; nothing until it has been looked for.
+    pub at: Option<String>,
 }
 
 /// The harnesses of `atc-proofs`, in its order.
@@ -47,8 +53,33 @@ pub fn catalogue() -> Vec<Catalogue> {
             bound: harness.bound.to_owned(),
             claims: points(harness.claims),
             covers: points(harness.covers),
+            at: None,
         })
         .collect()
+}
+
+/// Where the harnesses stand in `root/proofs/src`: name and `file:line`.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn places(root: &Path) -> Result<BTreeMap<String, String>, Fault> {
+    let mut found = BTreeMap::new();
+    for path in tree(&root.join("proofs/src"), "rs")? {
+        let file = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+        let mut inside = false;
+        for (line, text) in (1..).zip(read(&path)?.lines()) {
+            let text = text.trim();
+            if text == "harness! {" {
+                inside = true;
+            } else if inside && !text.starts_with("///") {
+                inside = false;
+                if let Some((name, _)) = text.split_once('(') {
+                    found.insert(name.to_owned(), format!("{file}:{line}"));
+                }
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// One engine's campaign, and whether it belongs to these sources.
@@ -126,6 +157,7 @@ fn one(harness: &Catalogue, campaigns: &[Campaigned]) -> Evidence {
         kind: Kind::Harness,
         title: format!("{} ({})", harness.theorem, harness.name),
         statement: harness.statement.clone(),
+        at: harness.at.clone(),
         verdict: judgement.verdict,
         detail: if judgement.bound.is_empty() { engine.to_owned() } else { judgement.bound },
         reason: judgement.reason,

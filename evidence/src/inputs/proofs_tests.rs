@@ -14,6 +14,7 @@ fn harness() -> Catalogue {
         bound: String::new(),
         claims: vec![("A".to_owned(), "a".to_owned()), ("B".to_owned(), "b".to_owned())],
         covers: vec![("C".to_owned(), "c".to_owned())],
+        at: None,
     }
 }
 

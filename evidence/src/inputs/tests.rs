@@ -168,6 +168,7 @@ pub fn one(name: &str, verdict: Verdict, detail: String, reason: Option<String>)
         kind: Kind::Test,
         title: if name == "all" { "All tests of the workspace".to_owned() } else { name.to_owned() },
         statement: String::new(),
+        at: None,
         verdict,
         detail,
         reason,
