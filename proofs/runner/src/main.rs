@@ -4,7 +4,7 @@ use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdic
 use atc_prover::{Options, Tools, campaign, harnesses, mutants, native, root, select, selftest};
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -134,27 +134,27 @@ fn run(command: Command) -> Result<bool, String> {
     }
 }
 
-/// Prints the harnesses; a reader that has read enough is no error.
+/// Prints the harnesses. A reader that has read enough is no error.
 fn list() -> Result<(), String> {
-    let mut text = String::new();
-    for harness in harnesses() {
-        let points = |kind: &str, points: &[atc_proofs::Point]| {
-            points.iter().map(|point| format!("    {kind:<6} {}: {}\n", point.name, point.text)).collect::<String>()
-        };
-        text += &format!("{} ({}): {}\n", harness.name, harness.theorem, harness.statement.trim());
-        text += &points("claim", harness.claims);
-        text += &points("cover", harness.covers);
-        text += &format!(
-            "    proves {}; assumes {:?}; {}\n",
-            harness.requirements.join(", "),
-            harness.assumptions,
-            harness.bound
-        );
-    }
-    match io::stdout().write_all(text.as_bytes()) {
+    match write_list(&mut io::stdout().lock()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot print: {error}")),
         _ => Ok(()),
     }
+}
+
+fn write_list(out: &mut impl io::Write) -> io::Result<()> {
+    for harness in harnesses() {
+        writeln!(out, "{} ({}): {}", harness.name, harness.theorem, harness.statement.trim())?;
+        for claim in harness.claims {
+            writeln!(out, "    claim  {}: {}", claim.name, claim.text)?;
+        }
+        for cover in harness.covers {
+            writeln!(out, "    cover  {}: {}", cover.name, cover.text)?;
+        }
+        let requirements = harness.requirements.join(", ");
+        writeln!(out, "    proves {requirements}; assumes {:?}; {}", harness.assumptions, harness.bound)?;
+    }
+    Ok(())
 }
 
 fn prove(names: &[String], json: Option<PathBuf>, options: &Options) -> Result<bool, String> {
