@@ -11,7 +11,7 @@ use atc_models::block::cut_sets::{enumerate, evaluate};
 use atc_models::block::device::{Counting, Real};
 use atc_models::block::fault::{Faults, Kind};
 use atc_models::block::lines::{Lining, RealLine};
-use atc_models::block::single::{Beyond, Purpose, Single};
+use atc_models::block::single::{Beyond, Single};
 use atc_models::{About, Entry, Limits, Outcome, Subject, Trace, Verdict, catalogue, check};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -24,22 +24,6 @@ static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
     running.into_iter().map(|thread| thread.join().expect("a model does not panic")).collect()
 });
 
-fn single<D: Counting>(device: D, sections: u8, trains: u8, budget: u8) -> Single<D> {
-    Single {
-        device,
-        sections,
-        trains,
-        tail: 1,
-        hold: 1,
-        pass: 2,
-        apart: 2,
-        share: true,
-        faults: Faults::up_to(budget, sections, 1),
-        beyond: Beyond::Nothing,
-        purpose: Purpose::Safe,
-    }
-}
-
 #[test]
 fn the_search_and_the_direct_evaluation_find_the_same_cut_sets() {
     let expected: BTreeSet<Vec<&str>> = [
@@ -51,7 +35,7 @@ fn the_search_and_the_direct_evaluation_find_the_same_cut_sets() {
     .map(Vec::from)
     .into();
     for (sections, trains) in [(2, 1), (3, 2), (4, 2), (3, 3)] {
-        let found = enumerate(&single(Real, sections, trains, 2), Limits::default()).expect("a complete search");
+        let found = enumerate(&Single::usual(Real, sections, trains, 2), Limits::default()).expect("a complete search");
         let found: BTreeSet<Vec<&str>> =
             found.iter().map(|cut| cut.faults.iter().map(String::as_str).collect()).collect();
         assert_eq!(found, evaluate(u32::from(sections), u32::from(trains)), "{sections} × {trains}");
@@ -224,9 +208,9 @@ fn red<S: Subject>(model: S, property: &str) {
 #[test]
 fn wrong_machines_turn_red() {
     for budget in [0, 1] {
-        assert!(outcome(single(Real, 3, 2, budget)).ok());
+        assert!(outcome(Single::usual(Real, 3, 2, budget)).ok());
     }
-    let wrong = |defect, budget| single(Wrong(defect), 3, 2, budget);
+    let wrong = |defect, budget| Single::usual(Wrong(defect), 3, 2, budget);
     red(wrong(Defect::MoreCountedTrusted, 1), "train-reported");
     red(wrong(Defect::NoHold, 0), "train-reported");
     red(wrong(Defect::NothingAskedBehind, 0), "train-reported");
@@ -237,13 +221,13 @@ fn wrong_machines_turn_red() {
 #[test]
 fn a_wrong_machine_has_more_cut_sets() {
     let cuts = |defect| {
-        let found = enumerate(&single(Wrong(defect), 3, 2, 2), Limits::default()).expect("a complete search");
+        let found = enumerate(&Single::usual(Wrong(defect), 3, 2, 2), Limits::default()).expect("a complete search");
         found.iter().map(|cut| cut.faults.join(" ")).collect::<Vec<_>>()
     };
     assert!(cuts(Defect::NoPassTime).contains(&"check-in-stuck-on missed-detection".to_owned()));
     assert!(cuts(Defect::FaultForgotten).contains(&"check-in-stuck-on missed-detection".to_owned()));
     assert!(cuts(Defect::MoreCountedTrusted).contains(&"missed-detection".to_owned()));
-    let sound = enumerate(&single(Real, 3, 2, 2), Limits::default()).expect("a complete search");
+    let sound = enumerate(&Single::usual(Real, 3, 2, 2), Limits::default()).expect("a complete search");
     assert_eq!(sound.len(), 4);
     assert_eq!(Kind::ALL.len(), 7);
 }

@@ -136,6 +136,24 @@ struct Moved {
 }
 
 impl<D: Counting> Single<D> {
+    /// One block in which trains reach one section behind their heads, with a hold for it, and up to `budget` components of which each is
+    /// free to fail.
+    pub fn usual(device: D, sections: u8, trains: u8, budget: u8) -> Self {
+        Self {
+            device,
+            sections,
+            trains,
+            tail: 1,
+            hold: 1,
+            pass: 2,
+            apart: 2,
+            share: true,
+            faults: Faults::up_to(budget, sections, 1),
+            beyond: Beyond::Nothing,
+            purpose: Purpose::Safe,
+        }
+    }
+
     /// The kernel's parameters.
     ///
     /// # Panics

@@ -1,6 +1,6 @@
 //! The models of block counting.
 
-use crate::block::device::{Counting, Real, WithoutComparison};
+use crate::block::device::{Real, WithoutComparison};
 use crate::block::fault::{Faults, Kind};
 use crate::block::single::{Beyond, Purpose, Single};
 use crate::check::{About, Entry};
@@ -106,23 +106,6 @@ const COUNT: &[&str] =
 const CUTS: &[&str] = &["BLK-1", "BLK-2", "T-BLK-1", "T-BLK-6"];
 const BORDER: &[&str] = &["BLK-5", "BLK-6", "BLK-10", "T-BLK-1", "T-BLK-4"];
 
-/// One block: trains one section longer than their head's, and a hold for it.
-fn single<D: Counting>(device: D, sections: u8, trains: u8, budget: u8) -> Single<D> {
-    Single {
-        device,
-        sections,
-        trains,
-        tail: 1,
-        hold: 1,
-        pass: 2,
-        apart: 2,
-        share: true,
-        faults: Faults::up_to(budget, sections, 1),
-        beyond: Beyond::Nothing,
-        purpose: Purpose::Safe,
-    }
-}
-
 fn about(
     name: &'static str,
     statement: &str,
@@ -145,7 +128,7 @@ fn safe() -> Vec<Entry> {
             NO_FAULT,
             &[],
         );
-        Entry::new(about, single(Real, sections, trains, 0))
+        Entry::new(about, Single::usual(Real, sections, trains, 0))
     };
     let single_fault = |name, sections, trains| {
         let about = about(
@@ -156,7 +139,7 @@ fn safe() -> Vec<Entry> {
             ONE_FAULT,
             FAULTS,
         );
-        Entry::new(about, single(Real, sections, trains, 1))
+        Entry::new(about, Single::usual(Real, sections, trains, 1))
     };
     vec![
         undisturbed("block-3x2", 3, 2),
@@ -175,7 +158,7 @@ fn safe() -> Vec<Entry> {
                 ONE_FAULT,
                 FAULTS,
             ),
-            Single { tail: 2, hold: 2, ..single(Real, 4, 2, 1) },
+            Single { tail: 2, hold: 2, ..Single::usual(Real, 4, 2, 1) },
         ),
     ]
 }
@@ -192,14 +175,14 @@ fn hazards() -> Vec<Entry> {
             SINGLE_FAULTS,
         );
         let purpose = Purpose::CutSets(SINGLE_FAULTS);
-        Entry::new(about, Single { purpose, ..single(Real, sections, trains, 2) })
+        Entry::new(about, Single { purpose, ..Single::usual(Real, sections, trains, 2) })
     };
     let no_hold =
-        Single { hold: 0, purpose: Purpose::Hazard(&["hold-covers-train", "BLK-5"]), ..single(Real, 3, 2, 0) };
-    let believing = Single { purpose: Purpose::Hazard(&["BLK-2"]), ..single(WithoutComparison, 3, 2, 1) };
+        Single { hold: 0, purpose: Purpose::Hazard(&["hold-covers-train", "BLK-5"]), ..Single::usual(Real, 3, 2, 0) };
+    let believing = Single { purpose: Purpose::Hazard(&["BLK-2"]), ..Single::usual(WithoutComparison, 3, 2, 1) };
     let stuck = Faults::single(Kind::CheckInStuckOn, 3, 1);
     let missed = Faults::single(Kind::Missed, 3, 1);
-    let close = |faults| Single { apart: 1, faults, ..single(Real, 3, 2, 0) };
+    let close = |faults| Single { apart: 1, faults, ..Single::usual(Real, 3, 2, 0) };
     let both: Vec<_> = stuck.iter().flat_map(|one| missed.iter().map(|other| one.and(*other))).collect();
     let purpose = Purpose::Hazard(&["entries-apart"]);
     vec![
@@ -256,7 +239,7 @@ fn hazards() -> Vec<Entry> {
 }
 
 fn events() -> Vec<Entry> {
-    let with = |beyond, budget, purpose| Single { beyond, purpose, ..single(Real, 3, 2, budget) };
+    let with = |beyond, budget, purpose| Single { beyond, purpose, ..Single::usual(Real, 3, 2, budget) };
     let events = [
         (
             "block-dead-transmitter",
