@@ -10,8 +10,13 @@
 //! | [`aspect`] | on-board aspect acceptance with the shortened operate time | JP3886280B2 |
 //! | [`supervision`] | speed against permitted speed: the brake | JP3886280B2 \[0009\] |
 //! | [`block`] | train detection by block counting | JPS5937270B2 |
+//! | [`telegram`] | frames, check and counters of the train control signal | JP4845985B2 |
+//! | [`code`] | the speed that two analog code frequencies name | JP4845985B2 |
+//! | [`pattern`] | the braking pattern | JP4845985B2 |
+//! | [`permitted`] | the permitted speed from codes and telegrams | JP4845985B2 |
+//! | [`position`] | the train's position from a level difference | JP4045174B2 |
 //! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
-//! | [`time`], [`speed`] | the units that all of them share | |
+//! | [`time`], [`speed`], [`distance`] | the units that all of them share | |
 //!
 //! Three principles:
 //!
@@ -20,15 +25,22 @@
 //! * **One invariant.** Every state has one `is_valid`; every proof assumes it before a step and shows it after.
 //!   The initial state is valid and the most restrictive.
 //! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
-//!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`].
+//!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`], a lower
+//!   [`permitted::Permission`], a wider [`position::Interval`].
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod aspect;
 pub mod block;
+pub mod code;
+pub mod distance;
 pub mod duplex;
+pub mod pattern;
+pub mod permitted;
+pub mod position;
 pub mod speed;
 pub mod supervision;
+pub mod telegram;
 pub mod time;
 
 /// A pure, total state machine. The machine itself is its (checked) parameters.

@@ -3,13 +3,10 @@
 use super::count::rises;
 use super::{Block, Hold, Input, Output, SectionSet, State, Status, TrainCount, step};
 use crate::Machine;
+use crate::distance::Metres;
 
 /// The most sections that a line may have.
 pub const MAX_LINE_SECTIONS: usize = 64;
-
-/// A length in metres, 0 to 65 535.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Metres(pub u16);
 
 /// The direction of travel. Blocks and sections of a line are numbered from its low end; a block's own, and its state,
 /// from the entry end.

@@ -9,13 +9,15 @@
 //! Requirements: `spec/block.md`, BLK-1 to BLK-11. Read in this order: [`Block`] (parameters), [`Input`] and [`Output`],
 //! [`State`] with its `is_valid`, [`step`]; then [`Line`], which chains blocks.
 
+pub use crate::distance::Metres;
+
 mod count;
 mod line;
 mod section;
 
 pub use count::{Block, BlockError, Fault, Input, Output, Parts, State, Status, step};
 pub use line::{
-    Beyond, Border, Detection, Direction, Line, LineError, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS, Metres,
+    Beyond, Border, Detection, Direction, Line, LineError, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS,
     hold_for,
 };
 pub use section::{Hold, MAX_SECTIONS, SectionSet, TrainCount};

@@ -1,0 +1,185 @@
+//! The attenuation table: least and greatest level difference at equally spaced distances.
+
+use super::Interval;
+use crate::distance::Millimetres;
+#[cfg(creusot)]
+use creusot_std::prelude::*;
+
+/// The distances at which a table has values.
+pub const KNOTS: usize = 17;
+
+/// The spans between them.
+pub const SPANS: usize = KNOTS - 1;
+
+/// A level or a difference of levels in hundredths of a decibel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Millibels(pub i16);
+
+/// The distance from one knot to the next: 2^k decimetres, 4 ≤ k ≤ 11 (1.6 m to 204.8 m).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spacing(u8);
+
+impl Spacing {
+    /// 2^`exponent` decimetres; `None` unless 4 ≤ `exponent` ≤ 11.
+    pub const fn new(exponent: u8) -> Option<Self> {
+        if exponent >= 4 && exponent <= 11 { Some(Self(exponent)) } else { None }
+    }
+
+    /// The exponent, 4 to 11.
+    pub const fn exponent(self) -> u8 {
+        self.0
+    }
+
+    /// The spacing in decimetres, 16 to 2048.
+    pub const fn decimetres(self) -> u32 {
+        1 << self.0
+    }
+}
+
+/// The level difference, first less second, over the distance to the transmitter: between `lowest` and `highest` at each
+/// knot, and between the straight lines through them elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Table {
+    spacing: Spacing,
+    lowest: [Millibels; KNOTS],
+    highest: [Millibels; KNOTS],
+}
+
+/// Which rule a table breaks. Source: `spec/position.md`, POS-5.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableError {
+    /// The lowest difference at this knot (from 0) is above the highest.
+    Crossed(usize),
+    /// In no span do both curves rise: no distance could be found.
+    NowhereRising,
+}
+
+impl Table {
+    /// Checks and keeps the curves. They may fall in places; there no distance is found.
+    ///
+    /// # Errors
+    /// The first rule that is broken, in the order of [`TableError`].
+    pub const fn new(
+        spacing: Spacing,
+        lowest: [Millibels; KNOTS],
+        highest: [Millibels; KNOTS],
+    ) -> Result<Self, TableError> {
+        //= spec/position.md#pos-5-the-table
+        //# A table with a lowest difference above the highest at a knot, or without a span in which both curves rise, MUST be rejected.
+        let mut knot = 0;
+        while knot < KNOTS {
+            if lowest[knot].0 > highest[knot].0 {
+                return Err(TableError::Crossed(knot));
+            }
+            knot += 1;
+        }
+        let table = Self { spacing, lowest, highest };
+        let mut span = 0;
+        let mut rises = false;
+        while span < SPANS {
+            rises |= table.rises(span);
+            span += 1;
+        }
+        if rises { Ok(table) } else { Err(TableError::NowhereRising) }
+    }
+
+    /// The distance between knots.
+    pub const fn spacing(&self) -> Spacing {
+        self.spacing
+    }
+
+    /// The lowest difference at each knot.
+    pub const fn lowest(&self) -> &[Millibels; KNOTS] {
+        &self.lowest
+    }
+
+    /// The highest difference at each knot.
+    pub const fn highest(&self) -> &[Millibels; KNOTS] {
+        &self.highest
+    }
+
+    /// Whether both curves rise in the span after knot `span`, which is under [`SPANS`].
+    const fn rises(&self, span: usize) -> bool {
+        self.lowest[span].0 < self.lowest[span + 1].0 && self.highest[span].0 < self.highest[span + 1].0
+    }
+
+    /// The distances at which the difference can be from `least` to `most`, if they can be told.
+    pub(super) fn distances(&self, least: i32, most: i32) -> Option<Interval> {
+        // Only the two outermost spans matter: what is worked out of them comes after the loop, so that a prover sees it once.
+        let mut nearest = None;
+        let mut farthest = None;
+        let mut doubtful = false;
+        for span in 0..SPANS {
+            let low = [i32::from(self.lowest[span].0), i32::from(self.lowest[span + 1].0)];
+            let high = [i32::from(self.highest[span].0), i32::from(self.highest[span + 1].0)];
+            let possible = (high[0] >= least || high[1] >= least) && (low[0] <= most || low[1] <= most);
+            //= spec/position.md#pos-6-curves-that-fall
+            //# The position MUST be unknown if the curves do not both rise over every span in which the train can be.
+            doubtful |= possible && !self.rises(span);
+            nearest = if possible && nearest.is_none() { Some((span, high)) } else { nearest };
+            farthest = if possible { Some((span, low)) } else { farthest };
+        }
+        //= spec/position.md#pos-7-the-ends-of-the-table
+        //# The position MUST be unknown if the difference is above what the table has at its far end, or below what it has anywhere.
+        let beyond = i32::from(self.lowest[SPANS].0) <= most;
+        match (nearest, farthest) {
+            (Some((first, high)), Some((last, low))) if !doubtful && !beyond => Interval::new(
+                self.place(first, down(high, least, self.spacing)),
+                self.place(last, up(low, most, self.spacing)),
+            ),
+            _ => None,
+        }
+    }
+
+    /// The distance of `decimetres` after knot `span`.
+    fn place(&self, span: usize, decimetres: u32) -> Millimetres {
+        let knot = (0..span).fold(0, |distance, _| distance + self.spacing.decimetres());
+        Millimetres((knot + decimetres) * 100)
+    }
+}
+
+/// How far into a span the straight line through `ends` reaches `level`, rounded down; 0 if it is not below it at the start.
+fn down(ends: [i32; 2], level: i32, spacing: Spacing) -> u32 {
+    if ends[0] >= level || ends[1] < level || ends[1] <= ends[0] {
+        return 0;
+    }
+    part(ends[0].abs_diff(level), ends[0].abs_diff(ends[1]), spacing.decimetres())
+}
+
+/// How far into a span the straight line through `ends` is still not above `level`, rounded up; the whole span if it is not
+/// above it at the end.
+fn up(ends: [i32; 2], level: i32, spacing: Spacing) -> u32 {
+    if ends[1] <= level || ends[0] > level || ends[1] <= ends[0] {
+        return spacing.decimetres();
+    }
+    //= spec/position.md#pos-3-rounding
+    //# Every end of an interval MUST be rounded outwards.
+    // Rounded down from the far end is rounded up from the near one.
+    spacing.decimetres() - part(ends[1].abs_diff(level), ends[0].abs_diff(ends[1]), spacing.decimetres())
+}
+
+/// `over / rise` of `whole`, rounded down: the greatest p with p · `rise` ≤ `over` · `whole`.
+///
+/// `over` ≤ `rise`, 1 ≤ `rise` < 2¹⁷ and `whole` ≤ 2048.
+#[cfg_attr(creusot, requires(over@ <= rise@ && 1 <= rise@ && rise@ < 131_072 && whole@ <= 2048))]
+#[cfg_attr(creusot, ensures(result@ * rise@ <= over@ * whole@))]
+#[cfg_attr(creusot, ensures(over@ * whole@ < (result@ + 1) * rise@))]
+pub const fn part(over: u32, rise: u32, whole: u32) -> u32 {
+    let dividend = over * whole;
+    let mut quotient = 0_u32;
+    let mut product = 0_u32;
+    // The quotient is in quotient .. quotient + width. The width halves twelve times.
+    let mut width = 4096_u32;
+    #[cfg_attr(creusot, invariant(width@ >= 1 && quotient@ + width@ <= 4096))]
+    #[cfg_attr(creusot, invariant(product@ == quotient@ * rise@ && product@ <= dividend@))]
+    #[cfg_attr(creusot, invariant(dividend@ < (quotient@ + width@) * rise@))]
+    while width > 1 {
+        let half = width / 2;
+        if product + half * rise <= dividend {
+            quotient += half;
+            product += half * rise;
+        }
+        width -= half;
+    }
+    quotient
+}
