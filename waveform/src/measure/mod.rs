@@ -1,0 +1,18 @@
+//! Measurements: how well the receivers hear. Every result can be serialised, and the same seed gives the same result;
+//! only [`throughput`] depends on the machine.
+
+mod bench;
+mod ber;
+mod detection;
+mod spectrum;
+mod theory;
+mod throughput;
+
+pub use bench::{Bench, BitErrorCurve, Extent, bench};
+pub use ber::{BitErrorPoint, BitErrorRun, Modulation, bit_errors};
+pub use detection::{DetectionPoint, DetectionRun, FalseCodes, Times, detection, false_codes};
+pub use spectrum::{Picture, envelope, picture, spectrum};
+pub use theory::{
+    coherent, differentially_decoded, differentially_decoded_under_code, one_bit_differential, q_function,
+};
+pub use throughput::{Throughput, throughput};
