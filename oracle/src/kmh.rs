@@ -8,6 +8,8 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
+use crate::decimal::{self, NotWhole};
+
 /// A speed, in tenths of km/h. On the wire a JSON number of km/h, such as `45` or `44.9`.
 ///
 /// It is read from the number's digits, never through floating point. A value beyond the range of `i32` tenths
@@ -33,51 +35,15 @@ impl Kmh {
     /// # Errors
     /// If `number` is not a JSON number, or not a whole number of tenths.
     pub fn parse(number: &str) -> Result<Self, KmhError> {
-        let (negative, unsigned) = match number.strip_prefix('-') {
-            Some(rest) => (true, rest),
-            None => (false, number),
-        };
-        let (mantissa, exponent) = match unsigned.split_once(['e', 'E']) {
-            Some((mantissa, exponent)) => (mantissa, parse_exponent(exponent)),
-            None => (unsigned, Some(0)),
-        };
-        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-        let digits = || whole.bytes().chain(fraction.bytes());
-        let (Some(exponent), true) = (exponent, !whole.is_empty() && digits().all(|digit| digit.is_ascii_digit()))
-        else {
-            return Err(KmhError(format!("expected a number of km/h, found {}", shorten(number))));
-        };
-        // How many of the digits stand before the point once the unit is the tenth.
-        let point = i64::try_from(whole.len()).unwrap_or(i64::MAX).saturating_add(exponent).saturating_add(1);
-        let mut tenths: i64 = 0;
-        let mut place: i64 = 0;
-        for digit in digits() {
-            let digit = i64::from(digit - b'0');
-            if place < point {
-                tenths = tenths.saturating_mul(10).saturating_add(digit);
-            } else if digit != 0 {
-                return Err(KmhError(format!("{} km/h is not a whole number of tenths", shorten(number))));
-            }
-            place += 1;
-        }
-        while place < point && tenths != 0 && tenths <= i64::from(i32::MAX) {
-            tenths = tenths.saturating_mul(10);
-            place += 1;
-        }
-        let tenths = if negative { -tenths } else { tenths };
-        Ok(Self(i32::try_from(tenths).unwrap_or(if negative { i32::MIN } else { i32::MAX })))
+        let tenths = decimal::parts(number, 1).map_err(|error| {
+            let number = shorten(number);
+            KmhError(match error {
+                NotWhole::NoNumber => format!("expected a number of km/h, found {number}"),
+                NotWhole::TooFine => format!("{number} km/h is not a whole number of tenths"),
+            })
+        })?;
+        Ok(Self(i32::try_from(tenths).unwrap_or(if tenths < 0 { i32::MIN } else { i32::MAX })))
     }
-}
-
-/// A JSON exponent; one beyond `i64` is the end of that range, halved so that sums stay in it.
-fn parse_exponent(text: &str) -> Option<i64> {
-    const FAR: i64 = i64::MAX / 2;
-    let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
-    if digits.is_empty() || !digits.bytes().all(|digit| digit.is_ascii_digit()) {
-        return None;
-    }
-    let size = digits.parse::<i64>().unwrap_or(FAR).min(FAR);
-    Some(if text.starts_with('-') { -size } else { size })
 }
 
 /// The text, cut to a length that is fit for a message.

@@ -3,18 +3,24 @@
 //! * [`serve`]: JSON lines, protocol 1 — somebody else's implementation is stepped beside the kernel
 //!   ([`protocol`] for the forms, [`machine`] for what each machine reads and puts out).
 //! * [`trace`] and [`chart`]: the timing chart (SVG, VCD) of a recorded session, checked against the kernel.
+//! * [`signal`]: the train control signal as a WAV file, made and read back.
 //! * [`schema`]: the JSON Schema of the protocol, generated from the types.
 
 pub mod chart;
+pub mod decimal;
 pub mod kmh;
 pub mod machine;
+mod names;
 pub mod protocol;
 pub mod schema;
 mod sections;
 mod serve;
 mod session;
+pub mod signal;
+pub mod telegrams;
 pub mod trace;
 
+pub use decimal::{Decibels, Metres};
 pub use kmh::{Kmh, KmhError};
 pub use sections::Sections;
 pub use serve::serve;

@@ -6,9 +6,10 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use atc_oracle::chart::{self, View};
+use atc_oracle::chart::{self, Part, View};
+use atc_oracle::signal::{self, Config, SignalError};
 use atc_oracle::trace::{Replies, Trace, TraceError};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// The verified kernel as a reference oracle
 #[derive(Parser)]
@@ -24,8 +25,30 @@ enum Command {
     Serve,
     /// Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
     Chart(ChartArgs),
+    /// Makes the train control signal as a WAV file, or reads one
+    #[command(subcommand)]
+    Signal(SignalCommand),
     /// Prints the JSON Schema of protocol 1
     Schema,
+}
+
+#[derive(Subcommand)]
+enum SignalCommand {
+    /// Writes the signal of a configuration as a WAV file
+    Generate {
+        /// The configuration; every part of it has defaults
+        config: PathBuf,
+        /// Where the signal goes
+        output: PathBuf,
+    },
+    /// Prints the telegrams and speeds of a WAV file as JSON lines
+    Decode {
+        /// A recording of one channel, 16-bit integer or 32-bit float
+        input: PathBuf,
+        /// The configuration of the signal and the line [default: the standard ones]
+        #[arg(long)]
+        config: Option<PathBuf>,
+    },
 }
 
 #[derive(Args)]
@@ -47,9 +70,19 @@ struct ChartArgs {
     /// The last instant drawn
     #[arg(long)]
     to: Option<u64>,
+    /// Draws only the figure over distance, or only the rows
+    #[arg(long, value_enum)]
+    only: Option<Only>,
     /// Draws replies that differ from the kernel's in red; else they are an error
     #[arg(long)]
     as_recorded: bool,
+}
+
+/// A part of a chart.
+#[derive(Clone, Copy, ValueEnum)]
+enum Only {
+    Figure,
+    Rows,
 }
 
 /// What stops a command, with the file that it is about.
@@ -58,6 +91,8 @@ enum Failure {
     Write(PathBuf, io::Error),
     Trace(PathBuf, TraceError),
     Serve(io::Error),
+    Config(PathBuf, String),
+    Signal(String),
 }
 
 impl fmt::Display for Failure {
@@ -67,6 +102,8 @@ impl fmt::Display for Failure {
             Self::Write(path, error) => write!(f, "{} cannot be written: {error}", path.display()),
             Self::Trace(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Serve(error) => write!(f, "the session broke off: {error}"),
+            Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
+            Self::Signal(reason) => f.write_str(reason),
         }
     }
 }
@@ -75,6 +112,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Serve => atc_oracle::serve(io::stdin().lock(), io::stdout().lock()).map_err(Failure::Serve),
         Command::Chart(args) => draw(&args),
+        Command::Signal(command) => signal(&command),
         Command::Schema => print(&atc_oracle::schema::text()),
     };
     match result {
@@ -91,7 +129,11 @@ fn draw(args: &ChartArgs) -> Result<(), Failure> {
     let broken = |error| Failure::Trace(args.trace.clone(), error);
     let trace = Trace::parse(&text).map_err(broken)?;
     let replies = if args.as_recorded { Replies::AsRecorded } else { Replies::MustAgree };
-    let view = View { title: args.title.clone(), from: args.from, to: args.to };
+    let only = args.only.map(|only| match only {
+        Only::Figure => Part::Figure,
+        Only::Rows => Part::Rows,
+    });
+    let view = View { title: args.title.clone(), from: args.from, to: args.to, only };
     // Both are made before either is written.
     let svg = chart::svg(&trace, replies, &view).map_err(broken)?;
     let vcd =
@@ -102,6 +144,30 @@ fn draw(args: &ChartArgs) -> Result<(), Failure> {
         None => {}
     }
     vcd.map_or(Ok(()), |(path, vcd)| write(path, &vcd))
+}
+
+fn signal(command: &SignalCommand) -> Result<(), Failure> {
+    let config = |path: &Path| {
+        let broken = |reason| Failure::Config(path.to_owned(), reason);
+        Config::parse(&read(path)?).map_err(broken)
+    };
+    let (done, path) = match command {
+        SignalCommand::Generate { config: path, output } => {
+            (signal::generate(&config(path)?, output), Some(path.as_path()))
+        }
+        SignalCommand::Decode { input, config: path } => {
+            let path = path.as_deref();
+            let config = path.map(config).transpose()?.unwrap_or_default();
+            (signal::decode(&config, input, io::stdout().lock()), path)
+        }
+    };
+    done.or_else(|error| match error {
+        SignalError::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        SignalError::Output(error) => Err(Failure::Write("standard output".into(), error)),
+        SignalError::Recording(reason) => Err(Failure::Signal(reason)),
+        // Only a configuration that was named can be wrong.
+        SignalError::Config(reason) => Err(Failure::Config(path.unwrap_or(Path::new("-")).to_owned(), reason)),
+    })
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

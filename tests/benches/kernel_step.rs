@@ -1,11 +1,13 @@
 //! One logic cycle of the kernel with busy input: 16 aspects, target well under 100 ns; a block of 16 sections, target well under
-//! 50 ns; a line of four such blocks.
+//! 50 ns; a line of four such blocks; the permitted speed, target well under 200 ns; the position, target well under 500 ns; a bit of
+//! the deframer, target well under 50 ns.
 
 use std::hint::black_box;
 
 use atc_kernel::aspect::{MAX_ASPECTS, State, step};
-use atc_kernel::{Machine as _, block};
-use atc_tests::{traffic, workload};
+use atc_kernel::telegram::Deframer;
+use atc_kernel::{Machine as _, block, permitted, position};
+use atc_tests::{reception, traffic, workload};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn kernel_step(criterion: &mut Criterion) {
@@ -42,6 +44,38 @@ fn kernel_step(criterion: &mut Criterion) {
             let (next, output) = black_box(&line).step(black_box(state), black_box(*input));
             state = next;
             black_box(output).before_hold
+        });
+    });
+    let (parameters, inputs) = (reception::permitted(), reception::heard());
+    group.bench_function("permitted step", |bencher| {
+        let mut state = permitted::State::INITIAL;
+        let mut inputs = inputs.iter().cycle();
+        bencher.iter(|| {
+            let input = inputs.next()?;
+            let (next, permission) = permitted::step(black_box(&parameters), black_box(state), black_box(*input));
+            state = next;
+            permission.speed
+        });
+    });
+    let (parameters, inputs) = (reception::position(), reception::measured());
+    group.bench_function("position step", |bencher| {
+        let mut state = None;
+        let mut inputs = inputs.iter().cycle();
+        bencher.iter(|| {
+            let input = inputs.next()?;
+            state = position::step(black_box(&parameters), black_box(state), black_box(*input));
+            state
+        });
+    });
+    let bits = reception::bits();
+    group.bench_function("deframer, a bit", |bencher| {
+        let mut window = Deframer.initial();
+        let mut bits = bits.iter().cycle();
+        bencher.iter(|| {
+            let bit = bits.next()?;
+            let (next, telegram) = Deframer.step(black_box(window), black_box(*bit));
+            window = next;
+            telegram
         });
     });
     group.finish();

@@ -1,11 +1,11 @@
-//! The throughput of the real process: 2,000,000 steps of two machines through its pipes. The target is 500,000 steps/s on one core.
+//! The throughput of the real process: 2,000,000 steps of three machines through its pipes. The target is 500,000 steps/s on one core.
 //!
 //! Run it with `taskset -c 0` (as `ci/bench` does) to have the client, the oracle and the pipes on one core.
 
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::time::Instant;
 
-use atc_tests::{device, traffic, workload};
+use atc_tests::{device, reception, traffic, workload};
 
 const STEPS: usize = 2_000_000;
 const TARGET: f64 = 500_000.0;
@@ -16,7 +16,12 @@ fn main() -> io::Result<()> {
         return Ok(());
     }
     let mut slow = Vec::new();
-    for (machine, (start, steps)) in [("aspect-acceptance", workload::lines()), ("block-count", traffic::lines())] {
+    let machines = [
+        ("aspect-acceptance", workload::lines()),
+        ("block-count", traffic::lines()),
+        ("permitted-speed", reception::lines()),
+    ];
+    for (machine, (start, steps)) in machines {
         let mut best = 0_f64;
         for _ in 0..3 {
             best = best.max(measure(&start, &steps)?);

@@ -130,7 +130,7 @@ fn a_difference_is_refused_or_drawn() {
 #[test]
 fn a_view_shows_its_part() {
     let trace = Trace::parse(FIGURE_3).expect("a trace");
-    let view = View { from: Some(500), to: Some(1100), title: None };
+    let view = View { from: Some(500), to: Some(1100), ..View::default() };
     let svg = chart::svg(&trace, Replies::MustAgree, &view).expect("a chart");
     assert_bars(&svg, &["T2 400 ms: 600 to 1000 ms", "T3: 350 ms of 400: 1000 to 1350 ms", "45 km/h: 300 to 1850 ms"]);
 }

@@ -40,6 +40,7 @@ Usage: oracle <COMMAND>
 Commands:
   serve   Answers JSON lines (protocol 1) from standard input on standard output
   chart   Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
+  signal  Makes the train control signal as a WAV file, or reads one
   schema  Prints the JSON Schema of protocol 1
   help    Print this message or the help of the given subcommand(s)
 
@@ -66,6 +67,7 @@ Options:
       --title <TITLE>      The chart's title [default: the machine's name]
       --from <FROM>        The first instant drawn, in the unit of the chart's axis
       --to <TO>            The last instant drawn
+      --only <ONLY>        Draws only the figure over distance, or only the rows [possible values: figure, rows]
       --as-recorded        Draws replies that differ from the kernel's in red; else they are an error
   -h, --help               Print help
 
@@ -142,7 +144,18 @@ fn a_bad_trace_is_named_with_its_line_and_nothing_is_written() {
 #[test]
 fn the_examples_are_drawn_and_the_files_are_whole() {
     let folder = tempfile::tempdir().expect("a folder");
-    for name in ["figure-3", "figure-6", "figure-7", "figure-8", "supervision", "block-count"] {
+    for name in [
+        "figure-3",
+        "figure-6",
+        "figure-7",
+        "figure-8",
+        "supervision",
+        "block-count",
+        "telegram-codec",
+        "braking-pattern",
+        "speed-pattern",
+        "train-position",
+    ] {
         let trace = examples().join(format!("{name}.jsonl"));
         // The requests alone, and with the replies of a session in which they were sent ahead.
         let requests = fs::read(&trace).expect("an example");

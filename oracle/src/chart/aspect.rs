@@ -35,7 +35,7 @@ fn name(moment: Moment, times: Times) -> &'static str {
 
 /// Lays out a case.
 pub(crate) fn scene(config: &Config, cycles: &[Cycle<Aspect>]) -> Scene {
-    let unit = Unit { name: "ms", per_cycle: config.cycle_ms };
+    let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let end = cycles.len() as u64;
     let mut scene = Scene {
         machine: Aspect::NAME,
@@ -47,6 +47,7 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Aspect>]) -> Scene {
         legend: Vec::new(),
         signals: Vec::new(),
         differences: Vec::new(),
+        figure: None,
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Aspect::open(config) else { return scene };

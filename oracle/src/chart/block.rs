@@ -66,7 +66,7 @@ impl Moment {
 
 /// Lays out a case.
 pub(crate) fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
-    let unit = Unit { name: "ms", per_cycle: config.cycle_ms };
+    let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let mut scene = Scene {
         machine: Counted::NAME,
         notes: Vec::new(),
@@ -84,6 +84,7 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
         ],
         signals: Vec::new(),
         differences: Vec::new(),
+        figure: None,
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Counted::open(config) else { return scene };

@@ -4,20 +4,21 @@
 use svg::node::element::{Group, Polygon, Rectangle, SVG, Title};
 use svg::{Document, Node};
 
-use super::ink::{INK, join, line, paint, polyline, rectangle, round, sign_at, text, width, wrap};
-use super::{Lane, Mark, Scene, Sign, Tone, View};
+use super::figure::{self, Figure};
+use super::ink::{INK, dashes, join, line, paint, polyline, rectangle, round, sign_at, text, width, wrap};
+use super::{Lane, Mark, Part, Scene, Sign, Tone, View};
 use crate::protocol::Fault;
 use crate::trace::TraceError;
 
 const WIDTH: f64 = 1000.0;
-const LEFT: f64 = 160.0;
-const RIGHT: f64 = 980.0;
+pub(super) const LEFT: f64 = 160.0;
+pub(super) const RIGHT: f64 = 980.0;
 const TEXT: f64 = 12.0;
-const FAINT: &str = "#dddddd";
+pub(super) const FAINT: &str = "#dddddd";
 
 /// One scene's part of the drawing: its window of cycles and where it stands on the page.
-struct Plot<'a> {
-    scene: &'a Scene,
+pub(super) struct Plot<'a> {
+    pub(super) scene: &'a Scene,
     from: f64,
     to: f64,
 }
@@ -27,6 +28,14 @@ pub(super) fn svg(scenes: &[Scene], view: &View) -> Result<String, TraceError> {
         Group::new().set("font-family", "Helvetica, Arial, sans-serif").set("font-size", TEXT).set("fill", INK);
     let mut y = 14.0;
     let heading = view.title.as_deref().or(scenes.first().map(|scene| scene.machine)).unwrap_or_default();
+    let figure = Figure::of_all(scenes);
+    if let (Some(figure), true) = (&figure, view.only != Some(Part::Rows)) {
+        y = figure::draw(figure, &mut body, heading, y);
+    } else if view.only == Some(Part::Figure) {
+        let what = format!("the cases of {heading} have no figure, only rows over time");
+        return Err(TraceError { line: 0, fault: Fault::whole(what) });
+    }
+    let scenes = if view.only == Some(Part::Figure) { &[] } else { scenes };
     for (place, scene) in scenes.iter().enumerate() {
         let plot = Plot::new(scene, view, place)?;
         let title = if scenes.len() > 1 { format!("{heading} — case {}", place + 1) } else { heading.to_owned() };
@@ -61,12 +70,12 @@ impl<'a> Plot<'a> {
         Ok(Self { scene, from: float(from) / per_cycle, to: float(to) / per_cycle })
     }
 
-    fn x(&self, cycle: f64) -> f64 {
+    pub(super) fn x(&self, cycle: f64) -> f64 {
         LEFT + (cycle - self.from) / (self.to - self.from) * (RIGHT - LEFT)
     }
 
     /// The part of a span that is in view, in pixels.
-    fn clip(&self, from: u64, to: u64) -> Option<(f64, f64)> {
+    pub(super) fn clip(&self, from: u64, to: u64) -> Option<(f64, f64)> {
         let (from, to) = (float(from).max(self.from), float(to).min(self.to));
         (from < to).then(|| (self.x(from), self.x(to)))
     }
@@ -117,7 +126,12 @@ impl<'a> Plot<'a> {
             body.append(text(&format!("{}", round(value)), x, foot + 18.0, "middle"));
             value += step;
         }
-        body.append(text(&format!("time, {}", self.scene.unit.name), LEFT - 12.0, foot + 18.0, "end"));
+        body.append(text(
+            &format!("{}, {}", self.scene.unit.axis, self.scene.unit.name),
+            LEFT - 12.0,
+            foot + 18.0,
+            "end",
+        ));
     }
 
     fn lane(&self, body: &mut Group, lane: &Lane, y: f64) {
@@ -127,7 +141,7 @@ impl<'a> Plot<'a> {
         }
         let (mut curves, mut bars, mut dimensions) = (false, false, false);
         for mark in &lane.marks {
-            curves |= matches!(mark, Mark::Curve { .. });
+            curves |= matches!(mark, Mark::Curve { .. } | Mark::Band { .. });
             bars |= matches!(mark, Mark::Bar { .. });
             dimensions |= matches!(mark, Mark::Dimension { .. });
         }
@@ -156,7 +170,16 @@ impl<'a> Plot<'a> {
                     self.dimension(body, (*from, *to), text, y + height - below, &mut written);
                 }
                 Mark::Sign { at, sign } => self.sign(body, *at, *sign, y + height - 3.0),
-                Mark::Curve { points, tone, top } => self.curve(body, points, *tone, *top, (y + 8.0, y + height - 8.0)),
+                Mark::Curve { points, tone, scale } => {
+                    self.curve(body, points, *tone, *scale, (y + 8.0, y + height - 8.0));
+                }
+                Mark::Band { points, tone, scale } => {
+                    self.band(body, points, *tone, *scale, (y + 8.0, y + height - 8.0));
+                }
+                Mark::Tick { from, to, tone, hint } => {
+                    self.tick(body, (*from, *to), *tone, hint, (y + 4.0, y + height - 4.0));
+                }
+                Mark::Letters { from, text } => self.letters(body, *from, text, y + height - 5.0),
                 Mark::Steps { points, top } => self.steps(body, points, *top, (y + 16.0, y + height - 7.0)),
             }
         }
@@ -230,71 +253,6 @@ impl<'a> Plot<'a> {
         }
     }
 
-    fn curve(&self, body: &mut Group, steps: &[(u64, Option<f64>)], tone: Tone, top: f64, rows: (f64, f64)) {
-        let (high, low) = rows;
-        let height = |value: f64| low - value.clamp(0.0, top) / top * (low - high);
-        if tone == Tone::Limit {
-            // The scale belongs to the row: it is drawn with the first curve.
-            let step = axis_step(top / 4.0);
-            let mut value = 0.0;
-            while value <= top {
-                body.append(line(LEFT, height(value), RIGHT, height(value), FAINT));
-                body.append(
-                    text(&format!("{}", round(value)), LEFT - 4.0, height(value) - 2.0, "end").set("font-size", 11),
-                );
-                value += step;
-            }
-        }
-        let mut piece: Vec<(f64, f64)> = Vec::new();
-        let ends = steps.iter().skip(1).map(|step| step.0).chain([self.scene.cycles]);
-        let mut pieces = Vec::new();
-        for ((from, value), to) in steps.iter().zip(ends) {
-            match (value, self.clip(*from, to)) {
-                (Some(value), Some((left, right))) => piece.extend([(left, height(*value)), (right, height(*value))]),
-                _ => pieces.push(std::mem::take(&mut piece)),
-            }
-        }
-        pieces.push(piece);
-        for piece in pieces.iter().filter(|piece| !piece.is_empty()) {
-            let mut curve = polyline(piece).set("stroke", paint(tone).edge).set("stroke-width", 1.8);
-            if tone == Tone::Limit {
-                curve = curve.set("stroke-dasharray", "7 3");
-            }
-            body.append(curve);
-        }
-    }
-
-    /// A staircase, with each number over its step; where there is none, a gap.
-    fn steps(&self, body: &mut Group, steps: &[(u64, Option<u8>)], top: u8, rows: (f64, f64)) {
-        let (high, low) = rows;
-        let height = |number: u8| low - f64::from(number.min(top)) / f64::from(top.max(1)) * (low - high);
-        let ends = steps.iter().skip(1).map(|step| step.0).chain([self.scene.cycles]);
-        let (mut stair, mut written): (Vec<(f64, f64)>, _) = (Vec::new(), LEFT);
-        let mut stairs = Vec::new();
-        for ((from, number), to) in steps.iter().zip(ends) {
-            let Some((left, right)) = self.clip(*from, to) else { continue };
-            let Some(number) = *number else {
-                stairs.push(std::mem::take(&mut stair));
-                continue;
-            };
-            let y = height(number);
-            body.append(rectangle(left, y, right, low).set("fill", "#e4e8ee"));
-            stair.extend([(left, y), (right, y)]);
-            let content = number.to_string();
-            let half = width(&content) / 2.0;
-            let middle = f64::midpoint(left, right);
-            // A number that would stand on its neighbour is left out: the height says it.
-            if middle - half >= written {
-                body.append(text(&content, middle, y - 3.0, "middle"));
-                written = middle + half + 2.0;
-            }
-        }
-        stairs.push(stair);
-        for stair in stairs.iter().filter(|stair| !stair.is_empty()) {
-            body.append(polyline(stair).set("stroke", INK).set("stroke-width", 1.6));
-        }
-    }
-
     fn legend(&self, body: &mut Group, mut y: f64) -> f64 {
         let mut x = LEFT;
         let curves =
@@ -302,7 +260,10 @@ impl<'a> Plot<'a> {
         let marks = || self.scene.lanes.iter().flat_map(|lane| &lane.marks);
         for (tone, name) in &self.scene.legend {
             let used = marks().any(|mark| match mark {
-                Mark::Bar { tone: used, .. } | Mark::Curve { tone: used, .. } => used == tone,
+                Mark::Bar { tone: used, .. }
+                | Mark::Tick { tone: used, .. }
+                | Mark::Band { tone: used, .. }
+                | Mark::Curve { tone: used, .. } => used == tone,
                 _ => false,
             });
             if !used {
@@ -314,8 +275,8 @@ impl<'a> Plot<'a> {
                 y += 20.0;
             }
             let paint = paint(*tone);
-            if curves && matches!(tone, Tone::Signal | Tone::Limit) {
-                let dashes = if *tone == Tone::Limit { "7 3" } else { "none" };
+            if curves && matches!(tone, Tone::Signal | Tone::Limit | Tone::Code) {
+                let dashes = dashes(*tone);
                 body.append(
                     line(x, y - 4.0, x + 18.0, y - 4.0, paint.edge)
                         .set("stroke-width", 1.8)
@@ -355,7 +316,7 @@ fn lane_height(lane: &Lane) -> f64 {
 }
 
 /// 1, 2 or 5 times a power of ten, at least `least` and at least 1.
-fn axis_step(least: f64) -> f64 {
+pub(super) fn axis_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.max(1.0).log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= least).unwrap_or(10.0 * power)
 }

@@ -26,10 +26,20 @@ pub(super) fn paint(tone: Tone) -> Paint {
         Tone::All => ("#f7c8c2", "#a01b10", INK),
         Tone::Emergency => ("#f2a39b", "#a01b10", INK),
         Tone::Limit => ("#ffffff", "#a01b10", INK),
+        Tone::Code => ("#ffffff", "#1f5f99", INK),
         Tone::Blank => ("#ffffff", "#777777", "#444444"),
         Tone::Difference => ("#d7191c", "#7a0000", "#ffffff"),
     };
     Paint { fill, edge, ink }
+}
+
+/// How a curve of this tone is broken.
+pub(super) fn dashes(tone: Tone) -> &'static str {
+    match tone {
+        Tone::Limit => "7 3",
+        Tone::Code => "2 3",
+        _ => "none",
+    }
 }
 
 pub(super) fn sign_at(body: &mut Group, x: f64, y: f64, sign: Sign) {

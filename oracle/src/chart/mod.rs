@@ -7,8 +7,15 @@
 pub mod aspect;
 pub mod block;
 mod draw;
+pub mod figure;
 mod ink;
+pub mod pattern;
+pub mod permitted;
+pub mod position;
+mod record;
 pub mod supervision;
+pub mod telegram;
+mod value;
 mod wave;
 
 use crate::trace::{Replies, Trace, TraceError};
@@ -34,12 +41,16 @@ pub struct Scene {
     pub signals: Vec<Signal>,
     /// Where the record differs from the kernel, as spans of cycles.
     pub differences: Vec<(u64, u64)>,
+    /// A figure over something else than time; it stands above the rows.
+    pub figure: Option<figure::Figure>,
 }
 
-/// The unit of the time axis.
+/// The unit of the axis below the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
-    /// Its name: "ms" or "cycles".
+    /// What the axis shows: "time" or "place".
+    pub axis: &'static str,
+    /// Its name: "ms", "cycles" or "bits".
     pub name: &'static str,
     /// How many there are in one logic cycle.
     pub per_cycle: u32,
@@ -108,8 +119,35 @@ pub enum Mark {
         points: Vec<(u64, Option<f64>)>,
         /// How it is drawn.
         tone: Tone,
-        /// The highest value of the row's scale.
-        top: f64,
+        /// The row's scale.
+        scale: Scale,
+    },
+    /// Everything between two values over time: steps of `(cycle, (lower, upper))`, None where there is nothing.
+    Band {
+        /// The pairs, each from its cycle on.
+        points: Vec<(u64, Option<(f64, f64)>)>,
+        /// How it is filled.
+        tone: Tone,
+        /// The row's scale.
+        scale: Scale,
+    },
+    /// A short coloured span without a text.
+    Tick {
+        /// The first cycle.
+        from: u64,
+        /// The cycle after the last.
+        to: u64,
+        /// Its colour.
+        tone: Tone,
+        /// What it stands for.
+        hint: String,
+    },
+    /// A letter for each cycle.
+    Letters {
+        /// The cycle of the first.
+        from: u64,
+        /// The letters.
+        text: String,
     },
     /// A whole number over time: steps of `(cycle, number)`, with each number written at its step. None: there is none.
     Steps {
@@ -118,6 +156,15 @@ pub enum Mark {
         /// The highest number of the row's scale, 1 or more.
         top: u8,
     },
+}
+
+/// The range of a row's values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The lowest value.
+    pub bottom: f64,
+    /// The highest value, above the lowest.
+    pub top: f64,
 }
 
 /// What a colour stands for.
@@ -141,6 +188,8 @@ pub enum Tone {
     Emergency,
     /// A limit.
     Limit,
+    /// What an analog code says.
+    Code,
     /// A section reported occupied because a train is heard in it.
     Detected,
     /// A section reported occupied for the tail of a train ahead.
@@ -193,6 +242,17 @@ pub struct View {
     pub from: Option<u64>,
     /// The last instant, in the chart's unit.
     pub to: Option<u64>,
+    /// The part that is drawn; without it all.
+    pub only: Option<Part>,
+}
+
+/// A part of a chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The figure over distance.
+    Figure,
+    /// The rows over time.
+    Rows,
 }
 
 /// The timing chart of a trace as an SVG document, its cases one below the other.

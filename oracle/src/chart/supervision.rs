@@ -1,7 +1,7 @@
 //! The timing chart of speed supervision: the two speeds as curves, the brake below. It counts no time, so the axis
 //! is in logic cycles.
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
+use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
 use crate::kmh::Kmh;
 use crate::machine::supervision::{Brake, Config, Supervised};
 use crate::machine::{Cycle, Machine};
@@ -20,7 +20,7 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
             "Highest plausible speed {} km/h, release margin {} km/h. A speed is drawn over the cycle in which it was read; the brake stands from the end of the cycle on.",
             config.maximum_km_h, config.release_margin_km_h
         )],
-        unit: Unit { name: "cycles", per_cycle: 1 },
+        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
         cycles: end,
         lanes: vec![speed_lane(&measured, &permitted), brake_lane("brake", &brakes, &brakes)],
         guides: changes(&brakes).into_iter().skip(1).map(|(at, _)| at + 1).collect(),
@@ -36,6 +36,7 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
             brake_signal("brake", &brakes),
         ],
         differences: Vec::new(),
+        figure: None,
     };
     let differ = spans(brakes.iter().zip(&recorded).map(|(kernel, said)| kernel != said));
     scene.differences = differ.into_iter().filter(|span| span.2).map(|(from, to, _)| (from + 1, to + 1)).collect();
@@ -57,7 +58,8 @@ fn speed_lane(measured: &[Option<Kmh>], permitted: &[Option<Kmh>]) -> Lane {
     let plausible =
         measured.iter().chain(permitted).flatten().map(|speed| speed.0).filter(|tenths| (0..=6000).contains(tenths));
     let top = (f64::from(plausible.max().unwrap_or(0)) / 10.0 * 1.1).max(10.0);
-    let curve = |speeds: &[Option<Kmh>], tone| Mark::Curve { points: numbers(speeds), tone, top };
+    let scale = Scale { bottom: 0.0, top };
+    let curve = |speeds: &[Option<Kmh>], tone| Mark::Curve { points: numbers(speeds), tone, scale };
     Lane {
         label: "speed, km/h".to_owned(),
         first: true,

@@ -2,7 +2,11 @@
 
 pub mod aspect;
 pub mod block;
+pub mod pattern;
+pub mod permitted;
+pub mod position;
 pub mod supervision;
+pub mod telegram;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
@@ -112,7 +116,15 @@ pub struct Kind {
 }
 
 /// Every machine of this oracle.
-pub const KINDS: &[Kind] = &[kind::<aspect::Aspect>(), kind::<supervision::Supervised>(), kind::<block::Counted>()];
+pub const KINDS: &[Kind] = &[
+    kind::<aspect::Aspect>(),
+    kind::<supervision::Supervised>(),
+    kind::<block::Counted>(),
+    kind::<telegram::Codec>(),
+    kind::<pattern::Braking>(),
+    kind::<permitted::Permitting>(),
+    kind::<position::Positioned>(),
+];
 
 /// The machine of that name.
 pub fn find(name: &str) -> Option<&'static Kind> {

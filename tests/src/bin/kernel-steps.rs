@@ -1,9 +1,9 @@
 //! Steps a machine of the kernel as often as it is told, with busy input, and prints what it put out last: for counting
-//! instructions. `kernel-steps aspect|block COUNT`
+//! instructions. `kernel-steps MACHINE COUNT`
 
 use std::process::ExitCode;
 
-use atc_tests::{traffic, workload};
+use atc_tests::{reception, traffic, workload};
 
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
@@ -11,8 +11,13 @@ fn main() -> ExitCode {
     match (arguments.first().map(String::as_str), count) {
         (Some("aspect"), Some(count)) => println!("{count} steps, at last {:?}", workload::run(count)),
         (Some("block"), Some(count)) => println!("{count} steps, at last {:?}", traffic::run_block(count)),
+        (Some("permitted"), Some(count)) => println!("{count} steps, at last {:?}", reception::run_permitted(count)),
+        (Some("position"), Some(count)) => println!("{count} steps, at last {:?}", reception::run_position(count)),
+        (Some("deframer"), Some(count)) => println!("{count} steps, {} telegrams", reception::run_deframer(count)),
         _ => {
-            eprintln!("kernel-steps: expected `aspect` or `block`, and a number of steps");
+            eprintln!(
+                "kernel-steps: expected `aspect`, `block`, `permitted`, `position` or `deframer`, and a number of steps"
+            );
             return ExitCode::FAILURE;
         }
     }

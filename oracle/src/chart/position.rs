@@ -1,0 +1,140 @@
+//! The timing chart of the train's position: the interval as a band, the truth if it is given, its width, and the levels.
+
+use super::record;
+use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
+use crate::decimal::{Decibels, Metres};
+use crate::machine::position::{Config, Output, Positioned};
+use crate::machine::{Cycle, Machine};
+
+/// An interval in metres.
+type Ends = Option<(f64, f64)>;
+
+#[expect(clippy::cast_precision_loss, reason = "a length of 2^53 mm is not drawn")]
+fn metres(length: Metres) -> f64 {
+    length.0 as f64 / 1000.0
+}
+
+#[expect(clippy::cast_precision_loss, reason = "levels have 16 bits")]
+fn decibels(level: Decibels) -> f64 {
+    level.0 as f64 / 100.0
+}
+
+fn ends(output: Output) -> Ends {
+    output.interval_m.map(|[nearest, farthest]| (metres(nearest), metres(farthest)))
+}
+
+/// What stands while the cycles run: nothing before the first output, then each from the end of its cycle on.
+fn standing<T: Clone + PartialEq>(values: impl ExactSizeIterator<Item = Option<T>>) -> Vec<(u64, Option<T>)> {
+    let length = values.len();
+    changes(std::iter::once(None).chain(values).take(length))
+}
+
+/// Lays out a case.
+pub(crate) fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
+    let intervals: Vec<_> = cycles.iter().map(|cycle| ends(cycle.output)).collect();
+    let truths: Vec<_> = cycles.iter().map(|cycle| cycle.step.truth_m.map(metres)).collect();
+    let widths: Vec<_> =
+        intervals.iter().map(|interval| interval.map(|(nearest, farthest)| farthest - nearest)).collect();
+    let outside = intervals.iter().zip(&truths).filter(|(interval, truth)| match (interval, truth) {
+        (Some((nearest, farthest)), Some(truth)) => truth < nearest || farthest < truth,
+        _ => false,
+    });
+    let outside = outside.count();
+    let mut notes = vec![format!(
+        "Levels measured to ±{} dB, noise floor {} dB, {} dB to {} dB added; table over {} m. Levels are drawn over the cycle in which they were measured; all else stands from the end of the cycle on.",
+        config.tolerance_db,
+        config.floor_db,
+        config.correction_db[0],
+        config.correction_db[1],
+        Metres(config.table.spacing_m.0 * 16),
+    )];
+    if truths.iter().any(Option::is_some) {
+        notes.push(match outside {
+            0 => "The truth is in the interval whenever there is one.".to_owned(),
+            count => format!("THE TRUTH IS OUTSIDE THE INTERVAL IN {count} CYCLES: a level was off by more than the tolerance, or the table or a movement was wrong."),
+        });
+    }
+    let mut scene = Scene {
+        machine: Positioned::NAME,
+        notes,
+        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
+        cycles: cycles.len() as u64,
+        lanes: lanes(cycles, &intervals, &truths, &widths),
+        guides: Vec::new(),
+        legend: vec![
+            (Tone::Detected, "interval"),
+            (Tone::Signal, "truth; second level"),
+            (Tone::Limit, "width; first level"),
+            (Tone::Dropped, "unknown"),
+        ],
+        signals: signals(cycles, &intervals, &truths),
+        differences: Vec::new(),
+        figure: None,
+    };
+    let said = cycles.iter().map(|cycle| cycle.recorded.filter(|said| *said != cycle.output));
+    let texts = said.map(|said| {
+        said.map(|said| match said.interval_m {
+            None => "unknown".to_owned(),
+            Some([nearest, farthest]) => format!("{nearest} to {farthest} m"),
+        })
+    });
+    record::differences(&mut scene, 1, texts);
+    scene
+}
+
+fn lanes(
+    cycles: &[Cycle<Positioned>],
+    intervals: &[Ends],
+    truths: &[Option<f64>],
+    widths: &[Option<f64>],
+) -> Vec<Lane> {
+    let farthest = intervals.iter().flatten().map(|ends| ends.1).chain(truths.iter().flatten().copied());
+    let scale = Scale { bottom: 0.0, top: farthest.fold(10.0, f64::max) * 1.05 };
+    let mut place = vec![Mark::Band { points: standing(intervals.iter().copied()), tone: Tone::Detected, scale }];
+    if truths.iter().any(Option::is_some) {
+        place.push(Mark::Curve { points: standing(truths.iter().copied()), tone: Tone::Signal, scale });
+    }
+    let width = Scale { bottom: 0.0, top: widths.iter().flatten().copied().fold(5.0, f64::max) * 1.1 };
+    let width = Mark::Curve { points: standing(widths.iter().copied()), tone: Tone::Limit, scale: width };
+    let levels = [|cycle: &Cycle<Positioned>| cycle.step.first_db, |cycle: &Cycle<Positioned>| cycle.step.second_db];
+    let heard = levels.iter().flat_map(|level| cycles.iter().filter_map(level)).map(decibels);
+    let (least, most) = heard.fold((f64::MAX, f64::MIN), |(least, most), level| (least.min(level), most.max(level)));
+    let scale =
+        if least <= most { Scale { bottom: least - 2.0, top: most + 2.0 } } else { Scale { bottom: -1.0, top: 0.0 } };
+    let levels = levels.into_iter().zip([Tone::Limit, Tone::Signal]).map(|(level, tone)| {
+        let points = changes(cycles.iter().map(level)).into_iter().map(|(at, level)| (at, level.map(decibels)));
+        Mark::Curve { points: points.collect(), tone, scale }
+    });
+    let unknown = spans(std::iter::once(true).chain(intervals.iter().map(Option::is_none)).take(intervals.len()));
+    let unknown = unknown.into_iter().filter(|span| span.2).map(|(from, to, _)| Mark::Bar {
+        from,
+        to,
+        tone: Tone::Dropped,
+        texts: vec!["unknown".to_owned(), "?".to_owned()],
+    });
+    let lane = |label: &str, height, marks| Lane { label: label.to_owned(), first: true, height, marks };
+    vec![
+        lane("distance, m", 260, place),
+        lane("position", 26, unknown.collect()),
+        lane("width, m", 100, vec![width]),
+        lane("levels, dB", 120, levels.collect()),
+    ]
+}
+
+fn signals(cycles: &[Cycle<Positioned>], intervals: &[Ends], truths: &[Option<f64>]) -> Vec<Signal> {
+    let real = |name: &str, values| Signal { name: name.to_owned(), values: Values::Real(values) };
+    let level = |name, level: fn(&Cycle<Positioned>) -> Option<Decibels>| {
+        let levels = changes(cycles.iter().map(level)).into_iter();
+        real(name, levels.map(|(at, level)| (at, level.map(decibels))).collect())
+    };
+    let mut all = vec![
+        level("first_db", |cycle| cycle.step.first_db),
+        level("second_db", |cycle| cycle.step.second_db),
+        real("nearest_m", standing(intervals.iter().map(|ends| ends.map(|ends| ends.0)))),
+        real("farthest_m", standing(intervals.iter().map(|ends| ends.map(|ends| ends.1)))),
+    ];
+    if truths.iter().any(Option::is_some) {
+        all.push(real("truth_m", standing(truths.iter().copied())));
+    }
+    all
+}
