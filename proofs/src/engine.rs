@@ -28,6 +28,18 @@ pub fn any_u32<E: Engine + ?Sized>(engine: &mut E, what: &'static str, likely: R
     u32::from(high) << 16 | u32::from(engine.word(what, likely))
 }
 
+/// An arbitrary number of up to 8 bits.
+pub fn any_byte<E: Engine + ?Sized>(engine: &mut E, what: &'static str, likely: RangeInclusive<u16>) -> u8 {
+    let word = engine.word(what, likely);
+    engine.assume(word <= 0xFF);
+    word.to_le_bytes()[0]
+}
+
+/// An arbitrary yes (an odd word) or no.
+pub fn any_flag<E: Engine + ?Sized>(engine: &mut E, what: &'static str) -> bool {
+    engine.word(what, 0..=1) & 1 == 1
+}
+
 /// CBMC, on the crate compiled to WebAssembly: the four primitives are imports.
 #[cfg(engine = "cbmc")]
 #[allow(unsafe_code)]

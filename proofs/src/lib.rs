@@ -15,14 +15,19 @@ mod engine;
 
 pub mod aspect;
 pub mod block;
+pub mod code;
 pub mod duplex;
+pub mod pattern;
+pub mod permitted;
+pub mod position;
 pub mod supervision;
+pub mod telegram;
 pub mod time;
 
 #[cfg(kani)]
 mod contracts;
 
-pub use engine::{Engine, any_u32};
+pub use engine::{Engine, any_byte, any_flag, any_u32};
 pub use harness::{Harness, Point};
 
 /// The ranks of the aspect machine in the harnesses whose size is a parameter; 4 unless the environment variable
@@ -42,4 +47,15 @@ pub const fn bound(aspects: usize) -> &'static str {
 }
 
 /// All harnesses, module by module.
-pub const HARNESSES: &[&[Harness]] = &[time::ALL, aspect::ALL, supervision::ALL, block::ALL, duplex::ALL];
+pub const HARNESSES: &[&[Harness]] = &[
+    time::ALL,
+    aspect::ALL,
+    supervision::ALL,
+    block::ALL,
+    telegram::ALL,
+    code::ALL,
+    pattern::ALL,
+    permitted::ALL,
+    position::ALL,
+    duplex::ALL,
+];

@@ -9,7 +9,7 @@ mod line;
 mod report;
 mod reset;
 
-use crate::{Engine, Harness};
+use crate::{Engine, Harness, any_byte, any_flag};
 use atc_kernel::block::{Block, Fault, Hold, Input, Output, Parts, SectionSet, State, Status, TrainCount, step};
 use atc_kernel::time::Ticks;
 
@@ -42,17 +42,6 @@ pub const ALL: &[Harness] = &[
     blk_total::HARNESS,
     blk_machine::HARNESS,
 ];
-
-/// An arbitrary number of up to 8 bits.
-fn any_byte<E: Engine + ?Sized>(e: &mut E, what: &'static str, likely: core::ops::RangeInclusive<u16>) -> u8 {
-    let word = e.word(what, likely);
-    e.assume(word <= 0xFF);
-    word.to_le_bytes()[0]
-}
-
-fn any_flag<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> bool {
-    e.word(what, 0..=1) & 1 == 1
-}
 
 /// An arbitrary hold.
 fn any_hold<E: Engine + ?Sized>(e: &mut E, what: &'static str, likely: u16) -> Option<Hold> {

@@ -1,0 +1,238 @@
+//! The counter: TEL-6 and TEL-7.
+
+use super::{any_bits, any_header};
+use crate::{Engine, any_byte, any_flag};
+use atc_kernel::Machine;
+use atc_kernel::telegram::{Deframer, Header, Judgement, Reception, Sequence, SequenceError, Stream, Window};
+use atc_kernel::time::Ticks;
+
+/// Arbitrary parameters.
+pub(crate) fn any_sequence<E: Engine + ?Sized>(e: &mut E) -> Option<Sequence> {
+    let (window, run) = (any_byte(e, "window", 1..=3), any_byte(e, "run", 1..=2));
+    let sequence = Sequence::new(window, run, Ticks(e.word("memory (cycles)", 1..=4)));
+    e.assume(sequence.is_ok());
+    sequence.ok()
+}
+
+/// An arbitrary header, or none.
+pub(crate) fn any_heard<E: Engine + ?Sized>(e: &mut E) -> Option<Header> {
+    let (section, counter) = any_header(e);
+    any_flag(e, "a telegram (odd: yes)").then_some(Header { section, counter })
+}
+
+/// An arbitrary state of a stream, valid or not.
+pub(crate) fn any_bits_of_stream<E: Engine + ?Sized>(e: &mut E) -> Stream {
+    let last = any_heard(e);
+    let in_order = any_byte(e, "advances in a row", 0..=2);
+    let age = Ticks(e.word("age (cycles)", 0..=3));
+    // What is likely is valid: without a last telegram the rest is 0.
+    match last {
+        None if any_flag(e, "nothing remembered (odd: nor a number)") => Stream::EMPTY,
+        _ => Stream { last, in_order, age },
+    }
+}
+
+/// An arbitrary valid state of a stream.
+fn any_stream<E: Engine + ?Sized>(e: &mut E, sequence: Sequence) -> Stream {
+    let stream = any_bits_of_stream(e);
+    e.assume(stream.is_valid(&sequence));
+    stream
+}
+
+harness! {
+    /// A telegram is used if and only if it and as many before it as the run each advanced the counter by 1 to the window, in
+    /// one section and without a silence as long as the memory. The history is the observer's.
+    t_tel_6(e)
+    theorem "T-TEL-6";
+    requirements ["TEL-6", "GEN-1"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Used: "used if and only if the observer counts as many proper advances in a row as the run",
+        Nothing: "nothing is judged if and only if nothing came",
+        Observer: "the state is what the observer knows: the last telegram, its age, and its advances up to the run",
+        Valid: "a valid state leads to a valid one",
+    }
+    covers {
+        Used: "a telegram is used",
+        Wrapped: "a telegram is used whose counter went from 255 to 0",
+        Skipped: "a telegram beyond the window",
+        Forgotten: "a stream is forgotten",
+        OtherSection: "a telegram of another section",
+    }
+    {
+        let Some(sequence) = any_sequence(e) else { return };
+        let before = any_stream(e, sequence);
+        // Ghosts: the observer's count of proper advances in a row, and the time since the last telegram.
+        let advances = e.word("advances in a row, all of them", 0..=3);
+        let silent = e.word("cycles since the last telegram", 0..=6);
+        e.assume(advances < u16::MAX && silent < u16::MAX);
+        let run = u16::from(sequence.run());
+        let up_to_run = |advances: u16| if advances < run { advances } else { run };
+        let knows = |stream: &Stream, advances: u16, silent: u16| match stream.last {
+            Some(_) => u16::from(stream.in_order) == up_to_run(advances) && stream.age.0 == silent && silent < sequence.memory().0,
+            None => silent >= sequence.memory().0,
+        };
+        e.assume(knows(&before, advances, silent));
+        let heard = any_heard(e);
+        let (after, judgement) = sequence.step(before, heard);
+
+        let now = silent + 1;
+        let (mut advances_after, mut silent_after) = (advances, now);
+        let mut proper = false;
+        if let Some(header) = heard {
+            if let (Some(last), true) = (before.last, now < sequence.memory().0) {
+                let ahead = (i32::from(header.counter.0) - i32::from(last.counter.0)).rem_euclid(256);
+                proper = header.section == last.section && 1 <= ahead && ahead <= i32::from(sequence.window());
+            }
+            advances_after = if proper { advances + 1 } else { 0 };
+            silent_after = 0;
+        }
+        e.claim(Claim::Used as u32, (judgement == Judgement::Accepted) == (heard.is_some() && advances_after >= run));
+        e.claim(Claim::Nothing as u32, (judgement == Judgement::Nothing) == heard.is_none());
+        let last = if heard.is_some() { heard } else { before.last.filter(|_| now < sequence.memory().0) };
+        e.claim(Claim::Observer as u32, knows(&after, advances_after, silent_after) && after.last == last);
+        e.claim(Claim::Valid as u32, after.is_valid(&sequence));
+        e.cover(Cover::Used as u32, judgement == Judgement::Accepted);
+        let wrapped = matches!((before.last, heard), (Some(last), Some(header)) if last.counter.0 == 255 && header.counter.0 == 0);
+        e.cover(Cover::Wrapped as u32, wrapped && judgement == Judgement::Accepted);
+        let same = matches!((before.last, heard), (Some(last), Some(header)) if last.section == header.section);
+        e.cover(Cover::Skipped as u32, same && !proper && now < sequence.memory().0);
+        e.cover(Cover::Forgotten as u32, before.last.is_some() && after.last.is_none());
+        e.cover(Cover::OtherSection as u32, heard.is_some() && before.last.is_some() && !same);
+    }
+}
+
+harness! {
+    /// A telegram that repeats the last counter, or one that is up to 128 older, is not used, and after it as many advances as
+    /// the run are needed again. So a transmitter that repeats one telegram, or a delayed one, is not listened to.
+    t_tel_6_repeated(e)
+    theorem "T-TEL-6";
+    requirements ["TEL-6"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Repeated: "a telegram with the counter of the last one, or 1 to 128 behind it, is refused",
+        Again: "no advance counts after it",
+        First: "the first telegram of a section, and the first one after a silence as long as the memory, are refused",
+    }
+    covers {
+        Same: "the same counter again",
+        Older: "an older counter",
+    }
+    {
+        let Some(sequence) = any_sequence(e) else { return };
+        let before = any_stream(e, sequence);
+        let Some(header) = any_heard(e) else { return e.assume(false) };
+        let (after, judgement) = sequence.step(before, Some(header));
+        let (mut repeated, mut same, mut first) = (false, false, true);
+        if let Some(last) = before.last {
+            same = header == last;
+            let behind = (i32::from(last.counter.0) - i32::from(header.counter.0)).rem_euclid(256);
+            repeated = header.section == last.section && behind <= 128;
+            first = header.section != last.section || u32::from(before.age.0) + 1 >= u32::from(sequence.memory().0);
+        }
+        e.claim(Claim::Repeated as u32, !repeated || judgement == Judgement::Refused);
+        e.claim(Claim::Again as u32, !(repeated || first) || after.in_order == 0);
+        e.claim(Claim::First as u32, !first || judgement == Judgement::Refused);
+        e.cover(Cover::Same as u32, same);
+        e.cover(Cover::Older as u32, repeated && !same);
+    }
+}
+
+harness! {
+    /// The constructor accepts exactly what TEL-7 allows.
+    tel_7(e)
+    theorem "T-TEL-6";
+    requirements ["TEL-7"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Exact: "accepted if and only if the window is 1 to 127, the run 1 to 15 and the memory 1 to 60 000 cycles; kept as asked",
+        Told: "the error names a rule that is broken",
+    }
+    covers {
+        Accepted: "parameters are accepted",
+        Refused: "parameters are refused",
+    }
+    {
+        let (window, run) = (any_byte(e, "window", 0..=130), any_byte(e, "run", 0..=16));
+        let memory = e.word("memory (cycles)", 0..=60);
+        let result = Sequence::new(window, run, Ticks(memory));
+        let right = (1..=127).contains(&window) && (1..=15).contains(&run) && (1..=60_000).contains(&memory);
+        let kept = |kept: &Sequence| kept.window() == window && kept.run() == run && kept.memory().0 == memory;
+        e.claim(Claim::Exact as u32, result.is_ok() == right && result.as_ref().map_or(true, kept));
+        let told = match result {
+            Ok(_) => true,
+            Err(SequenceError::NoWindow) => window == 0,
+            Err(SequenceError::WindowTooWide) => window > 127,
+            Err(SequenceError::NoRun) => run == 0,
+            Err(SequenceError::RunTooLong) => run > 15,
+            Err(SequenceError::NoMemory) => memory == 0,
+            Err(SequenceError::MemoryTooLong) => memory > 60_000,
+        };
+        e.claim(Claim::Told as u32, told);
+        e.cover(Cover::Accepted as u32, right);
+        e.cover(Cover::Refused as u32, !right);
+    }
+}
+
+harness! {
+    /// A stream begins unheard, which is a valid state from which no telegram is used at once.
+    tel_sequence(e)
+    theorem "T-TEL-6";
+    requirements ["TEL-6", "GEN-1"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Start: "the initial state is unheard and valid; its first telegram is refused and remembered",
+        Order: "nothing is below refused, and refused below accepted; nothing is the safe output",
+    }
+    covers {
+        Heard: "a first telegram",
+    }
+    {
+        let Some(sequence) = any_sequence(e) else { return };
+        let start = sequence.initial();
+        let heard = any_heard(e);
+        let (after, judgement) = sequence.step(start, heard);
+        let first = judgement != Judgement::Accepted && after.last == heard && after.in_order == 0;
+        e.claim(Claim::Start as u32, start == Stream::EMPTY && start.is_valid(&sequence) && first);
+        let order = Judgement::Nothing < Judgement::Refused && Judgement::Refused < Judgement::Accepted;
+        e.claim(Claim::Order as u32, order && Sequence::SAFE == Judgement::Nothing);
+        e.cover(Cover::Heard as u32, heard.is_some());
+    }
+}
+
+harness! {
+    /// A bit time of the deframer and a cycle of a stream end from any state, valid or not.
+    tel_total(e)
+    theorem "T-TEL-6";
+    requirements ["GEN-2"];
+    assumptions [];
+    bound "";
+    cases 1;
+    claims {
+        Deframer: "a bit time ends, in a valid window",
+        Stream: "a cycle ends, and judges nothing if and only if nothing came",
+    }
+    covers {
+        Invalid: "neither state is one that occurs",
+    }
+    {
+        let Some(sequence) = any_sequence(e) else { return };
+        let stream = any_bits_of_stream(e);
+        let heard = any_heard(e);
+        let (_, judgement) = sequence.step(stream, heard);
+        e.claim(Claim::Stream as u32, (judgement == Judgement::Nothing) == heard.is_none());
+        let reception = if any_flag(e, "bit (odd: 1)") { Reception::One } else { Reception::Zero };
+        let window = Window::from_memory(u128::from(e.word("window above its bits", 0..=9)) << 106 | any_bits(e, "window"));
+        let (after, _) = Deframer.step(window, reception);
+        e.claim(Claim::Deframer as u32, after.is_valid());
+        e.cover(Cover::Invalid as u32, !stream.is_valid(&sequence) && !window.is_valid());
+    }
+}
