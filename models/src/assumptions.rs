@@ -110,4 +110,44 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         text: "The number of a reset is that of the trains in the block, all clear of its ends.",
         without: "With one missed detection a train that was left out is reported free.",
     },
+    Assumption {
+        id: "limits-reach-over-the-border",
+        text: "The limit of a section holds from where its main telegrams are used for the first time, and that of the section behind is enough until then.",
+        without: "With the last telegram of the section behind the train is permitted more than the lower limit ahead.",
+    },
+    Assumption {
+        id: "odometer-bound",
+        text: "The train has moved no farther than the odometer says.",
+        without: "The stopping point is taken to be farther away than it is.",
+    },
+    Assumption {
+        id: "stop-point-life",
+        text: "The ground keeps a stretch free that it has withdrawn, and does not rely on a restriction, for the life of the telegrams that said otherwise, and for as long as a telegram waits before it is sent and after it has arrived.",
+        without: "A train that hears nothing still runs on the old point or the old limit.",
+    },
+    Assumption {
+        id: "transmitter-does-not-loop",
+        text: "A transmitter never repeats several telegrams in turn; it may repeat its last one.",
+        without: "A loop of more telegrams than the run is used for ever; a shorter one once, and beyond the life.",
+    },
+    Assumption {
+        id: "sub-data-worst",
+        text: "No sub telegram of the line carries a steeper fall or a lower limit than the train assumes.",
+        without: "Before a section's sub telegram is there the train is permitted more than its fall or its limit allows.",
+    },
+    Assumption {
+        id: "fix-of-the-section-heard",
+        text: "Where main telegrams of the section behind are still heard no distance to the exit of the section ahead is measured.",
+        without: "It is added to what the telegram of the section behind allows.",
+    },
+    Assumption {
+        id: "margin-covers-the-crossing",
+        text: "The margin covers what the nose moves from the last bit of a main telegram in the rail to the cycle in which the telegram is used.",
+        without: "A telegram of the section behind is taken as if the nose had passed the exit in the last cycle at the earliest.",
+    },
+    Assumption {
+        id: "line-is-told",
+        text: "The train is told of the kind of line in the cycle in which its nose passes the border.",
+        without: "Missing telegrams are taken for normal, and the train runs on its code past the stopping point.",
+    },
 ];

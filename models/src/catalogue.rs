@@ -8,6 +8,7 @@ use crate::line::{COARSE, DEFAULT, EARLY, FINE, LATE, Line, SHORTEST};
 use atc_kernel::aspect::Acceptance;
 
 mod block;
+mod permitted;
 mod reception;
 
 /// Every model over the kernel's machine.
@@ -17,6 +18,7 @@ pub fn catalogue() -> Vec<Entry> {
     entries.extend(reception::entries());
     entries.extend(bursts());
     entries.extend(block::entries());
+    entries.extend(permitted::entries());
     entries
 }
 

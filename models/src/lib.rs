@@ -11,6 +11,7 @@
 //! | [`reception`] | ground, channel and train: the exposure to a stale aspect |
 //! | [`bursts`] | how few bursts keep a stale aspect displayed for ever |
 //! | [`block`] | trains, tails, borders and faults of block counting |
+//! | [`permitted`] | the permitted speed: two kinds of line, lost and old telegrams, distances |
 //! | [`spin`] | the second opinion: models in Promela, searched by SPIN |
 //! | [`replay`] | what the models of aspect acceptance have in common, and their traces |
 //! | [`claimed`] | the machine as claimed by the patent, to compare with |
@@ -29,6 +30,7 @@ pub mod comparison;
 pub mod interruption;
 pub mod line;
 mod outcome;
+pub mod permitted;
 mod pool;
 pub mod reception;
 pub mod replay;

@@ -6,6 +6,7 @@ use atc_models::{Agreement, Entry, Outcome, SecondOpinion, catalogue, check, exp
 use clap::{Parser, Subcommand};
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::io::{self, Write};
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -77,10 +78,7 @@ fn main() -> ExitCode {
             measure(threads(cores), usize::from(runs));
             Ok(true)
         }
-        Command::List => {
-            list();
-            Ok(true)
-        }
+        Command::List => list().map(|()| true),
         Command::Explore { name, address } => serve(&name, &address).map(|()| true),
     };
     match done {
@@ -93,9 +91,13 @@ fn main() -> ExitCode {
     }
 }
 
-fn list() {
-    for entry in catalogue() {
-        println!("{}\n  {}\n  {}", entry.name, entry.statement, entry.parameters);
+/// Prints the models. A reader that has read enough is no error.
+fn list() -> Result<(), String> {
+    let mut out = io::stdout().lock();
+    let print = |entry: Entry| writeln!(out, "{}\n  {}\n  {}", entry.name, entry.statement, entry.parameters);
+    match catalogue().into_iter().try_for_each(print) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(format!("cannot print: {error}")),
+        _ => Ok(()),
     }
 }
 

@@ -85,6 +85,37 @@ const UNIQUE_STATES: &[(&str, usize)] = &[
     ("border-unheard-on-disagreement", 2_779),
     ("border-detected-late-missed", 12_506),
     ("border-detected-early-missed", 10_026),
+    ("permitted-lines", 18_444),
+    ("permitted-lines-not-told", 41_457),
+    ("permitted-lines-conventional", 253),
+    ("permitted-loss", 18_269),
+    ("permitted-withdrawn", 101_454),
+    ("permitted-withdrawn-at-once", 68_790),
+    ("permitted-restriction", 2_498),
+    ("permitted-restriction-at-once", 2_202),
+    ("permitted-sub-late-gradient", 13_868),
+    ("permitted-sub-late-gradient-not-worst", 13_868),
+    ("permitted-sub-late-limit", 5_289),
+    ("permitted-sub-late-limit-not-lowest", 5_289),
+    ("permitted-border-no-margin", 2_805),
+    ("permitted-border-fix-of-any-cycle", 2_588),
+    ("permitted-border", 5_354),
+    ("permitted-border-delayed-no-margin", 6_115),
+    ("permitted-border-mixed", 2_684),
+    ("permitted-border-mixed-fix-ahead", 13_188),
+    ("permitted-border-limit", 1_224),
+    ("permitted-border-limit-at-once", 1_224),
+    ("permitted-odometer", 1_536),
+    ("permitted-odometer-short", 2_114),
+    ("permitted-position", 18_488),
+    ("permitted-frozen", 15_058),
+    ("permitted-frozen-at-once", 14_514),
+    ("permitted-alternating", 40_065),
+    ("permitted-alternating-life-alone", 34_059),
+    ("permitted-alternating-run-1", 50_519),
+    ("permitted-looping-run-2", 19_195),
+    ("permitted-wrap", 124_523),
+    ("permitted-wrap-at-once", 119_317),
 ];
 
 static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
@@ -138,7 +169,7 @@ fn names_are_unique_and_assumptions_are_known() {
 }
 
 fn is_requirement(id: &str) -> bool {
-    id.starts_with("ACC-") || id.starts_with("BLK-")
+    ["ACC-", "BLK-", "PER-"].iter().any(|part| id.starts_with(part))
 }
 
 #[test]

@@ -21,6 +21,16 @@ fn list_names_every_model() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_reader_that_has_read_enough_is_no_error() {
+    let (reader, writer) = std::os::unix::net::UnixStream::pair().expect("a pair of sockets");
+    drop(reader);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_models"));
+    let output = command.arg("list").stdout(std::os::fd::OwnedFd::from(writer)).output().expect("the command runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
 fn check_writes_what_it_found() {
     let file = std::env::temp_dir().join(format!("atc-models-{}.json", std::process::id()));
