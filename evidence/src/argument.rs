@@ -1,6 +1,6 @@
 //! The argument: goals bound to evidence, and the verdict of every node.
 
-use crate::case::{Conclusion, Condition, Defeater, Engine, Evidence, Node, NodeKind};
+use crate::case::{Conclusion, Condition, Defeater, Engine, Evidence, Kind, Node, NodeKind};
 use crate::data;
 use crate::error::Fault;
 use crate::verdict::Verdict;
@@ -283,7 +283,9 @@ pub fn conclusions(nodes: &[Node], evidence: &[Evidence], conditions: &[Conditio
                 .collect();
             let goal = format!("{} (“{}”)", root.id, root.text.trim_end_matches('.'));
             let mut sentence = verdict.conclusion(&goal, &worst, &bounds.into_iter().collect::<Vec<_>>());
-            if verdict.holds() && !conditions.is_empty() {
+            // What was measured was measured without them, and discharges none.
+            let measured = !under.is_empty() && under.iter().all(|one| one.kind == Kind::Measured);
+            if verdict.holds() && !conditions.is_empty() && !measured {
                 sentence = format!("{sentence} It holds under the conditions SRAC-1 to SRAC-{}.", conditions.len());
             }
             Conclusion { node: root.id.clone(), verdict, sentence }

@@ -48,6 +48,7 @@ pub fn evidence(id: &str, verdict: Verdict) -> Evidence {
             "harness" => Kind::Harness,
             "model" => Kind::Model,
             "mutant" => Kind::Mutant,
+            "measured" => Kind::Measured,
             _ => Kind::Test,
         },
         title: name.to_owned(),

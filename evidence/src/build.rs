@@ -8,7 +8,7 @@ use crate::hazard;
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::Opinion;
 use crate::inputs::tests::{self, Run};
-use crate::inputs::{faults, models, mutants, proofs, second};
+use crate::inputs::{faults, measured, models, mutants, proofs, second};
 use crate::open;
 use crate::plan::Plan;
 use crate::srac;
@@ -31,6 +31,8 @@ pub struct Results {
     pub no_outcome: String,
     /// What another checker says of the models.
     pub opinions: Vec<Opinion>,
+    /// What was measured of signal and position.
+    pub measured: measured::Run,
     /// The tests.
     pub tests: Run,
     /// What all of it belongs to.
@@ -56,6 +58,9 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     engines.push(second::engine(&second_opinions));
     let (killed, stale) = results.mutants.as_ref().map_or((None, false), |(all, stale)| (Some(all), *stale));
     evidence.extend(mutants::evidence(&plan.mutants, killed, stale));
+    let (targets, measurements) = measured::evidence(&results.measured);
+    engines.push(measured::engine(&targets, &measurements));
+    evidence.extend(targets);
     evidence.extend(suites(plan, &results.tests));
 
     let mut conditions = srac::conditions(&plan.data.assumptions, &plan.uses);
@@ -72,7 +77,9 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     let hazards = hazard::log(&plan.data.hazards, &nodes, &evidence, &conditions, &cut_sets);
     let mut case = Case {
         schema: SCHEMA,
-        title: "Train control kernel: aspect acceptance, speed supervision, two channels, block counting".to_owned(),
+        title: "Train control kernel: aspect acceptance, speed supervision, two channels, block counting, telegrams and codes, \
+                permitted speed, train position"
+            .to_owned(),
         conclusions: argument::conclusions(&nodes, &evidence, &conditions),
         status: Status::default(),
         open_items: Vec::new(),
@@ -90,6 +97,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
         cut_sets,
         failure_modes: faults::failure_modes(&results.outcomes),
         second_opinions,
+        measurements,
     };
     case.open_items = open::items(plan, &case);
     case.status = status(&case, required);
@@ -192,12 +200,14 @@ pub fn status(case: &Case, required: Required) -> Status {
                 }
                 Kind::Model => one.verdict == Verdict::ModelChecked,
                 Kind::Mutant => one.verdict == Verdict::Tested,
+                Kind::Measured => one.verdict == Verdict::Measured,
                 Kind::Test => true,
             };
             if !enough {
                 let wanted = match one.kind {
                     Kind::Harness => "not proved by the cbmc engine",
                     Kind::Model => "not checked",
+                    Kind::Measured => "not measured",
                     Kind::Mutant | Kind::Test => "not rejected by a theorem",
                 };
                 weak.entry((one.verdict, wanted)).or_default().push(one.id.clone());

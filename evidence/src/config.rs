@@ -3,6 +3,8 @@
 use crate::case::{Derived, Evidence, Kind, Line, LineTime};
 use crate::detection::{self, Detection, FileBlock, FileDetection};
 use crate::error::{Fault, line_of};
+use crate::permitted::{self, FileSection, FileSignal, Signal};
+use crate::position::{self, Calibration, FilePosition};
 use atc_kernel::aspect::{AspectTable, TableError, Times, TimesError, TimesMs};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::supervision::{Supervision, SupervisionError};
@@ -24,6 +26,12 @@ struct File {
     detection: Option<FileDetection>,
     #[serde(default, rename = "block")]
     blocks: Vec<FileBlock>,
+    #[serde(default)]
+    signal: Option<FileSignal>,
+    #[serde(default, rename = "section")]
+    sections: Vec<FileSection>,
+    #[serde(default)]
+    position: Option<FilePosition>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -56,6 +64,8 @@ pub struct Checked {
     table: AspectTable,
     supervision: Supervision,
     detection: Option<Detection>,
+    signal: Option<Signal>,
+    position: Option<Calibration>,
 }
 
 /// The patent's example, for a case without a line of one's own.
@@ -115,11 +125,15 @@ pub fn parse(source: &str, text: &str) -> Result<Checked, Fault> {
     })?;
     let supervision = supervision(&file, &at)?;
     let detection = detection::parse(source, &at, cycle, file.detection.as_ref(), &file.blocks)?;
+    let speed = |one: &Spanned<f64>| tenths(one, &at);
+    let signal = permitted::parse(&at, &speed, cycle, &table, file.signal.as_ref(), &file.sections)?;
+    let position = position::parse(&at, file.position.as_ref(), signal.as_ref().and_then(Signal::longest))?;
     let name = file.name.trim().to_owned();
     if name.is_empty() {
         return Err(Fault::new(&source, "the line has no name"));
     }
-    Ok(Checked { name, source: source.to_owned(), cycle, asked, times: checked, table, supervision, detection })
+    let source = source.to_owned();
+    Ok(Checked { name, source, cycle, asked, times: checked, table, supervision, detection, signal, position })
 }
 
 fn supervision(file: &File, at: &dyn Fn(std::ops::Range<usize>) -> String) -> Result<Supervision, Fault> {
@@ -167,6 +181,7 @@ impl Checked {
             aspects_km_h: self.table.speeds().iter().map(|speed| f64::from(speed.0) / 10.0).collect(),
             times: rows.map(|(symbol, name, asked, ticks)| self.time(symbol, name, asked, ticks)).into(),
             blocks: self.detection.as_ref().map_or_else(Vec::new, Detection::blocks),
+            sections: self.signal.as_ref().map_or_else(Vec::new, Signal::sections),
             derived: self.derived(),
             notes: self.notes(),
             theorems: evidence
@@ -258,6 +273,8 @@ impl Checked {
             "SUP-1, SUP-2",
         ));
         rows.extend(self.detection.iter().flat_map(Detection::derived));
+        rows.extend(self.signal.iter().flat_map(Signal::derived));
+        rows.extend(self.position.iter().flat_map(Calibration::derived));
         rows
     }
 
@@ -302,6 +319,8 @@ impl Checked {
             );
         }
         notes.extend(self.detection.iter().flat_map(Detection::notes));
+        notes.extend(self.signal.iter().flat_map(Signal::notes));
+        notes.extend(self.position.iter().flat_map(Calibration::notes));
         notes
     }
 
@@ -325,6 +344,8 @@ impl Checked {
             "SUP-3: the supervision parameters are accepted by the kernel's constructor".to_owned(),
         ];
         checks.extend(self.detection.iter().flat_map(Detection::checks));
+        checks.extend(self.signal.iter().flat_map(Signal::checks));
+        checks.extend(self.position.iter().flat_map(Calibration::checks));
         checks
     }
 

@@ -11,7 +11,7 @@ use std::time::Duration;
 /// The text cannot be written as XML.
 pub fn xml(case: &Case) -> Result<String, String> {
     let mut report = Report::new("safety-case");
-    for kind in [Kind::Harness, Kind::Model, Kind::Mutant, Kind::Test] {
+    for kind in [Kind::Harness, Kind::Model, Kind::Mutant, Kind::Measured, Kind::Test] {
         let mut suite = TestSuite::new(kind.word());
         for one in case.evidence.iter().filter(|one| one.kind == kind) {
             suite.add_test_case(whole(one));

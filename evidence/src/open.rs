@@ -84,6 +84,10 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
         let text = format!("The single fault \"{}\" is not safe: only a condition excludes it.", mode.fault);
         items.push(item(Severity::Note, &mode.model, text));
     }
+    for model in case.models.iter().filter(|model| model.charts.iter().any(|chart| chart.svg.is_empty())) {
+        let text = "The oracle cannot replay and draw its trace: see the caption.".to_owned();
+        items.push(item(Severity::Open, &model.id, text));
+    }
     grouped(items)
 }
 
@@ -129,6 +133,7 @@ pub fn plural(kind: Kind) -> &'static str {
         Kind::Harness => "theorem harnesses",
         Kind::Model => "models",
         Kind::Mutant => "wrong kernels",
+        Kind::Measured => "measured targets",
         Kind::Test => "test suites",
     }
 }

@@ -117,6 +117,9 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
             files.push((format!("traces/{name}-{number}.svg"), chart.svg.clone()));
         }
     }
+    for plot in &case.measurements.plots {
+        files.push((format!("plots/{}.svg", plot.name), format!("{}\n", plot.svg)));
+    }
     for set in &case.cut_sets {
         files.push((format!("traces/{}.jsonl", set.number), set.chart.trace.clone()));
         files.push((format!("traces/{}.svg", set.number), set.chart.svg.clone()));

@@ -8,7 +8,7 @@ use crate::data::{Data, Ratchet};
 use crate::error::Fault;
 use crate::hazard;
 use crate::inputs::requirements::{self, Citation, Requirement};
-use crate::inputs::{models, mutants, proofs};
+use crate::inputs::{measured, models, mutants, proofs};
 use crate::srac;
 use crate::trace;
 use std::collections::{BTreeMap, BTreeSet};
@@ -115,8 +115,11 @@ impl Plan {
         let data = &self.data;
         take(srac::check(&data.assumptions, &self.uses, &self.harnesses, &data.hazards));
         let known: Vec<_> = self.ids().into_iter().chain(self.tests_named()).collect();
-        let required: Vec<_> =
-            known.iter().filter(|id| id.starts_with("harness:") || id.starts_with("model:")).cloned().collect();
+        let required: Vec<_> = known
+            .iter()
+            .filter(|id| ["harness:", "model:", "measured:"].iter().any(|kind| id.starts_with(kind)))
+            .cloned()
+            .collect();
         take(argument::check(&data.argument, &known, &required));
         take(hazard::check(&data.hazards, &data.argument));
         let dangling = |at: &str, text: String| Err(vec![Fault::new(&at, text)]);
@@ -145,11 +148,13 @@ impl Plan {
         if faults.is_empty() { Ok(()) } else { Err(faults) }
     }
 
-    /// The ids of harnesses, models and mutants: the manifest, but for the tests.
+    /// The ids of harnesses, models, mutants and measured targets: the manifest, but for the tests.
     pub fn ids(&self) -> Vec<String> {
         let harnesses = self.harnesses.iter().map(|one| format!("harness:{}", one.name));
         let models = self.models.iter().map(|one| format!("model:{}", one.name));
-        harnesses.chain(models).chain(self.mutants.iter().map(|one| format!("mutant:{}", one.name))).collect()
+        let mutants = self.mutants.iter().map(|one| format!("mutant:{}", one.name));
+        let targets = measured::TARGETS.iter().map(|target| measured::id(target.name));
+        harnesses.chain(models).chain(mutants).chain(targets).collect()
     }
 
     /// The test suites that the argument or a technique names, and the whole of them.

@@ -104,7 +104,7 @@ fn every_verdict_has_its_level_and_every_rule_is_described() {
         let level = match verdict {
             Verdict::Failed | Verdict::Vacuous => "error",
             Verdict::Stale | Verdict::NotRun | Verdict::Undecided => "warning",
-            Verdict::Proved | Verdict::ProvedBounded | Verdict::ModelChecked | Verdict::Tested => {
+            Verdict::Proved | Verdict::ProvedBounded | Verdict::ModelChecked | Verdict::Tested | Verdict::Measured => {
                 assert_eq!(results(&document).len(), 0, "{verdict}");
                 continue;
             }

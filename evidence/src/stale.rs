@@ -3,7 +3,7 @@
 use crate::argument::{conclusions, resolve, roll_up};
 use crate::build::{Required, status};
 use crate::case::{Case, Kind, OpenItem, Severity};
-use crate::inputs::second::ENGINE;
+use crate::inputs::{measured, second};
 use crate::verdict::Verdict;
 
 /// Whether a change in this folder makes this kind of evidence stale.
@@ -12,6 +12,7 @@ fn touches(folder: &str, kind: Kind) -> bool {
         "kernel" | "Cargo.lock" => true,
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
+        "waveform" => matches!(kind, Kind::Measured | Kind::Test),
         "oracle" | "tests" | "evidence" => kind == Kind::Test,
         _ => false,
     }
@@ -64,8 +65,12 @@ pub fn mark(case: &mut Case, changed: &[String]) {
         }
     }
     for engine in case.engines.iter_mut().filter(|engine| engine.verdict.holds()) {
-        if changed.iter().any(|folder| touches(folder, if engine.name == ENGINE { Kind::Model } else { Kind::Harness }))
-        {
+        let kind = match engine.name.as_str() {
+            second::ENGINE => Kind::Model,
+            measured::ENGINE => Kind::Measured,
+            _ => Kind::Harness,
+        };
+        if changed.iter().any(|folder| touches(folder, kind)) {
             engine.verdict = Verdict::Stale;
         }
     }

@@ -47,7 +47,24 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
             one.verdict.to_string(),
         ]
     });
+    let measurements = case.measurements.figures.iter().map(|one| {
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        [
+            one.group.clone(),
+            one.name.clone(),
+            number(one.value),
+            one.unit.clone(),
+            number(one.theory),
+            number(one.at_most),
+            one.of.clone(),
+            one.evidence.clone().unwrap_or_default(),
+        ]
+    });
     let mut files = faults(case)?;
+    files.push((
+        "measurements.csv".to_owned(),
+        table(["group", "figure", "value", "unit", "theory", "at most", "of", "evidence"], measurements)?,
+    ));
     files.extend([
         (
             "hazards.csv".to_owned(),

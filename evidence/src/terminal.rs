@@ -10,7 +10,7 @@ use std::fmt::Write;
 pub fn summary(case: &Case) -> String {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_header(["evidence", "verdict", "what belongs with it", "seconds"]);
-    for one in case.evidence.iter().filter(|one| matches!(one.kind, Kind::Harness | Kind::Model)) {
+    for one in case.evidence.iter().filter(|one| matches!(one.kind, Kind::Harness | Kind::Model | Kind::Measured)) {
         let detail = one.reason.clone().unwrap_or_else(|| one.detail.clone());
         let detail: String = detail.chars().take(60).collect();
         table.add_row([
@@ -46,7 +46,9 @@ pub fn summary(case: &Case) -> String {
 fn cell(verdict: Verdict) -> Cell {
     let cell = Cell::new(verdict.word());
     match verdict {
-        Verdict::Proved | Verdict::ProvedBounded | Verdict::ModelChecked | Verdict::Tested => cell.fg(Color::Green),
+        Verdict::Proved | Verdict::ProvedBounded | Verdict::ModelChecked | Verdict::Tested | Verdict::Measured => {
+            cell.fg(Color::Green)
+        }
         Verdict::NotRun | Verdict::Stale => cell.fg(Color::Yellow),
         Verdict::Undecided | Verdict::Vacuous | Verdict::Failed => cell.fg(Color::Red).add_attribute(Attribute::Bold),
     }

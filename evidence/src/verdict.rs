@@ -18,6 +18,8 @@ pub enum Verdict {
     ModelChecked,
     /// It held for chosen inputs.
     Tested,
+    /// Figures of a simulation met their targets.
+    Measured,
     /// Nothing was run here.
     NotRun,
     /// There is a result, but it belongs to other sources than these.
@@ -26,17 +28,18 @@ pub enum Verdict {
     Undecided,
     /// A claim or a cover point cannot be reached, so the result says nothing.
     Vacuous,
-    /// There is a counterexample, a failed test or an unmet expectation.
+    /// There is a counterexample, a failed test, an unmet expectation or a missed target.
     Failed,
 }
 
 impl Verdict {
     /// All verdicts, the best first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Proved,
         Self::ProvedBounded,
         Self::ModelChecked,
         Self::Tested,
+        Self::Measured,
         Self::NotRun,
         Self::Stale,
         Self::Undecided,
@@ -51,7 +54,7 @@ impl Verdict {
 
     /// Whether it says that the claim holds, however strongly.
     pub fn holds(self) -> bool {
-        self <= Self::Tested
+        self <= Self::Measured
     }
 
     /// Whether a run with this verdict can never end well, whatever was required of it: something was tried, and it
@@ -72,6 +75,7 @@ impl Verdict {
             Self::ProvedBounded => "proved-bounded",
             Self::ModelChecked => "model-checked",
             Self::Tested => "tested",
+            Self::Measured => "measured",
             Self::NotRun => "not-run",
             Self::Stale => "stale",
             Self::Undecided => "undecided",
@@ -89,11 +93,12 @@ impl Verdict {
                 "every reachable state of a finite model was visited; states and parameters are printed"
             }
             Self::Tested => "it held for chosen inputs; says nothing about the others",
+            Self::Measured => "figures of a simulation met their targets; says nothing about other circumstances",
             Self::NotRun => "nothing was run here",
             Self::Stale => "the result belongs to other sources than these",
             Self::Undecided => "an engine was started and ended without a result",
             Self::Vacuous => "a claim or a cover point cannot be reached, so the result says nothing",
-            Self::Failed => "a counterexample, a failed test or an unmet expectation",
+            Self::Failed => "a counterexample, a failed test, an unmet expectation or a missed target",
         }
     }
 
@@ -112,6 +117,10 @@ impl Verdict {
             ),
             Self::Tested => format!(
                 "{goal} rests at its weakest point on tests ({named}). They show it for chosen inputs only.{within}"
+            ),
+            Self::Measured => format!(
+                "{goal} rests at its weakest point on measurements of a simulation ({named}). They show it for what was \
+                 simulated only.{within}"
             ),
             Self::NotRun => format!("{goal} is not shown: {named} has not been run."),
             Self::Stale => format!("{goal} is not shown: the result of {named} belongs to other sources."),
@@ -149,7 +158,8 @@ mod tests {
     #[test]
     fn the_order_is_the_documented_one() {
         assert!(Verdict::ALL.is_sorted());
-        assert!(Verdict::Tested.holds() && !Verdict::NotRun.holds() && !Verdict::Stale.holds());
+        assert!(Verdict::Tested.holds() && Verdict::Measured.holds() && Verdict::Tested < Verdict::Measured);
+        assert!(!Verdict::NotRun.holds() && !Verdict::Stale.holds());
         assert!(!Verdict::NotRun.is_defect() && Verdict::Undecided.is_defect() && Verdict::Vacuous.is_defect());
     }
 

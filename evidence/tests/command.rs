@@ -21,7 +21,8 @@ fn text(output: &Output) -> String {
 fn bare(out: &Path, more: &[&str]) -> Output {
     let out = out.to_str().expect("a path");
     let without = ["--no-provers", "--no-native", "--no-models", "--no-tests"];
-    safety_case(&[&["run", "--out", out], &without[..], more].concat())
+    let measured = if more.contains(&"--measurements") { &[][..] } else { &["--no-measurements"][..] };
+    safety_case(&[&["run", "--out", out], &without[..], measured, more].concat())
 }
 
 fn json(out: &Path) -> serde_json::Value {
@@ -56,6 +57,21 @@ fn a_case_without_results_says_so_and_fits_its_schema() {
     let verified = safety_case(&["verify", out.to_str().expect("a path")]);
     assert_eq!(verified.status.code(), Some(1));
     assert!(text(&verified).contains("the case is incomplete"));
+}
+
+#[test]
+fn a_measurement_without_figures_ends_the_run_badly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (out, empty) = (folder.path().join("case"), folder.path().join("measured"));
+    std::fs::create_dir(&empty).expect("a folder");
+    let run = bare(&out, &["--measurements", empty.to_str().expect("a path")]);
+    assert_eq!(run.status.code(), Some(1), "{}", text(&run));
+    assert!(text(&run).contains("measured:ber-coherent is undecided"), "{}", text(&run));
+    assert!(text(&run).contains("bench.json: No such file"), "{}", text(&run));
+    let page = std::fs::read_to_string(out.join("index.html")).expect("written");
+    assert!(page.contains("There are no figures."));
+    let both = bare(&out, &["--measurements", "here", "--no-measurements"]);
+    assert_eq!(both.status.code(), Some(2));
 }
 
 /// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.
@@ -178,7 +194,8 @@ fn a_changed_file_is_noticed_and_stale_results_are_marked() {
                 test result: ok. 3 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s\n";
     std::fs::write(&log, line).expect("written");
     let (path, log) = (out.to_str().expect("a path"), log.to_str().expect("a path"));
-    let run = safety_case(&["run", "--out", path, "--no-provers", "--no-native", "--no-models", "--test-results", log]);
+    let without = ["--no-provers", "--no-native", "--no-models", "--no-measurements"];
+    let run = safety_case(&[&["run", "--out", path, "--test-results", log], &without[..]].concat());
     // The argument names suites that are not in this log.
     assert!(text(&run).contains("the argument names this suite, and it is not in the run"), "{}", text(&run));
     let all = |case: &serde_json::Value| {

@@ -20,6 +20,8 @@ pub struct Line {
     pub times: Vec<LineTime>,
     /// The blocks of its train detection, from the low end; none if it has no block counting.
     pub blocks: Vec<LineBlock>,
+    /// The sections that its sub telegrams describe; none if it sends no telegrams, or they are not given.
+    pub sections: Vec<LineSection>,
     /// What follows: name, value, how it is computed.
     pub derived: Vec<Derived>,
     /// What the user should look at.
@@ -56,6 +58,20 @@ pub struct LineBlock {
     pub sections_m: Vec<u16>,
     /// The most trains that may be in it.
     pub max_trains: u8,
+}
+
+/// One section, as its sub telegrams describe it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineSection {
+    /// Its number on the line.
+    pub number: u16,
+    /// Its length in metres.
+    pub length_m: u16,
+    /// Its gradient in thousandths, negative where the train descends.
+    pub gradient_permille: i8,
+    /// The lower of its limits in km/h.
+    pub limit_km_h: f64,
 }
 
 /// A figure that follows from the parameters.

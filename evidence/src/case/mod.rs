@@ -2,6 +2,7 @@
 
 mod faults;
 mod line;
+mod measured;
 mod register;
 
 use crate::verdict::Verdict;
@@ -10,17 +11,18 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
-pub use line::{Derived, Line, LineBlock, LineTime};
+pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
+pub use measured::{Figure, Measurements, Plot};
 pub use register::{Condition, Hazard, Requirement, Technique, Tool};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 3.
+    /// The version of this shape: 4.
     pub schema: u32,
     /// What the case is about.
     pub title: String,
@@ -32,7 +34,7 @@ pub struct Case {
     pub conclusions: Vec<Conclusion>,
     /// What is not as it should be, the worst first.
     pub open_items: Vec<OpenItem>,
-    /// The theorems, models, mutants and tests.
+    /// The theorems, models, mutants, measured targets and tests.
     pub evidence: Vec<Evidence>,
     /// The engines: which ran, and how to run the others.
     pub engines: Vec<Engine>,
@@ -52,6 +54,8 @@ pub struct Case {
     pub failure_modes: Vec<FailureMode>,
     /// What another checker says of the models.
     pub second_opinions: Vec<SecondOpinion>,
+    /// What was measured of the signal, the receivers and the position.
+    pub measurements: Measurements,
     /// Techniques of EN 50716 Annex A and what is claimed of each.
     pub techniques: Vec<Technique>,
     /// Tools by class.
@@ -150,6 +154,8 @@ pub enum Kind {
     Model,
     /// A named wrong kernel: `tested` means killed.
     Mutant,
+    /// A target that measured figures must meet.
+    Measured,
     /// A suite of tests.
     Test,
 }
@@ -161,6 +167,7 @@ impl Kind {
             Self::Harness => "harness",
             Self::Model => "model",
             Self::Mutant => "mutant",
+            Self::Measured => "measured",
             Self::Test => "test",
         }
     }
@@ -170,7 +177,7 @@ impl Kind {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
-    /// `harness:…`, `model:…`, `mutant:…` or `test:…`.
+    /// `harness:…`, `model:…`, `mutant:…`, `measured:…` or `test:…`.
     pub id: String,
     /// What kind it is.
     pub kind: Kind,
@@ -246,7 +253,7 @@ pub struct EngineResult {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Engine {
-    /// `cbmc`, `kani`, `creusot`, `native`, `spin`.
+    /// `cbmc`, `kani`, `creusot`, `native`, `spin`, `waveform`.
     pub name: String,
     /// What it looks at.
     pub what: String,

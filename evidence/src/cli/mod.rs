@@ -81,6 +81,12 @@ pub struct Run {
     /// Do not search the models.
     #[arg(long)]
     no_models: bool,
+    /// Do not measure signal and position.
+    #[arg(long)]
+    no_measurements: bool,
+    /// The folder of a run of `waveform bench`, instead of running it.
+    #[arg(long, conflicts_with = "no_measurements")]
+    measurements: Option<PathBuf>,
     /// Do not run the tests.
     #[arg(long)]
     no_tests: bool,

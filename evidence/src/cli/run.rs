@@ -6,7 +6,7 @@ use crate::config;
 use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
 use crate::inputs::second::Opinion;
-use crate::inputs::{faults, mutants, provenance, second, tests};
+use crate::inputs::{faults, measured, mutants, provenance, second, tests};
 use crate::output::Folder;
 use crate::plan::{Plan, plan};
 use crate::prover;
@@ -78,6 +78,7 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         let stale = results.provenance.sources_sha256 != sources;
         killed = Some((results, stale));
     }
+    let measured = measurements(options, &root, &folder);
     let tests = suites(options, &root, &folder).map_err(one)?;
     // What changed while the engines ran is not what they saw.
     let after = provenance::collect(&root, sources).map_err(one)?;
@@ -93,7 +94,7 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let required = if options.require == Some(Require::Proved) { Required::Proved } else { Required::NoDefect };
     let mut case = build(
         &plan,
-        Results { campaigns, mutants: killed, outcomes, no_outcome, opinions, tests, provenance },
+        Results { campaigns, mutants: killed, outcomes, no_outcome, opinions, measured, tests, provenance },
         required,
     );
     if !changed.is_empty() {
@@ -149,6 +150,23 @@ fn opinions(threads: usize) -> Vec<Opinion> {
     let found = atc_models::second_opinions(threads).into_iter().map(Opinion::from).collect();
     bar.finish_and_clear();
     found
+}
+
+/// Signal and position, measured by the waveform package.
+fn measurements(options: &Run, root: &Path, folder: &Folder) -> measured::Run {
+    if let Some(path) = &options.measurements {
+        return measured::read(path, &format!("read from {}", path.display()));
+    }
+    if options.no_measurements {
+        return measured::Run::NotRun("left out by --no-measurements".to_owned());
+    }
+    let bar = bar(1, "waveform");
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let raw = folder.stage().join("waveform");
+    let run = measured::run(root, &raw, Duration::from_secs(options.time_limit));
+    measured::tidy(&raw);
+    bar.finish_and_clear();
+    run
 }
 
 fn suites(options: &Run, root: &Path, folder: &Folder) -> Result<tests::Run, Fault> {

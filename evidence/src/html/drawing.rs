@@ -241,6 +241,7 @@ fn colours(verdict: Verdict) -> (&'static str, &'static str) {
         Verdict::ProvedBounded => ("#17566b", "#e2f1f6"),
         Verdict::ModelChecked => ("#35448f", "#e9ecfa"),
         Verdict::Tested => ("#5b4a86", "#efebf8"),
+        Verdict::Measured => ("#6b5410", "#faf3dc"),
         Verdict::NotRun => ("#c83a3a", "#ffffff"),
         Verdict::Stale => ("#8a4b00", "#fff4e0"),
         Verdict::Undecided | Verdict::Vacuous | Verdict::Failed => ("#b3261e", "#fbe0de"),

@@ -3,6 +3,7 @@
 mod argument;
 mod drawing;
 mod faults;
+mod measured;
 mod page_one;
 mod registers;
 mod report;
@@ -36,6 +37,7 @@ pub fn document(case: &Case) -> String {
                 (argument::render(case))
                 (theorems::render(case))
                 (registers::render(case))
+                (measured::render(case))
                 (report::ending(case))
             }
         }
@@ -62,6 +64,7 @@ fn contents() -> Markup {
         ("techniques", "4.11 Techniques", true),
         ("tools", "4.12 Tools", true),
         ("line", "4.13 Specific application", true),
+        ("measured", "4.14 Signal and position, measured", true),
         ("related", "5 Related safety cases", false),
         ("conclusion", "6 Conclusion", false),
         ("provenance", "7 Provenance", false),

@@ -119,8 +119,13 @@ fn open(case: &Case) -> Markup {
 }
 
 fn counts(case: &Case) -> Markup {
-    let names =
-        [("harness", "theorem harnesses"), ("model", "models"), ("mutant", "wrong kernels"), ("test", "test suites")];
+    let names = [
+        ("harness", "theorem harnesses"),
+        ("model", "models"),
+        ("mutant", "wrong kernels"),
+        ("measured", "measured targets"),
+        ("test", "test suites"),
+    ];
     html! {
         table.counts {
             @for (kind, name) in names {

@@ -4,7 +4,7 @@ use super::{badge, link, links};
 use crate::case::{Case, Line};
 use maud::{Markup, html};
 
-/// Sections 4.7 to 4.13.
+/// Sections 4.7 to 4.13; 4.14 follows in `measured`.
 pub fn render(case: &Case) -> Markup {
     html! {
         (hazards(case))
@@ -166,6 +166,19 @@ fn line(line: &Line) -> Markup {
                         td { @for (place, length) in block.sections_m.iter().enumerate() { @if place > 0 { ", " } (length) } " m" }
                         td.num { (block.sections_m.iter().copied().map(u32::from).sum::<u32>()) " m" }
                         td.num { (block.max_trains) }
+                    }
+                }
+            }
+        }
+        @if !line.sections.is_empty() {
+            table {
+                thead { tr { th { "Section" } th.num { "Length" } th.num { "Gradient" } th.num { "Limit" } } }
+                @for section in &line.sections {
+                    tr {
+                        td { strong { (section.number) } }
+                        td.num { (section.length_m) " m" }
+                        td.num { (section.gradient_permille) " ‰" }
+                        td.num { (section.limit_km_h) " km/h" }
                     }
                 }
             }

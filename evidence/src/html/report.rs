@@ -8,7 +8,7 @@ use maud::{Markup, html};
 pub fn definition(case: &Case) -> Markup {
     html! {
         h2 #system { "1 System definition" }
-        p { "The generic product is the kernel package " code { "atc-kernel" } ": four machines of an automatic train control \
+        p { "The generic product is the kernel package " code { "atc-kernel" } ": the machines of an automatic train control \
              system, each a pure and total function from state and input to state and output, without heap, clock, floating \
              point, unsafe code or dependency." }
         ul {
@@ -19,9 +19,13 @@ pub fn definition(case: &Case) -> Markup {
                 difference latches the safe output." }
             li { strong { "Block counting" } " (JPS5937270B2), on the ground: from the checks at the ends of a block and the detectors of its \
                 sections to the sections that are reported occupied; blocks chained to a line, with holds for the tails of trains." }
+            li { strong { "Telegrams, codes, permitted speed" } " (JP4845985B2), on board: from bits to telegrams with their check and counter, from \
+                code frequencies to speeds, and from both, the odometer and the distance to the exit to the one speed that is permitted." }
+            li { strong { "Train position" } " (JP4045174B2), on board: from the levels of two signals to an interval that contains the train, or unknown." }
         }
-        p { "Boundary: inputs are sets of detected aspects and speeds, check levels, detections and resets, once a logic cycle; outputs are the \
-             display, the brake command and the occupied sections. Receiver, antenna, brake, checks and detectors, hardware and operating system are outside; what is needed of them is in the "
+        p { "Boundary: inputs are sets of detected aspects and speeds, received bits, code frequencies and levels, the odometer, check levels, \
+             detections and resets, once a logic cycle; outputs are the display, the brake command, the permitted speed, the position and the \
+             occupied sections. Receiver, antenna, brake, checks and detectors, hardware and operating system are outside; what is needed of them is in the "
              a href="#conditions" { "application conditions" } "." }
         p { "The requirements are the " (case.requirements.len()) " sentences with MUST in " code { "spec/" } ", listed under "
             a href="#traceability" { "traceability" } ". The specific application of this document is " a href="#line" { (case.line.name) } "." }

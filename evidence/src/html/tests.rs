@@ -2,8 +2,8 @@
 
 use super::{document, headline};
 use crate::case::{
-    Case, Chart, Conclusion, CutSet, Derived, Evidence, Excluded, FailureMode, Kind, Line, OpenItem, Provenance,
-    SCHEMA, SecondOpinion, Severity, Status,
+    Case, Chart, Conclusion, CutSet, Derived, Evidence, Excluded, FailureMode, Kind, Line, Measurements, OpenItem,
+    Provenance, SCHEMA, SecondOpinion, Severity, Status,
 };
 use crate::verdict::Verdict;
 
@@ -51,6 +51,7 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
         cut_sets: vec![],
         failure_modes: vec![],
         second_opinions: vec![],
+        measurements: Measurements::default(),
         techniques: vec![],
         tools: vec![],
         line: Line {
@@ -60,6 +61,7 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
             aspects_km_h: vec![25.0],
             times: vec![],
             blocks: vec![],
+            sections: vec![],
             derived: Vec::<Derived>::new(),
             notes: vec![],
             theorems: vec![],

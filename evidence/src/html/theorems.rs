@@ -26,7 +26,7 @@ fn engines(case: &Case) -> Markup {
         h3 #engines { "4.2 Engines" }
         p { "All provers run the same harnesses. A harness has the best result of any engine, unless one refutes it. Two engines \
              that look at different things and agree are worth more than one. For the models " code { "spin" } " is the second engine \
-             beside Stateright (4.5)." }
+             beside Stateright (4.5); " code { "waveform" } " measures, and proves nothing (4.14)." }
         table {
             thead { tr { th { "Engine" } th { "Looks at" } th { "Worst result" } th { "Results" } th { "To run it" } } }
             @for engine in &case.engines {

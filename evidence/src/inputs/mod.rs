@@ -1,6 +1,7 @@
 //! What the case is made of, read and judged piece by piece.
 
 pub mod faults;
+pub mod measured;
 pub mod models;
 pub mod mutants;
 pub mod proofs;

@@ -1,0 +1,286 @@
+//! What the waveform package measures: run, read, and judged against the targets that the argument names.
+//!
+//! Figures are measured and never proved. Those without a target are shown only; no target is a time.
+
+mod bench;
+mod figures;
+
+pub use bench::Bench;
+pub use figures::shown;
+
+use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
+use crate::verdict::Verdict;
+use std::fs::{self, File};
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+/// The waveform package, as an engine.
+pub const ENGINE: &str = "waveform";
+const WHAT: &str = "generator, channel, receivers and the track as a line, in floating point, outside the kernel";
+const COMMAND: &str = "cargo run --release -p atc-waveform --bin waveform -- bench --quick --out FOLDER";
+
+/// A target that figures must meet.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name: evidence `measured:` and this.
+    pub name: &'static str,
+    /// What is shown when it is met.
+    pub statement: &'static str,
+}
+
+const fn target(name: &'static str, statement: &'static str) -> Target {
+    Target { name, statement }
+}
+
+/// Every target there is: part of the manifest before anything runs.
+pub const TARGETS: &[Target] = &[
+    target("ber-coherent", "Without codes, bits are received within 1 dB of theory at every ratio."),
+    target("ber-offset", "With carriers that are 1 Hz off, bits are received within 1 dB of theory at every ratio."),
+    target("ber-under-code", "Under the codes' modulation, bits are received within 1 dB of theory at every ratio."),
+    target("wrong-telegrams", "No telegram is heard that was not sent, at any ratio of signal to noise."),
+    target("wrong-speeds", "No speed is heard that was not sent, at any ratio of signal to noise."),
+    target("false-codes", "No pair of codes names a speed in noise alone."),
+    target(
+        "level-tolerance",
+        "A level that is measured from samples is within 0.1 dB, from 30 dB of signal over noise.",
+    ),
+    target("position-inside", "Inside the limits of its table no interval is without the train."),
+    target("position-samples", "Nor is one whose levels were measured from samples, with noise."),
+];
+
+/// The evidence id of a target.
+pub fn id(name: &str) -> String {
+    format!("measured:{name}")
+}
+
+/// What became of the run.
+#[derive(Clone, Debug)]
+pub enum Run {
+    /// Nobody asked for it, or it cannot be built here.
+    NotRun(String),
+    /// It was started and gave no result.
+    Failed(String),
+    /// It ran.
+    Ran(Box<Ran>),
+}
+
+/// A run that ended.
+#[derive(Clone, Debug)]
+pub struct Ran {
+    /// Its figures.
+    pub bench: Bench,
+    /// Its plots: name and drawing.
+    pub plots: Vec<(String, String)>,
+    /// `run here`, or the folder.
+    pub source: String,
+    /// Seconds; 0 if it is not known.
+    pub seconds: f64,
+}
+
+/// Builds the package at `root`, runs it with its results in `folder`, for at most `limit`, and reads them.
+pub fn run(root: &Path, folder: &Path, limit: Duration) -> Run {
+    let cargo = || {
+        let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.current_dir(root).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    let package = ["--release", "--quiet", "--package", "atc-waveform", "--bin", "waveform"];
+    match cargo().arg("build").args(package).status() {
+        Err(error) => return Run::NotRun(format!("cargo cannot be started: {error}")),
+        Ok(status) if !status.success() => {
+            return Run::NotRun("atc-waveform cannot be built here: see `cargo build -p atc-waveform`".to_owned());
+        }
+        Ok(_) => {}
+    }
+    if let Err(error) = fs::create_dir_all(folder) {
+        return Run::Failed(format!("{}: {error}", folder.display()));
+    }
+    let log = folder.join("bench.log");
+    let start = Instant::now();
+    let mut command = cargo();
+    command.arg("run").args(package).args(["--", "bench", "--quick", "--out"]).arg(folder);
+    if let Ok(file) = File::create(&log) {
+        if let Ok(second) = file.try_clone() {
+            command.stdout(second);
+        }
+        command.stderr(file);
+    }
+    match ended(&mut command, limit) {
+        Err(reason) => Run::Failed(reason),
+        Ok(status) if !status.success() => {
+            let text = fs::read_to_string(&log).unwrap_or_default();
+            let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
+            Run::Failed(format!("the measurement ended with an error: {last}"))
+        }
+        Ok(_) => match read(folder, "run here") {
+            Run::Ran(ran) => Run::Ran(Box::new(Ran { seconds: start.elapsed().as_secs_f64(), ..*ran })),
+            other => other,
+        },
+    }
+}
+
+/// Waits for a command, for at most `limit`, and ends it then.
+fn ended(command: &mut Command, limit: Duration) -> Result<ExitStatus, String> {
+    let mut child = command.spawn().map_err(|error| format!("the measurement cannot be started: {error}"))?;
+    let start = Instant::now();
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return Ok(status),
+            Err(error) => return Err(format!("the measurement cannot be waited for: {error}")),
+            Ok(None) if start.elapsed() > limit => {
+                // Ended or not, there is no result.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(format!("no result within {} s", limit.as_secs()));
+            }
+            Ok(None) => std::thread::sleep(Duration::from_millis(50)),
+        }
+    }
+}
+
+/// Reads the folder of a run.
+pub fn read(folder: &Path, source: &str) -> Run {
+    let path = folder.join("bench.json");
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) => return Run::Failed(format!("{}: {error}", path.display())),
+    };
+    let bench = match serde_json::from_str(&text) {
+        Ok(bench) => bench,
+        Err(error) => return Run::Failed(format!("bench.json is not what `waveform bench` writes: {error}")),
+    };
+    let mut plots = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if path.extension().is_some_and(|end| end == "svg") {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            match fs::read_to_string(&path) {
+                Ok(svg) => plots.push((name, svg)),
+                Err(error) => return Run::Failed(format!("{}: {error}", path.display())),
+            }
+        }
+    }
+    plots.sort();
+    Run::Ran(Box::new(Ran { bench, plots, source: source.to_owned(), seconds: 0.0 }))
+}
+
+/// Leaves nothing of the raw results but the figures and the log: the plots are in the case.
+pub fn tidy(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let keep = ["bench.json", "bench.log"].iter().any(|name| path.ends_with(name));
+        if !keep {
+            // What stays is in the way of nobody.
+            let _ = fs::remove_file(&path);
+        }
+    }
+}
+
+/// The evidence of every target, and what was measured.
+pub fn evidence(run: &Run) -> (Vec<Evidence>, Measurements) {
+    let bare = |verdict: Verdict, reason: &str| {
+        let all = TARGETS.iter().map(|target| one(target, verdict, String::new(), Some(reason.to_owned())));
+        (all.collect(), Measurements::default())
+    };
+    match run {
+        Run::NotRun(why) => bare(Verdict::NotRun, why),
+        Run::Failed(why) => bare(Verdict::Undecided, why),
+        Run::Ran(ran) => {
+            let figures = figures::all(&ran.bench);
+            let judged = TARGETS.iter().map(|target| {
+                let (verdict, detail, reason) = judge(target, &figures, &ran.bench);
+                one(target, verdict, detail, reason)
+            });
+            let evidence = judged.collect();
+            let plots = ran.plots.iter().map(|(name, svg)| Plot {
+                name: name.clone(),
+                caption: figures::caption(name),
+                svg: svg.get(svg.find("<svg").unwrap_or(0)..).unwrap_or_default().trim().to_owned(),
+            });
+            let measurements = Measurements {
+                source: ran.source.clone(),
+                conditions: figures::conditions(&ran.bench),
+                figures: figures.clone(),
+                plots: plots.collect(),
+                seconds: ran.seconds,
+            };
+            (evidence, measurements)
+        }
+    }
+}
+
+/// A target is met if each of its figures is there and not above it, and the run looked at something.
+fn judge(target: &Target, figures: &[Figure], bench: &Bench) -> (Verdict, String, Option<String>) {
+    let id = id(target.name);
+    let mine: Vec<_> = figures.iter().filter(|figure| figure.evidence.as_deref() == Some(&id)).collect();
+    let detail: Vec<_> =
+        mine.iter().map(|figure| format!("{} ({})", figures::shown(figure.value, &figure.unit), figure.of)).collect();
+    let detail = detail.join("; ");
+    if mine.is_empty() {
+        return (Verdict::Vacuous, detail, Some("no figure belongs to this target".to_owned()));
+    }
+    if let Some(why) = bench.contradiction(target.name) {
+        return (Verdict::Undecided, detail, Some(why));
+    }
+    if let Some(why) = bench.vacuous(target.name) {
+        return (Verdict::Vacuous, detail, Some(why));
+    }
+    for figure in mine {
+        let Some((value, limit)) = figure.value.zip(figure.at_most) else {
+            return (Verdict::Undecided, detail, Some(format!("{}: the run could not tell", figure.name)));
+        };
+        if value > limit {
+            let (value, limit) = (figures::shown(Some(value), &figure.unit), figures::shown(Some(limit), &figure.unit));
+            return (
+                Verdict::Failed,
+                detail,
+                Some(format!("{}: {value}, and at most {limit} is allowed", figure.name)),
+            );
+        }
+    }
+    (Verdict::Measured, detail, None)
+}
+
+fn one(target: &Target, verdict: Verdict, detail: String, reason: Option<String>) -> Evidence {
+    Evidence {
+        id: id(target.name),
+        kind: Kind::Measured,
+        title: target.name.to_owned(),
+        statement: target.statement.to_owned(),
+        at: None,
+        verdict,
+        detail,
+        reason,
+        requirements: Vec::new(),
+        assumptions: Vec::new(),
+        claims: Vec::new(),
+        covers: Vec::new(),
+        engines: Vec::new(),
+        killed_by: Vec::new(),
+        seconds: 0.0,
+        counterexample: None,
+    }
+}
+
+/// The package among the engines.
+pub fn engine(evidence: &[Evidence], measurements: &Measurements) -> Engine {
+    let mine: Vec<_> = evidence.iter().filter(|one| one.kind == Kind::Measured).collect();
+    let met = mine.iter().filter(|one| one.verdict == Verdict::Measured).count();
+    Engine {
+        name: ENGINE.to_owned(),
+        what: WHAT.to_owned(),
+        verdict: Verdict::worst(mine.iter().map(|one| one.verdict)).unwrap_or(Verdict::NotRun),
+        summary: if measurements.figures.is_empty() {
+            "no result".to_owned()
+        } else {
+            let (figures, plots) = (measurements.figures.len(), measurements.plots.len());
+            format!("{}: {met} of {} targets met; {figures} figures, {plots} plots", measurements.source, mine.len())
+        },
+        command: COMMAND.to_owned(),
+    }
+}
+
+#[cfg(test)]
+#[path = "measured_tests.rs"]
+mod tests;
