@@ -17,6 +17,7 @@ impl Metres {
 
 impl Millimetres {
     /// The whole metres in it; 65 535 if there are more.
+    #[inline]
     pub const fn whole_metres(self) -> Metres {
         let metres = self.0 / 1000;
         if metres > 0xFFFF {

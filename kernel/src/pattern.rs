@@ -52,6 +52,7 @@ impl Deceleration {
 }
 
 /// The highest speed from which a train stops within `distance`; at most [`MAX_SPEED`].
+#[inline]
 pub const fn pattern(deceleration: Deceleration, distance: Metres) -> KmhTenths {
     //= spec/pattern.md#pat-1-the-pattern
     //# The speed v MUST be the greatest, up to 409.5 km/h, with v² ≤ 2·b·d.
@@ -66,6 +67,7 @@ pub const ENERGY_END: u32 = 125 << 24;
 /// 1 m/s is 36 tenths of km/h, so 2·b·d is 2 · 36² / 1000 · b · d = 324·b·d / 125.
 #[cfg_attr(creusot, ensures(result@ < 2_097_152_000 && result@ <= 324 * deceleration.0@ * distance.0@))]
 #[cfg_attr(creusot, ensures(result@ == 2_097_151_999 || result@ == 324 * deceleration.0@ * distance.0@))]
+#[inline]
 pub const fn energy(deceleration: Deceleration, distance: Metres) -> u32 {
     let product = deceleration.0 as u32 * distance.0 as u32;
     // 324 times a product under 2²³ has 32 bits, and 324 times 2²³ is over the end.
@@ -80,6 +82,7 @@ pub const fn energy(deceleration: Deceleration, distance: Metres) -> u32 {
 #[cfg_attr(creusot, requires(energy@ < 2_097_152_000))]
 #[cfg_attr(creusot, ensures(125 * result@ * result@ <= energy@))]
 #[cfg_attr(creusot, ensures(energy@ < 125 * (result@ + 1) * (result@ + 1)))]
+#[inline]
 pub const fn root(energy: u32) -> u16 {
     let mut root = 0_u32;
     // 125 times its square.
@@ -95,10 +98,8 @@ pub const fn root(energy: u32) -> u16 {
         if spent + more <= energy {
             root += half;
             spent += more;
-            width -= half;
-        } else {
-            width = half;
         }
+        width -= half;
     }
     let [low, high, ..] = root.to_le_bytes();
     u16::from_le_bytes([low, high])

@@ -15,7 +15,7 @@ pub use state::{Fixed, State, Target};
 
 use crate::Machine;
 use crate::aspect::AspectId;
-use crate::distance::{Metres, Millimetres};
+use crate::distance::Millimetres;
 use crate::pattern::{Deceleration, pattern};
 use crate::speed::KmhTenths;
 use crate::telegram::{Gradient, Judgement, Main, SectionId, Sub};
@@ -90,7 +90,7 @@ pub struct Limits {
     /// How it slows down on the gradient that counts.
     pub deceleration: Deceleration,
     /// The distance to the stopping point, less the margin.
-    pub distance: Metres,
+    pub distance: Millimetres,
     /// The speed that the ground permits.
     pub ground: KmhTenths,
     /// The limit of the section.
@@ -222,7 +222,7 @@ impl State {
         let (gradient, limit) = self.of_section(permitted, target.section);
         Limits {
             deceleration: permitted.brake().on(gradient),
-            distance: target.to_stop.less(permitted.margin().millimetres()).whole_metres(),
+            distance: target.to_stop.less(permitted.margin().millimetres()),
             ground: target.limit,
             section: limit,
         }
@@ -246,8 +246,9 @@ impl State {
 
 impl Limits {
     /// The least of the pattern, the ground's speed and the section's limit.
+    #[inline]
     pub fn speed(self) -> KmhTenths {
-        pattern(self.deceleration, self.distance).min(self.ground).min(self.section)
+        pattern(self.deceleration, self.distance.whole_metres()).min(self.ground).min(self.section)
     }
 }
 

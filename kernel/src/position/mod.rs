@@ -10,7 +10,7 @@
 
 mod table;
 
-pub use table::{KNOTS, Millibels, SPANS, Spacing, Table, TableError, part};
+pub use table::{KNOTS, Millibels, Quotient, SPANS, Spacing, Span, Spans, Table, TableError, part};
 
 use crate::Machine;
 use crate::distance::Millimetres;
@@ -168,8 +168,9 @@ impl Position {
         self.correction
     }
 
-    /// The interval by the levels alone.
-    fn measured(&self, first: Option<Millibels>, second: Option<Millibels>) -> Option<Interval> {
+    /// The least and the greatest that the true difference can be, in hundredths of a decibel, with these levels; `None` if they
+    /// say nothing.
+    pub fn differences(&self, first: Option<Millibels>, second: Option<Millibels>) -> Option<(i32, i32)> {
         //= spec/position.md#pos-2-unknown
         //# The position MUST be unknown if a level is missing or under the noise floor.
         let (Some(first), Some(second)) = (first, second) else { return None };
@@ -182,6 +183,12 @@ impl Position {
         let off = 2 * i32::from(self.tolerance.0);
         let least = difference - off + i32::from(self.correction.least.0);
         let most = difference + off + i32::from(self.correction.most.0);
+        Some((least, most))
+    }
+
+    /// The interval by the levels alone.
+    fn measured(&self, first: Option<Millibels>, second: Option<Millibels>) -> Option<Interval> {
+        let (least, most) = self.differences(first, second)?;
         self.table.distances(least, most)
     }
 }

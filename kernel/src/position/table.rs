@@ -103,39 +103,71 @@ impl Table {
         self.lowest[span].0 < self.lowest[span + 1].0 && self.highest[span].0 < self.highest[span + 1].0
     }
 
-    /// The distances at which the difference can be from `least` to `most`, if they can be told.
-    pub(super) fn distances(&self, least: i32, most: i32) -> Option<Interval> {
-        // Only the two outermost spans matter: what is worked out of them comes after the loop, so that a prover sees it once.
+    /// The outermost spans in which the difference can be from `least` to `most`; `None` if there is none, or if they do not tell
+    /// where the train is.
+    pub fn spans(&self, least: i32, most: i32) -> Option<Spans> {
         let mut nearest = None;
         let mut farthest = None;
         let mut doubtful = false;
-        for span in 0..SPANS {
-            let low = [i32::from(self.lowest[span].0), i32::from(self.lowest[span + 1].0)];
-            let high = [i32::from(self.highest[span].0), i32::from(self.highest[span + 1].0)];
-            let possible = (high[0] >= least || high[1] >= least) && (low[0] <= most || low[1] <= most);
+        for number in 0..SPANS {
+            let low = Span { number, ends: [i32::from(self.lowest[number].0), i32::from(self.lowest[number + 1].0)] };
+            let high =
+                Span { number, ends: [i32::from(self.highest[number].0), i32::from(self.highest[number + 1].0)] };
+            let possible =
+                (high.ends[0] >= least || high.ends[1] >= least) && (low.ends[0] <= most || low.ends[1] <= most);
             //= spec/position.md#pos-6-curves-that-fall
             //# The position MUST be unknown if the curves do not both rise over every span in which the train can be.
-            doubtful |= possible && !self.rises(span);
-            nearest = if possible && nearest.is_none() { Some((span, high)) } else { nearest };
-            farthest = if possible { Some((span, low)) } else { farthest };
+            doubtful |= possible && !self.rises(number);
+            nearest = if possible && nearest.is_none() { Some(high) } else { nearest };
+            farthest = if possible { Some(low) } else { farthest };
         }
         //= spec/position.md#pos-7-the-ends-of-the-table
         //# The position MUST be unknown if the difference is above what the table has at its far end, or below what it has anywhere.
         let beyond = i32::from(self.lowest[SPANS].0) <= most;
         match (nearest, farthest) {
-            (Some((first, high)), Some((last, low))) if !doubtful && !beyond => Interval::new(
-                self.place(first, down(high, least, self.spacing)),
-                self.place(last, up(low, most, self.spacing)),
-            ),
+            (Some(nearest), Some(farthest)) if !doubtful && !beyond => Some(Spans { nearest, farthest }),
             _ => None,
         }
     }
 
-    /// The distance of `decimetres` after knot `span`.
-    fn place(&self, span: usize, decimetres: u32) -> Millimetres {
-        let knot = (0..span).fold(0, |distance, _| distance + self.spacing.decimetres());
-        Millimetres((knot + decimetres) * 100)
+    /// The distances at which the difference can be from `least` to `most`, if they can be told.
+    pub(super) fn distances(&self, least: i32, most: i32) -> Option<Interval> {
+        self.spans(least, most).and_then(|spans| spans.interval(least, most, self.spacing))
     }
+}
+
+/// A straight piece of one curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// The number of the knot at which it begins, 0 to 15.
+    pub number: usize,
+    /// The difference at its knots in hundredths of a decibel, the one nearer to the transmitter first; they fit 16 bits.
+    pub ends: [i32; 2],
+}
+
+/// The outermost spans in which a train can be; they may be the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spans {
+    /// The one nearest to the transmitter, of the curve of the highest differences.
+    pub nearest: Span,
+    /// The one farthest from it, of the curve of the lowest differences.
+    pub farthest: Span,
+}
+
+impl Spans {
+    /// From where the nearest span reaches `least` to where the farthest one exceeds `most`; `None` if that is the wrong way round.
+    pub fn interval(self, least: i32, most: i32, spacing: Spacing) -> Option<Interval> {
+        Interval::new(
+            place(self.nearest.number, down(self.nearest.ends, least, spacing), spacing),
+            place(self.farthest.number, up(self.farthest.ends, most, spacing), spacing),
+        )
+    }
+}
+
+/// The distance of `decimetres` after knot `number`.
+fn place(number: usize, decimetres: u32, spacing: Spacing) -> Millimetres {
+    let knot = (0..number).fold(0, |distance, _| distance + spacing.decimetres());
+    Millimetres((knot + decimetres) * 100)
 }
 
 /// How far into a span the straight line through `ends` reaches `level`, rounded down; 0 if it is not below it at the start.
@@ -166,20 +198,41 @@ fn up(ends: [i32; 2], level: i32, spacing: Spacing) -> u32 {
 #[cfg_attr(creusot, ensures(over@ * whole@ < (result@ + 1) * rise@))]
 pub const fn part(over: u32, rise: u32, whole: u32) -> u32 {
     let dividend = over * whole;
-    let mut quotient = 0_u32;
-    let mut product = 0_u32;
+    let mut found = Quotient { quotient: 0, product: 0 };
     // The quotient is in quotient .. quotient + width. The width halves twelve times.
     let mut width = 4096_u32;
-    #[cfg_attr(creusot, invariant(width@ >= 1 && quotient@ + width@ <= 4096))]
-    #[cfg_attr(creusot, invariant(product@ == quotient@ * rise@ && product@ <= dividend@))]
-    #[cfg_attr(creusot, invariant(dividend@ < (quotient@ + width@) * rise@))]
+    #[cfg_attr(creusot, invariant(width@ >= 1 && found.quotient@ + width@ <= 4096))]
+    #[cfg_attr(creusot, invariant(found.product@ == found.quotient@ * rise@ && found.product@ <= dividend@))]
+    #[cfg_attr(creusot, invariant(dividend@ < (found.quotient@ + width@) * rise@))]
     while width > 1 {
         let half = width / 2;
-        if product + half * rise <= dividend {
-            quotient += half;
-            product += half * rise;
-        }
+        found = found.digit(half, rise, dividend);
         width -= half;
     }
-    quotient
+    found.quotient
+}
+
+/// What a division has found so far.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quotient {
+    /// The quotient, rounded down to the digits that are found.
+    pub quotient: u32,
+    /// The quotient times the divisor.
+    pub product: u32,
+}
+
+impl Quotient {
+    /// Finds one binary digit, worth `half`, of `dividend / rise`. The product with `half` added to the quotient fits 32 bits.
+    #[cfg_attr(creusot, requires(self.quotient@ + half@ <= 4096 && half@ <= 2048 && rise@ < 131_072))]
+    #[cfg_attr(creusot, requires(self.product@ == self.quotient@ * rise@))]
+    #[cfg_attr(creusot, ensures(if self.product@ + half@ * rise@ <= dividend@ {
+        result.quotient@ == self.quotient@ + half@ && result.product@ == self.product@ + half@ * rise@
+    } else {
+        result == self
+    }))]
+    #[must_use]
+    pub const fn digit(self, half: u32, rise: u32, dividend: u32) -> Self {
+        let product = self.product + half * rise;
+        if product <= dividend { Self { quotient: self.quotient + half, product } } else { self }
+    }
 }
