@@ -86,7 +86,7 @@ const UNIQUE_STATES: &[(&str, usize)] = &[
     ("border-detected-late-missed", 12_506),
     ("border-detected-early-missed", 10_026),
     ("permitted-lines", 18_444),
-    ("permitted-lines-not-told", 41_457),
+    ("permitted-lines-not-told", 40_275),
     ("permitted-lines-conventional", 253),
     ("permitted-loss", 18_269),
     ("permitted-withdrawn", 101_454),

@@ -62,7 +62,7 @@ pub fn campaign(
     let ready = tools.map_err(|reason| (Verdict::NotRun, reason)).and_then(|tools| {
         let failed = |reason| (Verdict::Error, reason);
         selftest::check(&tools, options).map_err(failed)?;
-        let compiled = compile(&tools, &root, &folder, options.aspects).map_err(failed)?;
+        let compiled = compile(&tools, &root, &folder, options.aspects, &[]).map_err(failed)?;
         Ok((tools, compiled))
     });
     let results = match ready {

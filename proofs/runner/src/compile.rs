@@ -33,21 +33,32 @@ pub struct Compiled {
     folder: PathBuf,
 }
 
-/// Compiles the kernel and the harnesses whose sources are below `sources` (`kernel/src`, `proofs/src`) into `folder`.
+/// Compiles the kernel and the harnesses `only` (all of them if none is named) whose sources are below `sources` (`kernel/src`,
+/// `proofs/src`) into `folder`.
 ///
 /// # Errors
 /// What the compiler said.
-pub fn compile(tools: &Tools, sources: &Path, folder: &Path, aspects: usize) -> Result<Compiled, String> {
+pub fn compile(
+    tools: &Tools,
+    sources: &Path,
+    folder: &Path,
+    aspects: usize,
+    only: &[String],
+) -> Result<Compiled, String> {
     fresh(folder)?;
     let kernel = folder.join("libatc_kernel.rlib");
     let library = folder.join("libatc_proofs.a");
     rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &["--crate-type=rlib".to_owned()], aspects)?;
-    let options = [
+    let mut options = vec![
         "--crate-type=staticlib".to_owned(),
         "-Clto=fat".to_owned(),
         "--cfg=engine=\"cbmc\"".to_owned(),
         format!("--extern=atc_kernel={}", kernel.display()),
     ];
+    if !only.is_empty() {
+        options.push("--cfg=chosen".to_owned());
+        options.extend(only.iter().map(|name| format!("--cfg={name}")));
+    }
     rustc(tools, &sources.join("proofs/src/lib.rs"), &library, &options, aspects)?;
     Ok(Compiled { library, folder: folder.to_path_buf() })
 }

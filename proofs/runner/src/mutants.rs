@@ -129,7 +129,7 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
     copy(&root.join("kernel/src"), &sources.join("kernel/src"))?;
     copy(&root.join("proofs/src"), &sources.join("proofs/src"))?;
     crate::compile::write(&sources.join("kernel/src").join(&mutant.file), &changed(root, mutant)?)?;
-    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects)?;
+    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by)?;
     let mut killed = Vec::new();
     let mut reasons = Vec::new();
     for harness in select(&mutant.killed_by)? {
