@@ -147,11 +147,22 @@ impl Witness {
 
     /// For how long telegrams have been missing; None: for ever.
     fn missing(&self) -> Option<usize> {
-        let used = self.used_mains().last().map(|(cycle, _)| *cycle);
+        let stream: Vec<_> = self.mains().iter().map(|(cycle, _)| *cycle).collect();
+        let used = self.used_mains().last().map(|(cycle, _)| (*cycle, Self::sent(&stream, *cycle)));
         let border = (1..self.heard.len())
             .rev()
             .find(|at| self.line(*at) == LineKind::Digital && self.line(at - 1) == LineKind::Analog);
-        used.max(border).map(|since| self.now() - since)
+        let since = match (used, border) {
+            // A border under a target that still runs down changes nothing.
+            (Some((cycle, sent)), Some(border))
+                if cycle < border && border - sent > usize::from(self.settings.life.0) =>
+            {
+                border
+            }
+            (Some((_, sent)), _) => sent,
+            (None, border) => border?,
+        };
+        Some(self.now() - since)
     }
 
     fn hear(&mut self, heard: Heard) -> (Permission, Option<i128>) {

@@ -31,11 +31,17 @@ harness! {
         let half = 1_u32 << digit;
         let rise = any_u32(e, "rise (mB)", 1..=20);
         e.assume((1..1 << 17).contains(&rise));
+        let rise = rise & 0x1_FFFF;
         let (quotient, product) = (any_u32(e, "quotient", 0..=4), any_u32(e, "product", 0..=40));
         let dividend = any_u32(e, "dividend", 0..=90);
         let worth = rise << digit;
         // What is still open before the round is under twice the digit's worth. No quotient is above 4096, no product above 4096 · 2¹⁷.
-        e.assume(quotient <= 4096 && dividend <= 1 << 28 && product <= dividend && dividend - product < worth + worth);
+        let open = quotient <= 4096 && dividend <= 1 << 28 && product <= dividend && dividend - product < worth + worth;
+        e.assume(open);
+        // An engine that goes on after a broken assumption must not overflow.
+        if !open {
+            return;
+        }
         let found = Quotient { quotient, product }.digit(half, rise, dividend);
         let taken = found.quotient == quotient + half && found.product == product + worth;
         e.claim(Claim::Together as u32, taken || found == Quotient { quotient, product });
@@ -43,6 +49,7 @@ harness! {
         e.claim(Claim::Next as u32, dividend < found.product + worth);
         let over = any_u32(e, "part of the rise (mB)", 0..=20);
         e.assume(over <= rise);
+        let over = over & 0x1_FFFF;
         e.claim(Claim::First as u32, over << digit < rise << 12);
         e.cover(Cover::Exact as u32, found.product == dividend);
         e.cover(Cover::Taken as u32, taken);
@@ -68,7 +75,11 @@ harness! {
     {
         let exponent = e.choose("whole (as a power of two)", 7) & 15;
         let (rise, over) = (any_u32(e, "rise (mB)", 1..=20), any_u32(e, "part of the rise (mB)", 0..=20));
-        e.assume(over <= rise && (1..1 << 17).contains(&rise));
+        let sized = over <= rise && (1..1 << 17).contains(&rise);
+        e.assume(sized);
+        if !sized {
+            return;
+        }
         let found = part(over, rise, 1 << exponent);
         let mut rounds = Quotient { quotient: 0, product: 0 };
         for place in (0..12).rev() {

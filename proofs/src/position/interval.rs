@@ -171,6 +171,10 @@ harness! {
         let (least, most) = (level("least difference (mB)", 20), level("greatest difference (mB)", 20));
         let ([near, near_end], [far, far_end]) = (nearest.ends, farthest.ends);
         e.assume(near < near_end && near_end >= least && far < far_end && far <= most);
+        // An engine that goes on after a broken assumption must not divide by nothing.
+        if !(near < near_end && near_end >= least && far < far_end && far <= most) {
+            return;
+        }
         let from = if near < least { part(near.abs_diff(least), near.abs_diff(near_end), decimetres) } else { 0 };
         let back = if far_end > most { part(far_end.abs_diff(most), far.abs_diff(far_end), decimetres) } else { 0 };
         let knot = |span: Span| u32::try_from(span.number).unwrap_or(0) << (exponent + 4);
