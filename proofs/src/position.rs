@@ -11,7 +11,7 @@ use atc_kernel::position::{Correction, KNOTS, Millibels, Position, Spacing, Tabl
 
 pub use bounds::{pos_part, pos_part_rounds};
 pub use inclusion::t_pos_2;
-pub use interval::{t_pos_1, t_pos_1_exact, t_pos_1_levels, t_pos_1_span};
+pub use interval::{t_pos_1, t_pos_1_exact, t_pos_1_levels, t_pos_1_span, t_pos_1_step};
 pub use odometer::t_pos_3;
 pub use unknown::{pos_machine, t_pos_4, t_pos_5};
 
@@ -21,6 +21,7 @@ pub const ALL: &[Harness] = &[
     t_pos_1_exact::HARNESS,
     t_pos_1_levels::HARNESS,
     t_pos_1_span::HARNESS,
+    t_pos_1_step::HARNESS,
     pos_part::HARNESS,
     pos_part_rounds::HARNESS,
     t_pos_2::HARNESS,

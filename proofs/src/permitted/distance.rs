@@ -91,10 +91,10 @@ harness! {
 
 harness! {
     /// A fix is the first distance to the exit that was measured after a main telegram, less the movement since; every known
-    /// main telegram, used or not, ends it.
+    /// main telegram, used or not, ends it. What a target's distance is made of, exactly.
     t_per_4_fix(e)
     theorem "T-PER-4";
-    requirements ["PER-10"];
+    requirements ["PER-4", "PER-10"];
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
@@ -102,6 +102,7 @@ harness! {
         Ended: "after a main telegram with known ranks there is no fix",
         First: "without one, a fix stays the same, less the movement; without a fix, the measured distance becomes it",
         Used: "a target's distance is at most the one of before, or the fix of before and the distance beyond the exit; never what was measured in its own cycle",
+        Exact: "that distance is the fix of before, 0 if there is none, and the distance beyond the exit, less the movement; or the one of before to the same point, less the movement, if that is longer",
     }
     covers {
         Kept: "a fix is kept although another distance is measured",
@@ -125,6 +126,22 @@ harness! {
             _ => true,
         };
         e.claim(Claim::Used as u32, used);
+        let exact = match (after.target, cycle.used_main) {
+            (Some(after), Some(main)) => {
+                let beyond = main.route.beyond_exit();
+                let less = |length: i64| if length > i64::from(heard.moved.0) { length - i64::from(heard.moved.0) } else { 0 };
+                let measured = less(i64::from(before.fix.map_or(0, |fix| fix.0)) + i64::from(beyond.0) * 1000);
+                let again = before.target.filter(|target| {
+                    let old = target.age.0 >= cycle.line.settings.life.0;
+                    !old && target.section == main.section && target.beyond == beyond
+                });
+                let kept = less(again.map_or(0, |target| i64::from(target.to_stop.0)));
+                i64::from(after.to_stop.0) == if measured > kept { measured } else { kept }
+            }
+            (None, Some(_)) => false,
+            _ => true,
+        };
+        e.claim(Claim::Exact as u32, exact);
         e.cover(Cover::Kept as u32, known.is_none() && before.fix.is_some() && heard.to_exit.is_some());
         e.cover(Cover::New as u32, known.is_none() && before.fix.is_none() && heard.to_exit.is_some());
         e.cover(Cover::Ended as u32, known.is_some() && cycle.used_main.is_none() && before.fix.is_some());

@@ -6,6 +6,7 @@ use atc_kernel::permitted::{
     Basis, Fixed, Heard, LineKind, Permission, Permitted, PermittedError, Settings, State, Telegrams, step,
 };
 use atc_kernel::speed::KmhTenths;
+use atc_kernel::telegram::Stream;
 use atc_kernel::time::Ticks;
 
 harness! {
@@ -107,6 +108,7 @@ harness! {
     cases 1;
     claims {
         Counted: "the kernel counts at least as many cycles as the observer",
+        Exact: "its count is one more each cycle; after a main telegram that is used it is the age of that telegram; where a digital line begins after an analog one, the age of the target, or 0",
         Ended: "after more than the life there is no fresh target on a digital line, and the kernel has counted more than the life: then no speed above 0 is permitted (T-PER-1)",
         Together: "when the last pattern has run down, telegrams have been missing for longer than the life: nothing is left, unless a digital line just began",
         Start: "before anything was heard, the same",
@@ -132,6 +134,13 @@ harness! {
         let counted = now <= cycle.after.missing.0 || cycle.after.missing.0 == u16::MAX;
         let analog = cycle.after.line == LineKind::Analog;
         e.claim(Claim::Counted as u32, counted && (analog || on_time(&cycle.after, now)));
+        let exact = match (cycle.used_main, cycle.after.target) {
+            (Some(_), _) => cycle.before.main_stream.age.0 + 1,
+            (None, Some(target)) if began => target.age.0,
+            (None, None) if began => 0,
+            _ => cycle.before.missing.0.saturating_add(1),
+        };
+        e.claim(Claim::Exact as u32, cycle.after.missing.0 == exact);
         // T-PER-1 says what is permitted in a state: on a digital line, with no fresh target and telegrams missing for longer
         // than the life, a speed of 0 or nothing.
         let digital = cycle.after.line == LineKind::Digital;
@@ -196,6 +205,7 @@ harness! {
         Used: "after a main telegram that is used the target is its own: its section, distance beyond the exit and speed, and as old as the telegram before it",
         Older: "otherwise a target is the one of before, one cycle older",
         Forgotten: "and there is none if it was as old as its life",
+        Streams: "the counters of either stream are what T-TEL-6 makes of them and of the cycle's telegram, if its ranks are known: used, refused, or none",
         Valid: "a valid state leads to a valid one",
     }
     covers {
@@ -221,6 +231,7 @@ harness! {
         };
         e.claim(Claim::Older as u32, cycle.used_main.is_some() || older);
         e.claim(Claim::Forgotten as u32, cycle.used_main.is_some() || !old || after.is_none());
+        e.claim(Claim::Streams as u32, [cycle.after.main_stream, cycle.after.sub_stream] == cycle.streams);
         e.claim(Claim::Valid as u32, cycle.after.is_valid(&cycle.line.permitted));
         e.cover(Cover::Used as u32, cycle.used_main.is_some());
         let known = cycle.heard.main.is_some_and(knows_main);
@@ -308,7 +319,8 @@ harness! {
         };
         e.claim(Claim::Permission as u32, basis && below && permission.speed >= same.speed);
         let start = permitted.initial();
-        let knows = start.target.is_some() || start.fixed != [None; 2] || start.fix.is_some();
+        let unheard = start.main_stream == Stream::EMPTY && start.sub_stream == Stream::EMPTY;
+        let knows = start.target.is_some() || start.fixed != [None; 2] || start.fix.is_some() || !unheard;
         let silent = start.permission(&permitted, cycle.heard.analog).speed <= Some(KmhTenths(0));
         e.claim(Claim::Start as u32, start.is_valid(&permitted) && !knows && silent);
         let safe = Permitted::SAFE == Permission { speed: None, basis: Basis::Nothing };

@@ -15,12 +15,12 @@ use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::permitted::{Fixed, Heard, LineKind, Permitted, Settings, State, Target};
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::telegram::{Judgement, Main, SectionId, Sub};
+use atc_kernel::telegram::{Judgement, Main, SectionId, Stream, Sub};
 use atc_kernel::time::Ticks;
 
 pub use distance::{t_per_4, t_per_4_fix, t_per_4_metres};
 pub use memory::{per_9, per_machine, per_total, t_per_2, t_per_5_evidence, t_per_6, t_per_7, t_per_8};
-pub use permission::{t_per_1, t_per_5, t_per_5_speed};
+pub use permission::{t_per_1, t_per_5, t_per_5_permission, t_per_5_speed};
 
 /// The harnesses of this module.
 pub const ALL: &[Harness] = &[
@@ -32,6 +32,7 @@ pub const ALL: &[Harness] = &[
     t_per_5::HARNESS,
     t_per_5_evidence::HARNESS,
     t_per_5_speed::HARNESS,
+    t_per_5_permission::HARNESS,
     t_per_6::HARNESS,
     t_per_7::HARNESS,
     t_per_8::HARNESS,
@@ -181,6 +182,8 @@ struct Cycle {
     used_main: Option<Main>,
     /// The sub telegram, likewise.
     used_sub: Option<Sub>,
+    /// What becomes of the counters of the main and of the sub telegrams.
+    streams: [Stream; 2],
 }
 
 fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
@@ -192,8 +195,9 @@ fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
     let main = heard.main.filter(|main| knows_main(*main));
     let sub = heard.sub.filter(|sub| knows_sub(*sub));
     let sequence = &line.settings.sequence;
-    let in_order = |stream, header| sequence.step(stream, header).1 == Judgement::Accepted;
-    let used_main = main.filter(|_| in_order(before.main_stream, main.map(|main| main.header())));
-    let used_sub = sub.filter(|_| in_order(before.sub_stream, sub.map(|sub| sub.header())));
-    Some(Cycle { line, before, heard, after, used_main, used_sub })
+    let (main_stream, of_main) = sequence.step(before.main_stream, main.map(|main| main.header()));
+    let (sub_stream, of_sub) = sequence.step(before.sub_stream, sub.map(|sub| sub.header()));
+    let used_main = main.filter(|_| of_main == Judgement::Accepted);
+    let used_sub = sub.filter(|_| of_sub == Judgement::Accepted);
+    Some(Cycle { line, before, heard, after, used_main, used_sub, streams: [main_stream, sub_stream] })
 }

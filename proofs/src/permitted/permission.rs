@@ -3,10 +3,13 @@
 use super::{any_code, any_distance, any_fixed, any_kind, any_line, any_speed, any_state, any_target};
 use crate::any_flag;
 use crate::pattern::{any_brake, any_gradient};
-use atc_kernel::distance::Millimetres;
-use atc_kernel::pattern::pattern;
-use atc_kernel::permitted::{Basis, Fixed, Limits, LineKind, Permission, State, Telegrams};
+use atc_kernel::distance::{Metres, Millimetres};
+use atc_kernel::pattern::{Deceleration, pattern};
+use atc_kernel::permitted::{
+    Basis, Fixed, Limits, LineKind, Permission, Permitted, Settings, State, Target, Telegrams,
+};
 use atc_kernel::speed::KmhTenths;
+use atc_kernel::telegram::Gradient;
 
 harness! {
     /// The lower of code and telegrams is permitted, and each case of PER-1, PER-3 and PER-6 is as it says. Never more than the
@@ -128,6 +131,73 @@ harness! {
         let without = if short { Telegrams::Missing(None) } else { Telegrams::Lost };
         e.claim(Claim::None as u32, State { target: None, ..state }.telegrams(&line.permitted) == without);
         e.cover(Cover::Assumed as u32, known == [false; 2] && fresh);
+    }
+}
+
+harness! {
+    /// What is permitted in a state is what T-PER-1 makes of its line, of the code, and of the speed by its telegrams: the least of the
+    /// pattern, the ground's speed and the limit. The pattern is that of four distances.
+    t_per_5_permission(e)
+    theorem "T-PER-5";
+    requirements ["PER-1", "PER-5", "PER-6"];
+    assumptions ["four-speeds", "printed-sizes"];
+    bound "tables of 4 speeds, distances of 0, 1, 100 and 3000 m";
+    cases 4;
+    claims {
+        Whole: "the permission is that of the line, of what there is of telegrams with the speed by them, and of the code",
+        Below: "never above the speed by the telegrams, where they are fresh or a last pattern runs down on a digital line",
+    }
+    covers {
+        Fresh: "the pattern of a fresh target is permitted, or is 0 or over the speeds that are likely",
+        Last: "the last pattern is permitted, or is 0 or over the speeds that are likely",
+    }
+    {
+        let metres: u16 = match e.choose("distance (0: 0, 1: 1, 2: 100, 3: 3000 m)", 4) {
+            0 => 0,
+            1 => 1,
+            2 => 100,
+            _ => 3000,
+        };
+        let Some(line) = any_line(e) else { return };
+        let Some(brake) = Deceleration::brake(1000) else { return };
+        // Which gradient counts is `t_per_5`'s.
+        let gradient = Gradient(-10);
+        let permitted = Permitted::new(Settings { brake, worst: gradient, margin: Metres(10), ..line.settings });
+        let Ok(permitted) = permitted else { return e.assume(false) };
+        let state = any_state(e, &line);
+        // Less than a metre more than the distance and the margin.
+        let to_stop = Millimetres((u32::from(metres) + 10) * 1000 + 999);
+        let target = state.target.map(|target| Target { to_stop, ..target });
+        let fixed = state.fixed.map(|fixed| fixed.map(|fixed| Fixed { gradient, ..fixed }));
+        let state = State { target, fixed, ..state };
+        let code = any_code(e);
+        let permission = state.permission(&permitted, code);
+
+        let curve = pattern(brake.on(gradient), Metres(metres));
+        let least = |one: KmhTenths, other: KmhTenths| if one < other { one } else { other };
+        let mut speed = None;
+        if let Some(target) = target {
+            let mut limit = line.speed(line.settings.lowest);
+            for fixed in fixed.into_iter().flatten() {
+                if fixed.section == target.section {
+                    limit = Some(fixed.limit);
+                }
+            }
+            speed = limit.map(|limit| least(curve, least(target.limit, limit)));
+        }
+        let fresh = target.is_some_and(|target| target.age.0 <= line.settings.fresh.0);
+        let telegrams = match speed {
+            Some(speed) if fresh => Telegrams::Fresh(speed),
+            last if state.missing.0 <= line.settings.life.0 => Telegrams::Missing(last),
+            _ => Telegrams::Lost,
+        };
+        e.claim(Claim::Whole as u32, permission == Permission::new(state.line, telegrams, code));
+        let counts = fresh || state.line == LineKind::Digital && state.missing.0 <= line.settings.life.0;
+        e.claim(Claim::Below as u32, speed.is_none() || !counts || permission.speed <= speed);
+        let extreme = metres == 0 || metres == 3000;
+        let by_pattern = extreme || speed == Some(curve);
+        e.cover(Cover::Fresh as u32, fresh && by_pattern && permission.speed == speed);
+        e.cover(Cover::Last as u32, !fresh && speed.is_some() && by_pattern && permission.speed == speed);
     }
 }
 

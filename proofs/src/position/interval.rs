@@ -4,9 +4,11 @@
 //! line reaches a level in its span: `t_pos_1_span`, by the division `part`. The division: `pos_part`, `pos_part_rounds`.
 
 use super::{any_curves, signed, table};
-use crate::any_flag;
+use crate::{any_flag, any_u32};
 use atc_kernel::distance::Millimetres;
-use atc_kernel::position::{Correction, Millibels, Position, SPANS, Spacing, Span, Spans, Table, part};
+use atc_kernel::position::{
+    Correction, Interval, Measured, Millibels, Moved, Position, SPANS, Spacing, Span, Spans, Table, part, step,
+};
 
 harness! {
     /// Wherever the train is, whatever the true difference between the lines there: if the spans for some differences with the true
@@ -186,5 +188,62 @@ harness! {
         e.cover(Cover::Within as u32, found.is_some() && near < least && far_end > most);
         e.cover(Cover::Outer as u32, found.is_some() && near >= least && far_end <= most);
         e.cover(Cover::Backward as u32, found.is_none());
+    }
+}
+
+harness! {
+    /// The parts put together, for one table: from the levels to the interval of a step. The curves are straight, 1 mB for a decimetre,
+    /// the highest 8 mB above the lowest, so a difference of n mB is that of distances from n − 8 to n decimetres.
+    t_pos_1_step(e)
+    theorem "T-POS-1";
+    requirements ["POS-1", "POS-2", "POS-7"];
+    assumptions ["printed-sizes", "levels-within-tolerance"];
+    bound "one table";
+    cases 1;
+    claims {
+        Exact: "without an interval before, it is from where the highest curve reaches the least difference to where the lowest one leaves the greatest; unknown only if the greatest is beyond the far end, or below the near one",
+        Nothing: "with a level missing or under the floor the position is unknown, whatever it was before",
+    }
+    covers {
+        Within: "an interval whose ends are both inside of the table",
+        Weak: "a level is under the floor, and there was an interval before",
+    }
+    {
+        let (lowest, highest) = (
+            core::array::from_fn(|knot| Millibels(i16::from(knot.to_le_bytes()[0]) * 32)),
+            core::array::from_fn(|knot| Millibels(i16::from(knot.to_le_bytes()[0]) * 32 + 8)),
+        );
+        let table = Spacing::new(5).and_then(|spacing| Table::new(spacing, lowest, highest).ok());
+        let [tolerance, floor, least, most] = [0..=3, 0..=5, 0..=1, 1..=2].map(|likely| signed(e.word("tolerance, floor, correction (mB)", likely)));
+        let position = table.zip(Correction::new(Millibels(least), Millibels(most)))
+            .and_then(|(table, correction)| Position::new(table, Millibels(tolerance), Millibels(floor), correction));
+        e.assume(position.is_some());
+        let Some(position) = position else { return };
+        let [first, second] = [100..=400, 4..=40].map(|likely| signed(e.word("measured level (mB)", likely)));
+        let heard = [any_flag(e, "first heard (odd: yes)"), any_flag(e, "second heard (odd: yes)")];
+        let moved = Moved::new(signed(e.word("least movement (mm)", 0..=100)), signed(e.word("most movement (mm)", 100..=200)));
+        e.assume(moved.is_some());
+        let Some(moved) = moved else { return };
+        let measured = Measured {
+            first: heard[0].then_some(Millibels(first)),
+            second: heard[1].then_some(Millibels(second)),
+            moved,
+        };
+        let before = Interval::new(Millimetres(any_u32(e, "nearest before (mm)", 0..=900)), Millimetres(any_u32(e, "farthest before (mm)", 900..=9000)));
+        let (alone, found) = (step(&position, None, measured), step(&position, before, measured));
+        let strong = heard == [true, true] && first >= floor && second >= floor;
+        e.claim(Claim::Nothing as u32, strong || alone.is_none() && found.is_none());
+        let [tolerance, least, most] = [tolerance, least, most].map(i32::from);
+        let difference = i32::from(first) - i32::from(second);
+        let (from, to) = (difference - 2 * tolerance + least, difference + 2 * tolerance + most);
+        let expected = if strong && (0..512).contains(&to) {
+            let near = if from > 8 { from - 8 } else { 0 };
+            Interval::new(Millimetres(100 * near.unsigned_abs()), Millimetres(100 * to.unsigned_abs()))
+        } else {
+            None
+        };
+        e.claim(Claim::Exact as u32, alone == expected);
+        e.cover(Cover::Within as u32, alone.is_some_and(|alone| alone.nearest().0 > 0 && alone.farthest().0 < 51_100));
+        e.cover(Cover::Weak as u32, heard == [true, true] && !strong && before.is_some());
     }
 }

@@ -122,7 +122,7 @@ harness! {
 
 harness! {
     /// The check is linear: with errors in the bytes, it changes by the remainder of the errors alone. One byte's step
-    /// from any two remainders; so it holds for any number of bytes.
+    /// from any two remainders; and the check is that step byte by byte, so it holds for all eight.
     t_tel_3_linear(e)
     theorem "T-TEL-3";
     requirements ["TEL-3"];
@@ -133,6 +133,7 @@ harness! {
         Step: "if two remainders differ by a third, they differ after a byte that is wrong by x by the third's remainder after x",
         Division: "a byte's step is eight steps of the division by x¹⁶ + x¹² + x⁵ + 1",
         Start: "all frames have the same start, which is sixteen ones",
+        Bytes: "the check of eight bytes is the step of each of them, in their order, from the start",
     }
     covers {
         Wrong: "the bytes differ",
@@ -152,6 +153,12 @@ harness! {
         let start = check([0; 8]) ^ check([0, 0, 0, 0, 0, 0, 0, 1]);
         // From sixteen ones, eight bytes of zeros leave this remainder.
         e.claim(Claim::Start as u32, start == check_byte(0, 1) && check([0; 8]) == 0x313E);
+        let (mut information, mut bytewise) = ([0; 8], u16::MAX);
+        for place in &mut information {
+            *place = any_byte(e, "information byte", 0..=255);
+            bytewise = check_byte(bytewise, *place);
+        }
+        e.claim(Claim::Bytes as u32, check(information) == bytewise);
         e.cover(Cover::Wrong as u32, wrong != 0);
     }
 }
