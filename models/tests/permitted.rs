@@ -1,8 +1,10 @@
 //! The permitted speed: wrong devices that must turn a claim red, traces that are runs of the kernel, and the ground truth.
 
+mod common;
+
 use atc_kernel::Machine;
 use atc_kernel::aspect::AspectId;
-use atc_kernel::permitted::{Basis, Heard, LineKind, Permission, Permitted, State, step};
+use atc_kernel::permitted::{Basis, Heard, LineKind, Permission, Permitted, Settings, State, step};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient};
 use atc_kernel::time::Ticks;
@@ -10,7 +12,8 @@ use atc_models::permitted::device::{Conventional, Device, FixOfAnyCycle, Real};
 use atc_models::permitted::layout::{BRAKE_MM_S2, CELL_M, Layout, SPEEDS, Section};
 use atc_models::permitted::ride::{Border, Changes, Delivery, Environment, Fix, Odometer, Ride, Small, Transmitter};
 use atc_models::permitted::{Purpose, Sight};
-use atc_models::{About, Entry, Expectation, Outcome, Subject, Verdict, catalogue, check};
+use atc_models::{Expectation, Outcome, Subject, Verdict, catalogue, check};
+use common::outcome;
 use std::collections::{BTreeSet, HashSet};
 use std::sync::LazyLock;
 
@@ -18,18 +21,6 @@ static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
     let entries: Vec<_> = catalogue().into_iter().filter(|entry| entry.name.starts_with("permitted")).collect();
     atc_models::in_parallel(&entries, 2, |entry| check(entry, 1), |_| ())
 });
-
-fn outcome<S: Subject>(model: S) -> Outcome {
-    let about = About {
-        name: "wrong",
-        statement: String::new(),
-        requirements: &[],
-        environment: String::new(),
-        in_force: &[],
-        lifted: &[],
-    };
-    check(&Entry::new(about, model), 1)
-}
 
 #[track_caller]
 fn red<D: Device>(model: Ride<D>, property: &str) {
@@ -103,7 +94,7 @@ impl Device for Wrong {
             Self::FixedForEver => state.fixed.iter_mut().flatten().for_each(|fixed| fixed.age = Ticks(0)),
             Self::MissingNotCounted => state.missing = Ticks(0),
             Self::StaleIsFresh => {
-                let settings = atc_kernel::permitted::Settings { fresh: life, ..*permitted.settings() };
+                let settings = Settings { fresh: life, ..*permitted.settings() };
                 return step(&Permitted::new(settings).expect("parameters"), state, heard);
             }
             Self::CounterUnread => {
@@ -118,11 +109,8 @@ impl Device for Wrong {
                 }
             }
             Self::NothingWorse => {
-                let settings = atc_kernel::permitted::Settings {
-                    worst: Gradient(0),
-                    lowest: AspectId::new(1).expect("a rank"),
-                    ..*permitted.settings()
-                };
+                let settings =
+                    Settings { worst: Gradient(0), lowest: AspectId::new(1).expect("a rank"), ..*permitted.settings() };
                 return step(&Permitted::new(settings).expect("parameters"), state, heard);
             }
             Self::AlwaysLevel => heard.sub.iter_mut().for_each(|sub| sub.gradient = Gradient(0)),
@@ -145,11 +133,6 @@ impl Device for Wrong {
     }
 }
 
-fn digital(cells: &[u8], points: &[u8]) -> Layout {
-    let sections = cells.iter().map(|cells| Section::plain(LineKind::Digital, *cells)).collect();
-    Layout { sections, points: points.into() }
-}
-
 const SAFE: Purpose = Purpose::Safe(&[]);
 
 fn wrong(device: Wrong, layout: &Layout, small: Small, environment: Environment) -> Ride<Wrong> {
@@ -158,7 +141,7 @@ fn wrong(device: Wrong, layout: &Layout, small: Small, environment: Environment)
 
 #[test]
 fn wrong_ages_turn_red() {
-    let drawn = digital(&[2, 3, 3], &[5, 5, 7]);
+    let drawn = Layout::digital(&[2, 3, 3], &[5, 5, 7]);
     let codes = Environment { code: Delivery::Always, route: Changes::Any, ..Environment::USUAL };
     let usual = Small::USUAL;
     for device in [Wrong::TargetForEver, Wrong::NoMainSpeed] {
@@ -170,7 +153,7 @@ fn wrong_ages_turn_red() {
     red(wrong(Wrong::MissingNotCounted, &drawn, usual, codes), "stands-in-time");
     let (long, silent) = (Small { life: 4, ..usual }, Environment { code: Delivery::Never, keeps: 4, ..codes });
     red(wrong(Wrong::StaleIsFresh, &drawn, long, silent), "silence-stops");
-    let mut restricted = digital(&[8, 2], &[10]);
+    let mut restricted = Layout::digital(&[8, 2], &[10]);
     restricted.sections[0].restrictable = true;
     let restriction = Environment { sub: Delivery::Any, restriction: true, ..Environment::USUAL };
     for device in [Wrong::FixedForEver, Wrong::NoLimit] {
@@ -180,11 +163,11 @@ fn wrong_ages_turn_red() {
 
 #[test]
 fn wrong_codes_and_lines_turn_red() {
-    let mut slow = digital(&[4, 4], &[8]);
+    let mut slow = Layout::digital(&[4, 4], &[8]);
     slow.sections[0].code = 0;
     let codes = Environment { code: Delivery::Any, ..Environment::USUAL };
     red(wrong(Wrong::CodeUnheard, &slow, Small { lowest: 1, ..Small::USUAL }, codes), "not-above-code");
-    red(wrong(Wrong::HigherOfTwo, &digital(&[4, 4], &[4]), Small::USUAL, codes), "not-above-ground");
+    red(wrong(Wrong::HigherOfTwo, &Layout::digital(&[4, 4], &[4]), Small::USUAL, codes), "not-above-ground");
     let analog = Layout { sections: vec![Section::plain(LineKind::Analog, 4)], points: vec![4] };
     let conventional = Ride::new(Conventional, analog, Small::USUAL, codes, SAFE);
     assert!(outcome(conventional).ok());
@@ -192,7 +175,7 @@ fn wrong_codes_and_lines_turn_red() {
 
 #[test]
 fn wrong_counters_turn_red() {
-    let drawn = digital(&[3, 4, 3], &[7, 9]);
+    let drawn = Layout::digital(&[3, 4, 3], &[7, 9]);
     let looping = |telegrams| Environment {
         transmitter: Transmitter::Loops(telegrams),
         route: Changes::Withdrawn,
@@ -208,27 +191,27 @@ fn wrong_counters_turn_red() {
 
 #[test]
 fn wrong_worst_cases_and_distances_turn_red() {
-    let mut downhill = digital(&[3, 4, 3], &[7]);
+    let mut downhill = Layout::digital(&[3, 4, 3], &[7]);
     downhill.sections[1].gradient = -100;
     let late = Environment { sub: Delivery::Any, fix: Fix::Any, ..Environment::USUAL };
     let steep = Small { lowest: 1, worst: -100, ..Small::USUAL };
     for device in [Wrong::NothingWorse, Wrong::AlwaysLevel] {
         red(wrong(device, &downhill, steep, late), "not-above-ground");
     }
-    let layout = digital(&[6, 3], &[7]);
+    let layout = Layout::digital(&[6, 3], &[7]);
     let measured = Environment { fix: Fix::Any, ..Environment::USUAL };
     red(wrong(Wrong::NotMoved, &layout, Small::USUAL, measured), "not-above-ground");
     let bounded = Environment { odometer: Odometer::Bounded, ..measured };
     red(wrong(Wrong::NotMoved, &layout, Small::USUAL, bounded), "not-above-ground");
     let crossing = Environment { border: Border::Crossing, ..measured };
-    let border = digital(&[4, 4, 2], &[8]);
+    let border = Layout::digital(&[4, 4, 2], &[8]);
     let any = Ride::new(FixOfAnyCycle, border.clone(), Small { margin: 2, ..Small::USUAL }, crossing, SAFE);
     red(any, "not-above-ground");
 }
 
 #[test]
 fn a_sight_that_is_not_reached_turns_red() {
-    let layout = digital(&[3, 4, 2], &[7]);
+    let layout = Layout::digital(&[3, 4, 2], &[7]);
     let deaf = Environment { main: Delivery::Never, code: Delivery::Always, ..Environment::USUAL };
     let sights =
         [Sight::Pattern, Sight::RunsDown, Sight::Recovers, Sight::Restricted, Sight::OldPoint, Sight::OldLimit];
@@ -301,7 +284,7 @@ fn reachable<D: Device>(model: &Ride<D>) -> usize {
 
 #[test]
 fn a_plain_search_counts_the_same_states() {
-    let layout = digital(&[6, 3], &[7]);
+    let layout = Layout::digital(&[6, 3], &[7]);
     let counted = |name: &str| OUTCOMES.iter().find(|o| o.model == name).expect("in the catalogue").unique_states;
     let odometer = Environment { odometer: Odometer::Bounded, fix: Fix::Any, ..Environment::USUAL };
     let levels = Environment { fix: Fix::Levels, ..Environment::USUAL };
@@ -316,7 +299,7 @@ fn a_plain_search_counts_the_same_states() {
 
 #[test]
 fn the_ground_truth_is_the_physics_of_braking() {
-    let mut layout = digital(&[3, 4, 5], &[12]);
+    let mut layout = Layout::digital(&[3, 4, 5], &[12]);
     layout.sections[1].gradient = -60;
     layout.sections[2].gradient = 35;
     for place in 0..12_u8 {
@@ -342,7 +325,7 @@ fn the_ground_truth_is_the_physics_of_braking() {
 
 #[test]
 fn a_ride_starts_in_the_kernels_initial_state() {
-    let layout = digital(&[3], &[3]);
+    let layout = Layout::digital(&[3], &[3]);
     let ride = Ride::new(Real, layout, Small::USUAL, Environment::USUAL, SAFE);
     let [state] = ride.initial()[..] else { panic!("one initial state") };
     let bound = Ticks(Small::USUAL.life + 1);

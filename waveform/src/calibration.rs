@@ -33,7 +33,7 @@
 //! ([`Calibration::correction`]); it widens the answer, by much if the weather may be anything, and is meant for the metres by
 //! which a length is uncertain.
 
-use crate::rail::{Decibels, Hertz, Line, Metres, OhmKilometres, RailError, Rails};
+use crate::rail::{DECIBELS_PER_NEPER, Decibels, Hertz, Line, Metres, OhmKilometres, RailError, Rails};
 use atc_kernel::position::{Correction, KNOTS, Millibels, Spacing, Table, TableError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -122,8 +122,12 @@ pub enum PlanError {
     Spacing(u16),
     /// A distance between transmitters that is not within 1 m to 10 km.
     Apart(Metres),
-    /// A train that is not within 0 m to the distance between the transmitters, or a length that is longest before shortest.
+    /// A train that is not at least 0 m and less than the distance between the transmitters, which comes second.
     Train(Metres, Metres),
+    /// A shortest length of a train, first, that is not within 0 m to the longest, which comes second.
+    Shortest(Metres, Metres),
+    /// Lengths of a train, shortest and longest, over which the level difference changes by more than 300 dB.
+    Lengths(Metres, Metres),
     /// A difference at the transmitters that is not within ±100 dB.
     Transmitted(Decibels),
     /// A difference at a knot that is not within ±300 dB.
@@ -154,9 +158,17 @@ impl fmt::Display for PlanError {
             }
             Self::Spacing(dm) => write!(f, "spacing_dm is {dm}; it must be a power of two, 16 to 2048"),
             Self::Apart(m) => write!(f, "apart_m is {}; it must be 1 to 10000", m.0),
-            Self::Train(train, most) => {
-                write!(f, "a train of {} m; 0 to {} m are possible here", train.0, most.0)
+            Self::Train(train, apart) => {
+                write!(f, "a train of {} m; it must be at least 0 and less than {} m, apart_m", train.0, apart.0)
             }
+            Self::Shortest(shortest, longest) => {
+                write!(f, "the shortest train is {} m; it must be 0 to {} m, the longest", shortest.0, longest.0)
+            }
+            Self::Lengths(shortest, longest) => write!(
+                f,
+                "trains of {} to {} m change the level difference by more than 300 dB: choose lengths nearer to train_m",
+                shortest.0, longest.0
+            ),
             Self::Transmitted(db) => write!(f, "transmitted_db is {}; it must be -100 to 100", db.0),
             Self::TooLarge { knot, difference } => {
                 write!(
@@ -187,12 +199,12 @@ impl From<RailError> for PlanError {
 }
 
 /// Two values that bound a third.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
+#[derive(Clone, Copy)]
+struct Bounds {
     /// Never more than the value.
-    pub least: f64,
+    least: f64,
     /// Never less than the value.
-    pub most: f64,
+    most: f64,
 }
 
 impl Bounds {
@@ -247,7 +259,7 @@ impl Calibration {
     /// signal is heard at the tail.
     ///
     /// # Errors
-    /// [`PlanError::Train`] for lengths the wrong way round or beyond the distance between the transmitters.
+    /// [`PlanError::Train`], [`PlanError::Shortest`] or [`PlanError::Lengths`].
     pub fn correction(&self, shortest: Metres, longest: Metres) -> Result<Correction, PlanError> {
         let Arrangement::AheadAndBehind { apart_m, train_m } = self.plan.arrangement else {
             return Ok(Correction::NONE);
@@ -256,15 +268,15 @@ impl Calibration {
             return Err(PlanError::Train(longest, apart_m));
         }
         if !(0.0..=longest.0).contains(&shortest.0) {
-            return Err(PlanError::Train(shortest, longest));
+            return Err(PlanError::Shortest(shortest, longest));
         }
         // Straight in the length for every leakage: the extremes are at the shortest and the longest.
         let search = Search::new(&self.plan);
         let [one, other] = [shortest, longest].map(|length| search.extremes(train_m.0 - length.0, 0.0));
         let (least, most) = (one.least.min(other.least) * 100.0, one.most.max(other.most) * 100.0);
-        let bound = |level: f64| millibels(level).ok_or(PlanError::Train(longest, apart_m));
+        let bound = |level: f64| millibels(level).ok_or(PlanError::Lengths(shortest, longest));
         let correction = Correction::new(bound((least - ROUNDING).floor())?, bound((most + ROUNDING).ceil())?);
-        correction.ok_or(PlanError::Train(shortest, longest))
+        correction.ok_or(PlanError::Lengths(shortest, longest))
     }
 }
 
@@ -336,7 +348,7 @@ impl Search {
         let both = |leakage| [plan.first_hz, plan.second_hz].map(|f| line(leakage).attenuation(f, Metres(1.0)).0);
         let leakages = (0..=STEPS).map(|n| (wet * (step * f64::from(n)).exp()).clamp(wet, dry));
         let nepers = [plan.first_hz, plan.second_hz].map(|f| line(wet).propagation(f).norm() / 1000.0);
-        let margin = nepers.map(|gamma| step / 2.0 * gamma / 2.0 * 20.0 / std::f64::consts::LN_10);
+        let margin = nepers.map(|gamma| step / 2.0 * gamma / 2.0 * DECIBELS_PER_NEPER);
         Self { alphas: leakages.map(both).collect(), margin }
     }
 

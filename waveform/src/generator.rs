@@ -103,7 +103,7 @@ impl<M: Iterator<Item = bool>, S: Iterator<Item = bool>> Generator<M, S> {
         }
     }
 
-    /// Moves both carriers, and the phases of their codes, on by a part of a cycle; for tests of start phases.
+    /// Moves both carriers, and the phases of their codes, on by a part of a cycle, so that a signal begins at any phase.
     pub fn advance_phase(&mut self, carrier: f64, code: f64) {
         self.main.carrier = (self.main.carrier + carrier).rem_euclid(1.0);
         self.sub.carrier = (self.sub.carrier + carrier).rem_euclid(1.0);

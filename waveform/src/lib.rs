@@ -66,6 +66,7 @@
 pub mod calibration;
 pub mod channel;
 pub mod config;
+mod filter;
 pub mod generator;
 pub mod measure;
 pub mod plot;

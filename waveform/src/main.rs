@@ -28,7 +28,7 @@ enum Command {
     /// Measures bit errors, detection times, false codes and throughput of the receivers, and error and width of the train's
     /// position.
     Bench {
-        /// Measure less, in under 20 s instead of minutes.
+        /// Measure less, in seconds instead of minutes.
         #[arg(long)]
         quick: bool,
         /// Seed of bits, phases and noise: the same seed, the same result.

@@ -54,6 +54,13 @@ pub struct Axis {
     pub to: f64,
 }
 
+impl Axis {
+    /// An axis with this label, from the lowest value to the highest.
+    pub fn new(label: &str, from: f64, to: f64) -> Self {
+        Self { label: label.into(), from, to }
+    }
+}
+
 /// Whether the vertical axis is divided evenly or by powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
@@ -103,7 +110,8 @@ impl fmt::Display for PlotError {
 
 impl std::error::Error for PlotError {}
 
-fn fault(error: impl fmt::Display) -> PlotError {
+/// What the drawing library says, in words.
+pub(crate) fn fault(error: impl fmt::Display) -> PlotError {
     PlotError(error.to_string())
 }
 
@@ -132,7 +140,7 @@ pub fn draw(charts: &[Chart], width: u32, height: u32) -> Result<String, PlotErr
 }
 
 /// A label without rounding errors of the axis, with a real minus sign.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded }).replace('-', "−")
 }
@@ -164,29 +172,9 @@ impl Chart {
         Y: AsRangedCoord<Value = f64>,
         Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let mut context = ChartBuilder::on(area)
-            .caption(&self.title, ("sans-serif", 19).into_font())
-            .margin(12)
-            .margin_right(24)
-            .x_label_area_size(46)
-            .y_label_area_size(66)
-            .build_cartesian_2d(self.x.from..self.x.to, y)
-            .map_err(fault)?;
-        context
-            .configure_mesh()
-            .bold_line_style(RGBColor(215, 215, 215))
-            .light_line_style(RGBColor(240, 240, 240))
-            .x_labels(11)
-            .y_labels(9)
-            .max_light_lines(if self.scale == Scale::Linear { 5 } else { 10 })
-            .x_desc(&self.x.label)
-            .y_desc(&self.y.label)
-            .x_label_formatter(&|x| number(*x))
-            .y_label_formatter(y_label)
-            .axis_desc_style(("sans-serif", 15))
-            .label_style(("sans-serif", 13))
-            .draw()
-            .map_err(fault)?;
+        let mut context = frame(area, &self.title).build_cartesian_2d(self.x.from..self.x.to, y).map_err(fault)?;
+        let light_lines = if self.scale == Scale::Linear { 5 } else { 10 };
+        mesh(&mut context, [&self.x.label, &self.y.label], light_lines, y_label)?;
         for series in &self.series {
             let colour = COLOURS[series.colour % COLOURS.len()];
             let visible =
@@ -232,14 +220,72 @@ impl Chart {
             Legend::LowerLeft => SeriesLabelPosition::LowerLeft,
             Legend::None => return Ok(()),
         };
-        context
-            .configure_series_labels()
-            .position(position)
-            .margin(14)
-            .background_style(WHITE.mix(0.9))
-            .border_style(RGBColor(190, 190, 190))
-            .label_font(("sans-serif", 14))
-            .draw()
-            .map_err(fault)
+        legend(&mut context, position)
     }
+}
+
+/// A chart that is being drawn.
+pub(crate) type Context<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
+
+/// The title, the margins, and room for the axes.
+pub(crate) fn frame<'a, 'b>(
+    area: &'a DrawingArea<SVGBackend<'b>, Shift>,
+    title: &str,
+) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
+    let mut builder = ChartBuilder::on(area);
+    builder
+        .caption(title, ("sans-serif", 19).into_font())
+        .margin(12)
+        .margin_right(24)
+        .x_label_area_size(46)
+        .y_label_area_size(66);
+    builder
+}
+
+/// The grid, and the axes with their labels: the horizontal one first.
+pub(crate) fn mesh<X, Y>(
+    context: &mut Context<'_, '_, X, Y>,
+    [x, y]: [&str; 2],
+    light_lines: usize,
+    y_label: &dyn Fn(&f64) -> String,
+) -> Result<(), PlotError>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    context
+        .configure_mesh()
+        .bold_line_style(RGBColor(215, 215, 215))
+        .light_line_style(RGBColor(240, 240, 240))
+        .x_labels(11)
+        .y_labels(9)
+        .max_light_lines(light_lines)
+        .x_desc(x)
+        .y_desc(y)
+        .x_label_formatter(&|x| number(*x))
+        .y_label_formatter(y_label)
+        .axis_desc_style(("sans-serif", 15))
+        .label_style(("sans-serif", 13))
+        .draw()
+        .map_err(fault)
+}
+
+/// The legend of all series that have a label.
+pub(crate) fn legend<'a, 'b: 'a, X, Y>(
+    context: &mut Context<'a, 'b, X, Y>,
+    position: SeriesLabelPosition,
+) -> Result<(), PlotError>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    context
+        .configure_series_labels()
+        .position(position)
+        .margin(14)
+        .background_style(WHITE.mix(0.9))
+        .border_style(RGBColor(190, 190, 190))
+        .label_font(("sans-serif", 14))
+        .draw()
+        .map_err(fault)
 }

@@ -6,10 +6,6 @@ use crate::measure::{
 use crate::plot::{Axis, Chart, Legend, PlotError, Scale, Series, Style, draw};
 use crate::units::{Decibels, Hertz};
 
-fn axis(label: &str, from: f64, to: f64) -> Axis {
-    Axis { label: label.into(), from, to }
-}
-
 fn series(name: impl Into<String>, colour: usize, style: Style, points: Vec<(f64, f64)>) -> Series {
     Series { name: name.into(), colour, style, points }
 }
@@ -44,8 +40,8 @@ pub fn plots(bench: &Bench, depth: f64, bit_rate: Hertz) -> Result<Vec<(&'static
 fn error_axes(title: &str, highest: u32, lowest: f64, series: Vec<Series>) -> Chart {
     Chart {
         title: title.into(),
-        x: axis("Eb/N0 (dB)", 0.0, f64::from(highest) + 0.5),
-        y: axis("bit error rate", lowest, 1.0),
+        x: Axis::new("Eb/N0 (dB)", 0.0, f64::from(highest) + 0.5),
+        y: Axis::new("bit error rate", lowest, 1.0),
         scale: Scale::Logarithmic,
         legend: Legend::LowerLeft,
         series,
@@ -96,8 +92,8 @@ pub fn detection(bench: &Bench) -> Result<String, PlotError> {
     let highest = points.last().map_or(20.0, |point| point.snr_db);
     let chart = Chart {
         title: "From the start of the signal to the first right report".into(),
-        x: axis("signal-to-noise ratio from 0 to 4 kHz (dB)", lowest, highest),
-        y: axis("time (s)", 0.0, 3.0),
+        x: Axis::new("signal-to-noise ratio from 0 to 4 kHz (dB)", lowest, highest),
+        y: Axis::new("time (s)", 0.0, 3.0),
         scale: Scale::Linear,
         legend: Legend::UpperRight,
         series: vec![
@@ -120,8 +116,8 @@ pub fn spectrum(picture: &Picture) -> Result<String, PlotError> {
             "Spectrum: main carrier at {} Hz, sub carrier at {} Hz",
             picture.carriers_hz.0, picture.carriers_hz.1
         ),
-        x: axis("frequency (Hz)", 0.0, 2000.0),
-        y: axis("power density (dB of full scale in 1 Hz)", -110.0, -20.0),
+        x: Axis::new("frequency (Hz)", 0.0, 2000.0),
+        y: Axis::new("power density (dB of full scale in 1 Hz)", -110.0, -20.0),
         scale: Scale::Linear,
         legend: Legend::None,
         series: vec![series(
@@ -141,7 +137,7 @@ pub fn spectrum(picture: &Picture) -> Result<String, PlotError> {
 pub fn envelope(picture: &Picture) -> Result<String, PlotError> {
     let chart = |title: &str, y: Axis, legend, series| Chart {
         title: title.into(),
-        x: axis("time (s)", 0.0, 0.5),
+        x: Axis::new("time (s)", 0.0, 0.5),
         y,
         scale: Scale::Linear,
         legend,
@@ -154,8 +150,8 @@ pub fn envelope(picture: &Picture) -> Result<String, PlotError> {
         series(format!("sub carrier, code {} Hz", picture.codes_hz.1), 1, Style::Line, picture.sub_envelope.clone());
     draw(
         &[
-            chart("The signal", axis("part of full scale", -1.0, 1.0), Legend::None, vec![samples]),
-            chart("Its envelopes", axis("part of full scale", 0.0, 0.6), Legend::UpperRight, vec![main, sub]),
+            chart("The signal", Axis::new("part of full scale", -1.0, 1.0), Legend::None, vec![samples]),
+            chart("Its envelopes", Axis::new("part of full scale", 0.0, 0.6), Legend::UpperRight, vec![main, sub]),
         ],
         860,
         640,

@@ -4,7 +4,7 @@
 //! Goertzel's recursion. Noise of power σ² adds to the level an error of about 8.69·√(1.5/(N·S)) dB (standard deviation), S
 //! being the ratio of the signal's power to σ² and N the samples in a window ([`LevelMeter::expected_error`]).
 
-use crate::rail::{Decibels, Hertz};
+use crate::rail::{DECIBELS_PER_NEPER, Decibels, Hertz};
 use std::f64::consts::TAU;
 use std::fmt;
 
@@ -91,7 +91,7 @@ impl LevelMeter {
                 report([0, 1].map(|signal| {
                     let [last, before] = self.past[signal];
                     let power = last * last + before * before - self.factors[signal] * last * before;
-                    Decibels(10.0 * power.max(f64::MIN_POSITIVE).log10())
+                    Decibels::of_power(power.max(f64::MIN_POSITIVE))
                 }));
                 (self.past, self.next) = ([[0.0; 2]; 2], 0);
             }
@@ -100,8 +100,7 @@ impl LevelMeter {
 
     /// Standard deviation of a level at this ratio of signal to noise power, the noise being white over half the sample rate.
     pub fn expected_error(signal_to_noise: Decibels, window: u32) -> Decibels {
-        let ratio = 10.0_f64.powf(signal_to_noise.0 / 10.0);
-        Decibels(20.0 / std::f64::consts::LN_10 * (1.5 / (f64::from(window) * ratio)).sqrt())
+        Decibels(DECIBELS_PER_NEPER * (1.5 / (f64::from(window) * signal_to_noise.power())).sqrt())
     }
 }
 

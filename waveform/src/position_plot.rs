@@ -1,10 +1,13 @@
 //! The pictures of the train's position.
 
-use crate::plot::{Axis, COLOURS, Chart, Legend, PlotError, Scale, Series, Style, draw};
+use crate::plot::{
+    Axis, COLOURS, Chart, Legend, PlotError, Scale, Series, Style, draw, fault, frame, legend, mesh, number,
+};
 use crate::position_measure::{Odometry, PositionBench, Run};
-use plotters::coord::ranged1d::{Ranged, ValueFormatter};
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+
+/// Fine lines of the grid between two labels.
+const LIGHT_LINES: usize = 10;
 
 /// All pictures of a measurement: a file name and the SVG text of each.
 ///
@@ -53,10 +56,6 @@ fn colour(ohm_km: f64) -> usize {
     }
 }
 
-fn axis(label: &str, from: f64, to: f64) -> Axis {
-    Axis { label: label.into(), from, to }
-}
-
 fn attenuation(bench: &PositionBench) -> Result<String, PlotError> {
     let lines = |style, label: &str, value: &dyn Fn(&[f64; 4]) -> f64| {
         let series = |curve: &crate::position_measure::LineCurve| Series {
@@ -71,8 +70,8 @@ fn attenuation(bench: &PositionBench) -> Result<String, PlotError> {
     both.extend(lines(Style::Line, ", 3 kHz", &|point| -point[2]));
     let levels = Chart {
         title: "Level over the distance from the transmitter".into(),
-        x: axis("distance (m)", 0.0, 1000.0),
-        y: axis("level against the transmitter (dB)", -25.0, 0.0),
+        x: Axis::new("distance (m)", 0.0, 1000.0),
+        y: Axis::new("level against the transmitter (dB)", -25.0, 0.0),
         scale: Scale::Linear,
         legend: Legend::LowerLeft,
         series: both,
@@ -81,8 +80,8 @@ fn attenuation(bench: &PositionBench) -> Result<String, PlotError> {
     differences.extend(lines(Style::Dashed, ", fixed impedance", &|point| point[3]));
     let difference = Chart {
         title: "Difference of the levels; dashed: a transmitter matched to 10 Ω·km in all weather".into(),
-        x: axis("distance (m)", 0.0, 1000.0),
-        y: axis("level difference, 1 less 3 kHz (dB)", 0.0, 15.0),
+        x: Axis::new("distance (m)", 0.0, 1000.0),
+        y: Axis::new("level difference, 1 less 3 kHz (dB)", 0.0, 15.0),
         scale: Scale::Linear,
         legend: Legend::UpperRight,
         series: differences,
@@ -115,8 +114,8 @@ fn over_distance(
         };
         Chart {
             title: format!("{what}: {}", name(arrangement)),
-            x: axis("true distance to the transmitter ahead (m); thin: without the odometer", 0.0, 400.0),
-            y: axis(label, 0.0, most),
+            x: Axis::new("true distance to the transmitter ahead (m); thin: without the odometer", 0.0, 400.0),
+            y: Axis::new(label, 0.0, most),
             scale: Scale::Linear,
             legend: Legend::UpperRight,
             series: runs().map(series).collect(),
@@ -140,22 +139,17 @@ fn outside(bench: &PositionBench) -> Result<String, PlotError> {
     {
         let root = SVGBackend::with_string(&mut text, (900, 520)).into_drawing_area();
         root.fill(&WHITE).map_err(fault)?;
-        let mut context = ChartBuilder::on(&root)
-            .caption(
-                "A table for 5 to 20 Ω·km on other ballast: answers without the train",
-                ("sans-serif", 19).into_font(),
-            )
-            .margin(12)
-            .margin_right(24)
-            .x_label_area_size(46)
-            .y_label_area_size(66)
+        let mut context = frame(&root, "A table for 5 to 20 Ω·km on other ballast: answers without the train")
             .build_cartesian_2d((1.0..100.0).log_scale(), 0.0..140.0)
             .map_err(fault)?;
         mesh(
             &mut context,
-            "true insulation of the ballast (Ω·km); dashed: no more answers after the first contradiction",
-            "cycles with a wrong interval (%)",
-            100.0,
+            [
+                "true insulation of the ballast (Ω·km); dashed: no more answers after the first contradiction",
+                "cycles with a wrong interval (%)",
+            ],
+            LIGHT_LINES,
+            &|share| if *share > 100.0 { String::new() } else { number(*share) },
         )?;
         let limits = Rectangle::new([(5.0, 0.0), (20.0, 140.0)], RGBColor(225, 242, 225).filled());
         context
@@ -174,7 +168,7 @@ fn outside(bench: &PositionBench) -> Result<String, PlotError> {
             let kept = rows().map(|row| (row.ohm_km, row.wrong_if_kept * 100.0));
             context.draw_series(DashedLineSeries::new(kept, 6, 4, colour.stroke_width(1))).map_err(fault)?;
         }
-        legend(&mut context)?;
+        legend(&mut context, SeriesLabelPosition::UpperRight)?;
         root.present().map_err(fault)?;
     }
     Ok(text)
@@ -195,8 +189,8 @@ fn meter(bench: &PositionBench) -> Result<String, PlotError> {
     };
     let chart = Chart {
         title: "Error of a level measured in 100 ms at 8 kHz".into(),
-        x: axis("signal over noise in 4 kHz (dB)", 10.0, 40.0),
-        y: axis("error (dB)", 0.001, 1.0),
+        x: Axis::new("signal over noise in 4 kHz (dB)", 10.0, 40.0),
+        y: Axis::new("error (dB)", 0.001, 1.0),
         scale: Scale::Logarithmic,
         legend: Legend::LowerLeft,
         series: vec![
@@ -214,10 +208,6 @@ fn meter(bench: &PositionBench) -> Result<String, PlotError> {
     draw(&[chart], 900, 520)
 }
 
-fn fault(error: impl std::fmt::Display) -> PlotError {
-    PlotError(error.to_string())
-}
-
 /// One panel for each ballast: the interval over time as a band, light without the odometer, and the train in it.
 fn bands(runs: &[&Run], title: &str) -> Result<String, PlotError> {
     let mut leakages: Vec<f64> = runs.iter().map(|run| run.ohm_km).collect();
@@ -233,15 +223,15 @@ fn bands(runs: &[&Run], title: &str) -> Result<String, PlotError> {
                 .flat_map(|run| &run.points)
                 .filter_map(|p| p.interval)
                 .fold(400.0, |m: f64, [_, far]| m.max(far));
-            let mut context = ChartBuilder::on(area)
-                .caption(format!("{title}: {}", ballast(ohm_km)), ("sans-serif", 19).into_font())
-                .margin(12)
-                .margin_right(24)
-                .x_label_area_size(46)
-                .y_label_area_size(66)
+            let mut context = frame(area, &format!("{title}: {}", ballast(ohm_km)))
                 .build_cartesian_2d(0.0..20.0, 0.0..(most * 1.05 / 100.0).ceil() * 100.0)
                 .map_err(fault)?;
-            mesh(&mut context, "time (s), 20 m/s", "distance to the transmitter ahead (m)", f64::INFINITY)?;
+            mesh(
+                &mut context,
+                ["time (s), 20 m/s", "distance to the transmitter ahead (m)"],
+                LIGHT_LINES,
+                &|metres| number(*metres),
+            )?;
             for run in here() {
                 let (shade, name) = match run.odometer {
                     Odometry::Without => (RGBColor(246, 222, 165), "each cycle for itself"),
@@ -269,44 +259,9 @@ fn bands(runs: &[&Run], title: &str) -> Result<String, PlotError> {
                     .label("train")
                     .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 20, y)], BLACK.stroke_width(2)));
             }
-            legend(&mut context)?;
+            legend(&mut context, SeriesLabelPosition::UpperRight)?;
         }
         root.present().map_err(fault)?;
     }
     Ok(text)
-}
-
-type Context<'a, 'b, X> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, RangedCoordf64>>;
-
-/// The axes; values above `highest` have no number.
-fn mesh<X>(context: &mut Context<'_, '_, X>, x: &str, y: &str, highest: f64) -> Result<(), PlotError>
-where
-    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
-    context
-        .configure_mesh()
-        .bold_line_style(RGBColor(215, 215, 215))
-        .light_line_style(RGBColor(240, 240, 240))
-        .x_labels(11)
-        .y_labels(9)
-        .x_desc(x)
-        .y_desc(y)
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| if *y > highest { String::new() } else { format!("{y:.0}") })
-        .axis_desc_style(("sans-serif", 15))
-        .label_style(("sans-serif", 13))
-        .draw()
-        .map_err(fault)
-}
-
-fn legend<'a, 'b: 'a, X: Ranged<ValueType = f64>>(context: &mut Context<'a, 'b, X>) -> Result<(), PlotError> {
-    context
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .margin(14)
-        .background_style(WHITE.mix(0.9))
-        .border_style(RGBColor(190, 190, 190))
-        .label_font(("sans-serif", 14))
-        .draw()
-        .map_err(fault)
 }

@@ -76,7 +76,9 @@ impl Site {
 }
 
 /// What a receiver makes of a level: the nearest whole 0.01 dB to the level plus `error` that is still within `tolerance`.
-/// `tolerance` is 1 or more.
+///
+/// # Panics
+/// For a level or an error that is not a number, and, where no whole 0.01 dB is near enough, for a tolerance under 1.
 pub fn reading(level: Decibels, error: Decibels, tolerance: Millibels) -> Millibels {
     let (level, off) = (level.0 * 100.0, f64::from(tolerance.0));
     let read = (level + error.0 * 100.0).round().clamp((level - off).ceil(), (level + off).floor());

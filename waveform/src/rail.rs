@@ -39,7 +39,7 @@ pub struct Metres(pub f64);
 pub struct OhmKilometres(pub f64);
 
 /// Decibels in a neper.
-const DECIBELS_PER_NEPER: f64 = 20.0 / LN_10;
+pub(crate) const DECIBELS_PER_NEPER: f64 = 20.0 / LN_10;
 
 /// The rails: what does not change with the weather. All values are for the loop of both rails.
 ///

@@ -2,31 +2,25 @@
 
 mod common;
 
-use atc_waveform::config::TransmitterConfig;
-use atc_waveform::measure::{BitErrorRun, DetectionRun, Modulation, bit_errors, detection, false_codes};
+use atc_waveform::config::{Codes, TransmitterConfig};
+use atc_waveform::measure::{BitErrorRun, DetectionRun, bit_errors, detection, false_codes};
 use atc_waveform::units::{Decibels, Hertz, Seed};
-use common::table;
+use common::{codes, table};
 
-fn run(modulation: Modulation, offset: f64) -> BitErrorRun {
-    BitErrorRun {
-        modulation,
-        offset: Hertz(offset),
-        errors: 100,
-        least_bits: 10_000,
-        most_bits: 60_000,
-        seed: Seed(11),
-    }
+fn run(codes: Codes, offset: f64) -> BitErrorRun {
+    BitErrorRun { codes, offset: Hertz(offset), errors: 100, least_bits: 10_000, most_bits: 60_000, seed: Seed(11) }
 }
 
 #[test]
 fn within_a_decibel_of_theory() {
     let config = TransmitterConfig::default();
-    let slow = Modulation::Codes(Hertz(10.0), Hertz(12.0));
-    for (modulation, offset) in [(Modulation::None, 0.0), (Modulation::None, -1.0), (slow, 0.0)] {
+    // 10 and 12 Hz, the slowest.
+    let slow = codes(0, 0);
+    for (codes, offset) in [(Codes::NONE, 0.0), (Codes::NONE, -1.0), (slow, 0.0)] {
         for ratio in [0.0, 3.0, 6.0] {
-            let point = bit_errors(&config, &run(modulation, offset), Decibels(ratio));
+            let point = bit_errors(&config, &run(codes, offset), Decibels(ratio));
             let loss = point.loss_db.expect("enough errors");
-            assert!((-0.5..1.0).contains(&loss), "{modulation:?} {offset} {point:?}");
+            assert!((-0.5..1.0).contains(&loss), "{codes:?} {offset} {point:?}");
         }
     }
 }
@@ -34,16 +28,16 @@ fn within_a_decibel_of_theory() {
 /// A carrier that is 3 Hz off is beyond what the receiver follows: the measurement says so.
 #[test]
 fn a_carrier_too_far_off_costs() {
-    let point = bit_errors(&TransmitterConfig::default(), &run(Modulation::None, 3.0), Decibels(6.0));
+    let point = bit_errors(&TransmitterConfig::default(), &run(Codes::NONE, 3.0), Decibels(6.0));
     assert!(point.loss_db.is_none_or(|loss| loss > 1.0), "{point:?}");
 }
 
 #[test]
 fn the_same_seed_gives_the_same_result() {
     let config = TransmitterConfig::default();
-    let once = bit_errors(&config, &run(Modulation::None, 0.0), Decibels(4.0));
-    assert_eq!(once, bit_errors(&config, &run(Modulation::None, 0.0), Decibels(4.0)));
-    let other = BitErrorRun { seed: Seed(12), ..run(Modulation::None, 0.0) };
+    let once = bit_errors(&config, &run(Codes::NONE, 0.0), Decibels(4.0));
+    assert_eq!(once, bit_errors(&config, &run(Codes::NONE, 0.0), Decibels(4.0)));
+    let other = BitErrorRun { seed: Seed(12), ..run(Codes::NONE, 0.0) };
     assert_ne!(once, bit_errors(&config, &other, Decibels(4.0)));
 }
 
@@ -57,6 +51,8 @@ fn detection_times() {
     assert!(loud.code.median.is_some_and(|time| (0.15..0.4).contains(&time)), "{loud:?}");
     assert!(loud.main_telegram.median.is_some_and(|time| (0.53..1.3).contains(&time)), "{loud:?}");
     assert_eq!((loud.wrong_speeds, loud.wrong_telegrams), (0, 0));
+    let none = detection(&config, &table(), &DetectionRun { trials: 0, ..run }, Decibels(15.0));
+    assert_eq!((none.code.heard, none.code.median, none.main_telegram.percentile_95), (0.0, None, None));
     let faint = detection(&config, &table(), &run, Decibels(-12.0));
     assert!(faint.code.heard < 0.5 && faint.main_telegram.heard < 0.5, "{faint:?}");
 }

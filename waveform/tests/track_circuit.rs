@@ -94,6 +94,9 @@ fn analog_signal() {
     assert_eq!(changes(&config, params(Some(OWN)), &signal), []);
     let analog = changes(&config, params(None), &signal);
     assert!(matches!(analog[..], [(time, TrackState::Free)] if time < 0.7), "{analog:?}");
+    // A lifetime of telegrams means nothing there, whatever it is.
+    let endless = TrackCircuitParams { telegram_lifetime: Seconds(f64::INFINITY), ..params(None) };
+    assert_eq!(changes(&config, endless, &signal), analog);
     // The codes of a signal that is too faint are heard, and not enough.
     Gain(0.4).apply(&mut signal);
     assert_eq!(changes(&config, params(None), &signal), []);
@@ -135,10 +138,11 @@ fn parameters_that_cannot_be() {
     let config = TransmitterConfig::default();
     let message = |params| TrackCircuit::new(&config, params).err().expect("refused").to_string();
     let good = params(Some(OWN));
-    let levels = "pick_up is 0.15 and drop_away 0.2; both must be above 0 and drop_away at most pick_up";
+    let levels = "pick_up is 0.15 and drop_away 0.2; both must be above 0 and finite, and drop_away at most pick_up";
     assert_eq!(message(TrackCircuitParams { drop_away: Level(0.2), ..good }), levels);
     assert!(message(TrackCircuitParams { drop_away: Level(0.0), ..good }).contains("above 0"));
     assert!(message(TrackCircuitParams { pick_up: Level(f64::NAN), ..good }).contains("NaN"));
+    assert!(message(TrackCircuitParams { pick_up: Level(f64::INFINITY), ..good }).contains("finite"));
     let lifetime = "telegram_lifetime is 0.5 s; it must be from 0.53 s, one telegram, to 60 s";
     assert_eq!(message(TrackCircuitParams { telegram_lifetime: Seconds(0.5), ..good }), lifetime);
 }

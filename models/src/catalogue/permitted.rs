@@ -87,12 +87,6 @@ fn other<D: Device>(
     Entry::new(about, Ride::new(device, layout.clone(), small, environment, purpose))
 }
 
-/// Digital sections of these lengths, level and without limits, with these stopping points.
-fn digital(cells: &[u8], points: &[u8]) -> Layout {
-    let sections = cells.iter().map(|cells| Section::plain(LineKind::Digital, *cells)).collect();
-    Layout { sections, points: points.into() }
-}
-
 fn lines() -> Vec<Entry> {
     let analog = |cells| Section::plain(LineKind::Analog, cells);
     let new = |cells| Section::plain(LineKind::Digital, cells);
@@ -153,7 +147,7 @@ fn lines() -> Vec<Entry> {
                 &["PER-1", "PER-4", "PER-6", "PER-8"],
                 SOUND,
             ),
-            &digital(&[3, 4, 2], &[7]),
+            &Layout::digital(&[3, 4, 2], &[7]),
             Small { margin: 2, ..Small::USUAL },
             lossy,
             Purpose::Safe(&[Sight::Pattern, Sight::RunsDown, Sight::Starved, Sight::Recovers, Sight::Arrives]),
@@ -162,9 +156,9 @@ fn lines() -> Vec<Entry> {
 }
 
 fn changes() -> Vec<Entry> {
-    let drawn = digital(&[2, 3, 3], &[5, 5, 7]);
+    let drawn = Layout::digital(&[2, 3, 3], &[5, 5, 7]);
     let environment = Environment { route: Changes::Any, fix: Fix::Any, ..Environment::USUAL };
-    let mut restricted = digital(&[8, 4], &[12]);
+    let mut restricted = Layout::digital(&[8, 4], &[12]);
     restricted.sections[0].restrictable = true;
     let restriction =
         Environment { main: Delivery::Always, sub: Delivery::Any, restriction: true, ..Environment::USUAL };
@@ -232,11 +226,11 @@ fn changes() -> Vec<Entry> {
 }
 
 fn late() -> Vec<Entry> {
-    let mut downhill = digital(&[3, 4, 3], &[7]);
+    let mut downhill = Layout::digital(&[3, 4, 3], &[7]);
     downhill.sections[1].gradient = -100;
     let steep = |worst| Small { lowest: 1, worst, ..Small::USUAL };
     let environment = Environment { sub: Delivery::Any, fix: Fix::Any, ..Environment::USUAL };
-    let mut slow = digital(&[3, 6, 2], &[11]);
+    let mut slow = Layout::digital(&[3, 6, 2], &[11]);
     slow.sections[1].limit = 0;
     slow.sections[1].limit_from = 3;
     let brief = |lowest| Small { lowest, fresh: 2, life: 2, memory: 2, ..Small::USUAL };
@@ -285,7 +279,7 @@ fn late() -> Vec<Entry> {
 }
 
 fn distances() -> Vec<Entry> {
-    let layout = digital(&[6, 3], &[7]);
+    let layout = Layout::digital(&[6, 3], &[7]);
     let with = |odometer| Environment { odometer, fix: Fix::Any, ..Environment::USUAL };
     let model = |name, statement: &str, words: &str, environment, conditions, purpose| {
         ride(about(name, statement, words, DISTANCE, conditions), &layout, Small::USUAL, environment, purpose)

@@ -261,11 +261,14 @@ impl<D: Device> Ride<D> {
         let cells: Vec<_> = self.layout.sections.iter().map(|section| section.cells.to_string()).collect();
         format!(
             "sections of {} cells of 4 m, speeds of 0, 1 and 2 cells a cycle, brake 4 m/s2; main telegrams fresh for {} and used for \
-             {} cycles, sub telegrams for {}; margin {} cells; window {}, run {}, memory {} cycles",
+             {} cycles, sub telegrams for {}; lowest limit {} cells a cycle, worst gradient {} thousandths; margin {} cells; window {}, \
+             run {}, memory {} cycles",
             cells.join(", "),
             small.fresh,
             small.life,
             small.fixed_life,
+            small.lowest + 1,
+            small.worst,
             small.margin,
             small.window,
             small.run,

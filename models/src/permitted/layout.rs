@@ -54,6 +54,12 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// Digital sections of these lengths in cells, level and without limits, with these stopping points.
+    pub fn digital(cells: &[u8], points: &[u8]) -> Self {
+        let sections = cells.iter().map(|cells| Section::plain(LineKind::Digital, *cells)).collect();
+        Self { sections, points: points.into() }
+    }
+
     /// Where a section ends.
     pub fn exit(&self, section: usize) -> u8 {
         self.sections.iter().take(section + 1).map(|section| section.cells).sum()

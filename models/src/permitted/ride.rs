@@ -27,6 +27,7 @@ use atc_kernel::permitted::{self, Basis, Heard, LineKind, Permitted};
 use atc_kernel::position::{Interval, Measured, Moved, Position};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Length, Main, Route, SectionId, Stream, Sub};
+use atc_kernel::time::Ticks;
 
 /// The model: the device `D` on a line, in an environment.
 #[derive(Clone, Debug)]
@@ -250,8 +251,7 @@ impl<D: Device> Ride<D> {
             });
             Stream { last, ..stream }
         };
-        let bound = self.small.life + 1;
-        let missing = kernel.missing.min(atc_kernel::time::Ticks(bound));
+        let missing = kernel.missing.min(Ticks(self.small.life + 1));
         Kept(permitted::State {
             missing,
             main_stream: on(kernel.main_stream),

@@ -131,8 +131,26 @@ fn the_correction_bounds_what_another_length_changes() {
     }
     let none = Calibration::new(plan(ARRANGEMENTS[0], Ground::Uniform)).expect("a usual plan");
     assert_eq!(none.correction(Metres(60.0), Metres(110.0)), Ok(Correction::NONE));
-    assert!(calibration.correction(Metres(110.0), Metres(60.0)).is_err());
-    assert!(calibration.correction(Metres(0.0), Metres(400.0)).is_err());
+    let refused = |calibration: &Calibration, shortest, longest| {
+        calibration.correction(Metres(shortest), Metres(longest)).expect_err("refused").to_string()
+    };
+    assert_eq!(refused(&calibration, 110.0, 60.0), "the shortest train is 110 m; it must be 0 to 60 m, the longest");
+    assert_eq!(
+        refused(&calibration, 0.0, 400.0),
+        "a train of 400 m; it must be at least 0 and less than 400 m, apart_m"
+    );
+    // Ten kilometres at 100 kHz lose too much for a table to say it.
+    let far = Plan {
+        first_hz: Hertz(100_000.0),
+        second_hz: Hertz(100_000.0),
+        spacing_dm: 16,
+        arrangement: Arrangement::AheadAndBehind { apart_m: Metres(10_000.0), train_m: Metres(9990.0) },
+        ..*calibration.plan()
+    };
+    assert_eq!(
+        refused(&Calibration::new(far).expect("a short stretch"), 0.0, 9990.0),
+        "trains of 0 to 9990 m change the level difference by more than 300 dB: choose lengths nearer to train_m"
+    );
 }
 
 #[test]

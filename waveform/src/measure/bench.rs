@@ -4,17 +4,17 @@ use atc_kernel::code::CodeTable;
 use serde::Serialize;
 
 use super::{
-    BitErrorPoint, BitErrorRun, DetectionPoint, DetectionRun, FalseCodes, Modulation, Picture, Throughput, bit_errors,
-    detection, false_codes, picture, throughput,
+    BitErrorPoint, BitErrorRun, DetectionPoint, DetectionRun, FalseCodes, Picture, Throughput, bit_errors, detection,
+    false_codes, picture, throughput,
 };
-use crate::config::TransmitterConfig;
+use crate::config::{Carrier, Codes, TransmitterConfig};
 use crate::units::{Decibels, Hertz, Seconds, Seed};
 
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extent {
-    /// Under 20 s.
+    /// Some seconds: a tenth of the bits, and fewer beginnings and windows.
     Quick,
     /// A few minutes; up to a million bits for each point and over a million windows of noise.
     Full,
@@ -58,35 +58,37 @@ pub struct Bench {
 }
 
 /// Measures everything.
+///
+/// # Panics
+/// Never: the codes are this module's own.
 pub fn bench(config: &TransmitterConfig, table: &CodeTable, extent: Extent, seed: Seed) -> Bench {
     let (errors, least_bits, most_bits) = match extent {
         Extent::Quick => (100, 10_000, 100_000),
         Extent::Full => (1000, 100_000, 1_000_000),
     };
-    let curve = |name: &str, modulation, offset| {
-        let run = BitErrorRun { modulation, offset: Hertz(offset), errors, least_bits, most_bits, seed };
-        let ratios: &[u32] = match modulation {
-            Modulation::None => &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10],
+    let curve = |name: &str, codes: Codes, offset| {
+        let run = BitErrorRun { codes, offset: Hertz(offset), errors, least_bits, most_bits, seed };
+        let ratios: &[u32] = if codes == Codes::NONE {
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
+        } else {
             // Errors come where the envelope is low: the curve falls slowly.
-            Modulation::Codes(..) => &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18],
+            &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18]
         };
         let points: Vec<_> = ratios.iter().map(|&db| bit_errors(config, &run, Decibels(f64::from(db)))).collect();
         BitErrorCurve {
             name: name.into(),
-            codes_hz: match modulation {
-                Modulation::None => None,
-                Modulation::Codes(main, sub) => Some((main.0, sub.0)),
-            },
+            codes_hz: codes.of(Carrier::Main).zip(codes.of(Carrier::Sub)).map(|(main, sub)| (main.0, sub.0)),
             offset_hz: offset,
             worst_loss_db: points.iter().filter_map(|point| point.loss_db).reduce(f64::max),
             points,
         }
     };
+    let codes = |main, sub| Codes::new(Some(Hertz(main)), Some(Hertz(sub))).expect("codes in range");
     let bit_errors = vec![
-        curve("no code", Modulation::None, 0.0),
-        curve("no code, carriers 1 Hz off", Modulation::None, 1.0),
-        curve("codes 10 and 12 Hz", Modulation::Codes(Hertz(10.0), Hertz(12.0)), 0.0),
-        curve("codes 41.5 and 38.5 Hz", Modulation::Codes(Hertz(41.5), Hertz(38.5)), 0.0),
+        curve("no code", Codes::NONE, 0.0),
+        curve("no code, carriers 1 Hz off", Codes::NONE, 1.0),
+        curve("codes 10 and 12 Hz", codes(10.0, 12.0), 0.0),
+        curve("codes 41.5 and 38.5 Hz", codes(41.5, 38.5), 0.0),
     ];
     let (trials, windows, length) = match extent {
         Extent::Quick => (24, 100_000, 30.0),

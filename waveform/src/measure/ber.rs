@@ -18,20 +18,11 @@ const BLOCK: u16 = 4096;
 /// Bits at the beginning that are not counted: the clock is being found.
 const WARM_UP: u64 = 400;
 
-/// Whether the carriers are amplitude-modulated while bit errors are counted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Modulation {
-    /// No code.
-    None,
-    /// These codes on the main and on the sub carrier.
-    Codes(Hertz, Hertz),
-}
-
 /// How much is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BitErrorRun {
-    /// With or without codes.
-    pub modulation: Modulation,
+    /// The codes of both carriers, if they have any.
+    pub codes: Codes,
     /// Error of the carriers of the transmitter against the receiver.
     pub offset: Hertz,
     /// A point ends with so many errors, but not before `least_bits` …
@@ -118,18 +109,14 @@ impl Counted {
 
 /// Counts bit errors at one ratio; both carriers are sent and received, real clock recovery included.
 pub fn bit_errors(config: &TransmitterConfig, run: &BitErrorRun, ratio: Decibels) -> BitErrorPoint {
-    let codes = match run.modulation {
-        Modulation::None => Codes::NONE,
-        Modulation::Codes(main, sub) => Codes::new(Some(main), Some(sub)).unwrap_or(Codes::NONE),
-    };
     let source = |stream: u64| {
         let mut random = Pcg64Mcg::seed_from_u64(run.seed.0 ^ stream << 32);
         std::iter::repeat_with(move || random.random::<bool>())
     };
-    let mut generator = Generator::new(config, codes, source(1), source(2));
+    let mut generator = Generator::new(config, run.codes, source(1), source(2));
     generator.offset_carriers(run.offset);
     let mut sent = (source(1), source(2));
-    let mut noise = Noise::eb_n0(config, Carrier::Main, codes, ratio, Seed(run.seed.0 ^ 3 << 32));
+    let mut noise = Noise::eb_n0(config, Carrier::Main, run.codes, ratio, Seed(run.seed.0 ^ 3 << 32));
     let mut main = Counted::new(config, Carrier::Main);
     let mut sub = Counted::new(config, Carrier::Sub);
     let mut block = vec![0.0; usize::from(BLOCK)];
@@ -158,13 +145,11 @@ pub fn bit_errors(config: &TransmitterConfig, run: &BitErrorRun, ratio: Decibels
 
 #[allow(clippy::cast_precision_loss)]
 fn point(config: &TransmitterConfig, run: &BitErrorRun, ratio: Decibels, bits: u64, errors: u64) -> BitErrorPoint {
-    let curve = |ratio: Decibels| match run.modulation {
-        Modulation::None => differentially_decoded(ratio),
-        Modulation::Codes(main, sub) => {
-            let of = |code| differentially_decoded_under_code(ratio, config.params().depth, code, config.bit_rate());
-            f64::midpoint(of(main), of(sub))
-        }
+    let of = |carrier, ratio| match run.codes.of(carrier) {
+        None => differentially_decoded(ratio),
+        Some(code) => differentially_decoded_under_code(ratio, config.params().depth, code, config.bit_rate()),
     };
+    let curve = |ratio| f64::midpoint(of(Carrier::Main, ratio), of(Carrier::Sub, ratio));
     let rate = errors as f64 / bits as f64;
     BitErrorPoint {
         eb_n0_db: ratio.0,

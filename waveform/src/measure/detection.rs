@@ -46,7 +46,7 @@ pub struct Times {
 pub struct DetectionPoint {
     /// Power of both carriers over the power of the noise from zero to half the sample rate.
     pub snr_db: f64,
-    /// The same noise, as energy of a bit over noise density of one carrier.
+    /// The same noise, as energy of a bit over noise density of one carrier, both being equally strong.
     pub eb_n0_db: f64,
     /// Trials.
     pub trials: u32,
@@ -54,9 +54,9 @@ pub struct DetectionPoint {
     pub code: Times,
     /// Until the first right main telegram.
     pub main_telegram: Times,
-    /// Reports of a wrong speed, over all trials.
+    /// Reports of a wrong speed, over all trials; a trial ends when speed and telegram were heard.
     pub wrong_speeds: u32,
-    /// Telegrams that were never sent, over all trials.
+    /// Telegrams with other contents than were sent (the counter apart), over all trials.
     pub wrong_telegrams: u32,
 }
 
@@ -73,7 +73,8 @@ fn telegrams() -> Option<(Main, Sub)> {
 /// Measures detection times at one ratio. The signal begins at an arbitrary moment, in the middle of a telegram, at an
 /// arbitrary phase.
 ///
-/// The distribution counts a trial that heard nothing as infinitely long.
+/// The distribution counts a trial that heard nothing as infinitely long. What is sent are [`MAIN_CODES`] and [`SUB_CODES`] in
+/// turn: `table` must know them.
 pub fn detection(config: &TransmitterConfig, table: &CodeTable, run: &DetectionRun, ratio: Decibels) -> DetectionPoint {
     let mut random = Pcg64Mcg::seed_from_u64(run.seed.0);
     let mut point = DetectionPoint {
@@ -135,9 +136,10 @@ pub fn detection(config: &TransmitterConfig, table: &CodeTable, run: &DetectionR
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn times(mut heard: Vec<f64>, trials: u32) -> Times {
     heard.sort_by(f64::total_cmp);
-    let at = |part: f64| heard.get((part * f64::from(trials)).ceil() as usize - 1).copied();
+    let trials = f64::from(trials.max(1));
+    let at = |part: f64| heard.get((part * trials).ceil() as usize - 1).copied();
     Times {
-        heard: heard.len() as f64 / f64::from(trials),
+        heard: heard.len() as f64 / trials,
         median: at(0.5),
         percentile_95: at(0.95),
         longest: heard.last().copied(),

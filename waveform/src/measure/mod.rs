@@ -9,7 +9,7 @@ mod theory;
 mod throughput;
 
 pub use bench::{Bench, BitErrorCurve, Extent, bench};
-pub use ber::{BitErrorPoint, BitErrorRun, Modulation, bit_errors};
+pub use ber::{BitErrorPoint, BitErrorRun, bit_errors};
 pub use detection::{DetectionPoint, DetectionRun, FalseCodes, Times, detection, false_codes};
 pub use spectrum::{Picture, envelope, picture, spectrum};
 pub use theory::{

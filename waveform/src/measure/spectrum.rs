@@ -20,7 +20,7 @@ pub struct Picture {
     pub carriers_hz: (f64, f64),
     /// Their codes in hertz.
     pub codes_hz: (f64, f64),
-    /// Power density over frequency: hertz, and decibels below the power of a full-scale sine wave in one hertz.
+    /// Power density over frequency: hertz, and decibels over the power of a full-scale sine wave in one hertz.
     pub spectrum: Vec<(f64, f64)>,
     /// Amplitude of the main carrier over time: seconds, and parts of full scale.
     pub main_envelope: Vec<(f64, f64)>,

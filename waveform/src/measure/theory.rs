@@ -5,6 +5,7 @@
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+use crate::filter::sinc;
 use crate::units::{Decibels, Hertz};
 
 /// Phases of a code over which is averaged.
@@ -74,10 +75,6 @@ pub fn differentially_decoded_under_code(ratio: Decibels, depth: f64, code: Hert
         / f64::from(STEPS)
 }
 
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) }
-}
-
 /// The ratio at which a falling curve has this error rate, from −20 to 30 dB.
 pub(super) fn ratio_for(curve: impl Fn(Decibels) -> f64, rate: f64) -> Decibels {
     let (mut low, mut high) = (-20.0, 30.0);
@@ -105,6 +102,20 @@ mod tests {
         near(q_function(2.7), 3.466_97e-3);
         near(q_function(3.0), 1.349_898e-3);
         near(q_function(5.0), 2.866_516e-7);
+    }
+
+    /// The relative error that [`erfc`] states, on both sides of where its formula changes.
+    #[test]
+    fn complementary_error_function() {
+        for (x, expected) in [
+            (0.5, 0.479_500_122_186_953_5),
+            (1.0, 0.157_299_207_050_285_13),
+            (2.0, 4.677_734_981_047_266e-3),
+            (3.0, 2.209_049_699_858_544e-5),
+            (5.0, 1.537_459_794_428_035e-12),
+        ] {
+            assert!((erfc(x) / expected - 1.0).abs() < 1e-10, "{x}: {} instead of {expected}", erfc(x));
+        }
     }
 
     /// The textbook's 9.6 dB for one error in 100 000.

@@ -1,25 +1,24 @@
 //! Levels measured from samples: the meter in noise, and a train whose levels come through the moving track.
 
 use super::{ANY_WEATHER, CYCLE, MeterPoint, Odometry, Run, SECTION, SEED, calibration, drive, kernel, line};
+use crate::channel::{Noise, Stage};
 use crate::position_meter::LevelMeter;
 use crate::position_run::reading;
 use crate::rail::{Decibels, Hertz, Metres, MovingTrack, Track};
+use crate::units::{Level, Seed};
 use atc_kernel::position::Millibels;
-use rand::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
-use rand_pcg::Pcg64Mcg;
 
 const SAMPLE_RATE: Hertz = Hertz(8000.0);
 /// A window of the level meter: one cycle.
 const WINDOW: u32 = 800;
 
-/// Samples of two tones of equal amplitude at the transmitter.
-fn tones(amplitude: f64, from: u32) -> impl Iterator<Item = f32> {
+/// Samples of two tones of amplitude 1 at the transmitter.
+fn tones(from: u32) -> impl Iterator<Item = f32> {
     (from..).map(move |n| {
         let turn = |frequency: f64| std::f64::consts::TAU * frequency * f64::from(n) / SAMPLE_RATE.0;
         #[allow(clippy::cast_possible_truncation, reason = "the samples' type")]
         {
-            (amplitude * (turn(1000.0).sin() + turn(3000.0).sin())) as f32
+            (turn(1000.0).sin() + turn(3000.0).sin()) as f32
         }
     })
 }
@@ -28,29 +27,32 @@ fn level_meter() -> LevelMeter {
     LevelMeter::new([Hertz(1000.0), Hertz(3000.0)], SAMPLE_RATE, WINDOW).expect("a usual meter")
 }
 
-/// Levels of both tones through 200 m of ballast of 10 Ω·km; the noise is set for each tone's ratio after the line.
+/// White noise under a tone of amplitude 1 that has lost `lost` on its way.
+fn noise(lost: Decibels, signal_to_noise: Decibels) -> Noise {
+    let effective = Decibels(-lost.0 - signal_to_noise.0).amplitude() / std::f64::consts::SQRT_2;
+    Noise::new(Level(effective), Seed(SEED))
+}
+
+/// The samples of one window of tones, over the track and with its noise.
+fn arrive(block: &mut [f32], window: u32, track: impl FnOnce(&mut [f32]), noise: &mut Noise) {
+    block.iter_mut().zip(tones(window * WINDOW % 8000)).for_each(|(sample, tone)| *sample = tone);
+    track(block);
+    noise.apply(block);
+}
+
+/// Levels of both tones through 200 m of ballast of 10 Ω·km; the weaker one, at 3 kHz, has the stated ratio to the noise.
 pub(super) fn meter(signal_to_noise_db: f64, windows: u32) -> MeterPoint {
     let distance = Metres(200.0);
     let mut track = Track::new(&line(10.0), distance, SAMPLE_RATE).expect("a usual track");
-    let mut random = Pcg64Mcg::seed_from_u64(SEED);
-    let lost = [1000.0, 3000.0].map(|frequency| line(10.0).attenuation(Hertz(frequency), distance).0);
-    // The weaker tone, at 3 kHz, has the stated ratio.
-    let sigma = 10.0_f64.powf((-lost[1] - signal_to_noise_db) / 20.0) / std::f64::consts::SQRT_2;
+    let lost = line(10.0).attenuation(Hertz(3000.0), distance);
+    let mut noise = noise(lost, Decibels(signal_to_noise_db));
     let (mut meter, mut block) = (level_meter(), [0.0_f32; WINDOW as usize]);
     let (mut squares, mut greatest) = (0.0, 0.0_f64);
     // The first window still fills the filter.
     for window in 0..=windows {
-        block.iter_mut().zip(tones(1.0, window * WINDOW % 8000)).for_each(|(sample, tone)| *sample = tone);
-        track.process(&mut block);
-        for sample in &mut block {
-            let noise: f64 = StandardNormal.sample(&mut random);
-            #[allow(clippy::cast_possible_truncation, reason = "the samples' type")]
-            {
-                *sample += (sigma * noise) as f32;
-            }
-        }
+        arrive(&mut block, window, |block| track.process(block), &mut noise);
         meter.push(&block, |levels| {
-            let error = levels[1].0 + lost[1];
+            let error = levels[1].0 + lost.0;
             if window > 0 {
                 squares += error * error;
                 greatest = greatest.max(error.abs());
@@ -71,9 +73,8 @@ pub(super) fn meter(signal_to_noise_db: f64, windows: u32) -> MeterPoint {
 pub(super) fn from_samples(ohm_km: f64) -> Run {
     let calibration = calibration('a', ANY_WEATHER);
     let mut track = MovingTrack::new(&line(ohm_km), Metres(SECTION + 10.0), SAMPLE_RATE).expect("a usual track");
-    let farthest = line(ohm_km).attenuation(Hertz(3000.0), Metres(SECTION)).0;
-    let sigma = 10.0_f64.powf((-farthest - 35.0) / 20.0) / std::f64::consts::SQRT_2;
-    let mut random = Pcg64Mcg::seed_from_u64(SEED);
+    let farthest = line(ohm_km).attenuation(Hertz(3000.0), Metres(SECTION));
+    let mut noise = noise(farthest, Decibels(35.0));
     let (mut meter, mut block) = (level_meter(), [0.0_f32; WINDOW as usize]);
     let mut window = 0_u32;
     let mut read = |truth: f64| {
@@ -81,16 +82,8 @@ pub(super) fn from_samples(ohm_km: f64) -> Run {
         let mut levels = [None; 2];
         // Once more at the start, to fill the filter.
         for _ in 0..if window == 0 { 2 } else { 1 } {
-            block.iter_mut().zip(tones(1.0, window * WINDOW % 8000)).for_each(|(sample, tone)| *sample = tone);
+            arrive(&mut block, window, |block| track.process(block, from, to), &mut noise);
             window += 1;
-            track.process(&mut block, from, to);
-            for sample in &mut block {
-                let noise: f64 = StandardNormal.sample(&mut random);
-                #[allow(clippy::cast_possible_truncation, reason = "the samples' type")]
-                {
-                    *sample += (sigma * noise) as f32;
-                }
-            }
             meter.push(&block, |measured| {
                 levels = measured.map(|level| Some(reading(Decibels(level.0 + 60.0), Decibels(0.0), Millibels(1))));
             });

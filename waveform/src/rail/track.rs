@@ -2,11 +2,12 @@
 //!
 //! The filter is designed by frequency sampling: the response e^(−γx) is taken at many frequencies, transformed back, cut to
 //! [`TAPS`] samples and windowed. A constant delay of [`Track::LATENCY`] samples makes it causal. Between 5 % and 80 % of half the
-//! sample rate, at 8 kHz, the error stays under 0.005 dB and 0.0005 rad for every line between 2 and 50 Ω·km and up to a
-//! kilometre (tested); above, towards half the sample rate, it grows.
+//! sample rate, at 8 kHz, the error stays under 0.005 dB and 0.0005 rad (tested on 2, 10 and 50 Ω·km, at six distances up to a
+//! kilometre); above, towards half the sample rate, it grows.
 
 use super::{Hertz, Line, Metres};
 use crate::channel::Stage;
+use crate::filter::{Recent, dot};
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex64;
 use std::f64::consts::PI;
@@ -45,7 +46,7 @@ impl std::error::Error for TrackError {}
 #[derive(Clone, Debug)]
 pub struct Track {
     taps: Vec<f32>,
-    past: Past,
+    past: Recent,
 }
 
 impl Track {
@@ -58,7 +59,7 @@ impl Track {
     /// See [`TrackError`].
     pub fn new(line: &Line, distance: Metres, sample_rate: Hertz) -> Result<Self, TrackError> {
         check(distance, sample_rate)?;
-        Ok(Self { taps: Designer::new(sample_rate).taps(line, distance), past: Past::new() })
+        Ok(Self { taps: Designer::new(sample_rate).taps(line, distance), past: Recent::new(TAPS) })
     }
 
     /// Replaces every sample by the one that arrives at the far end. Allocates nothing; blocks may have any size.
@@ -80,7 +81,7 @@ impl Stage for Track {
 #[derive(Clone, Debug)]
 pub struct MovingTrack {
     bank: Vec<Vec<f32>>,
-    past: Past,
+    past: Recent,
 }
 
 impl MovingTrack {
@@ -98,7 +99,7 @@ impl MovingTrack {
             bank.push(designer.taps(line, Metres(distance)));
         }
         bank.push(designer.taps(line, Metres(distance + BANK_SPACING)));
-        Ok(Self { bank, past: Past::new() })
+        Ok(Self { bank, past: Recent::new(TAPS) })
     }
 
     /// Replaces every sample by the one that arrives, while the distance goes evenly from `from` to `to`. Distances outside
@@ -127,43 +128,6 @@ fn check(distance: Metres, sample_rate: Hertz) -> Result<(), TrackError> {
         return Err(TrackError::SampleRate(sample_rate));
     }
     Ok(())
-}
-
-/// The last [`TAPS`] samples, kept twice so that they always lie in one piece.
-#[derive(Clone, Debug)]
-struct Past {
-    samples: Vec<f32>,
-    next: usize,
-}
-
-impl Past {
-    fn new() -> Self {
-        Self { samples: vec![0.0; 2 * TAPS], next: 0 }
-    }
-
-    fn push(&mut self, sample: f32) {
-        self.samples[self.next] = sample;
-        self.samples[self.next + TAPS] = sample;
-        self.next = (self.next + 1) % TAPS;
-    }
-
-    /// Oldest first.
-    fn window(&self) -> &[f32] {
-        &self.samples[self.next..self.next + TAPS]
-    }
-}
-
-/// Eight sums side by side, which the compiler turns into vector instructions.
-fn dot(a: &[f32], b: &[f32]) -> f32 {
-    let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
-    let tail: f32 = a_chunks.remainder().iter().zip(b_chunks.remainder()).map(|(x, y)| x * y).sum();
-    let mut sums = [0.0_f32; 8];
-    for (x, y) in a_chunks.zip(b_chunks) {
-        for lane in 0..8 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    sums.iter().sum::<f32>() + tail
 }
 
 struct Designer {

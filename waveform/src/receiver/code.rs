@@ -5,9 +5,10 @@
 //! deeply enough, and if it lies where codes can lie; otherwise there is no code. Never the nearest code: what a frequency
 //! means is the business of the kernel's table.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use crate::config::{HIGHEST_CODE, LOWEST_CODE};
+use crate::filter::{Recent, sinc};
 
 /// The rate to which the envelope is averaged down before it is analysed, in hertz, about.
 const RATE: f64 = 200.0;
@@ -62,9 +63,8 @@ pub struct CodeDetector {
     step: f64,
     /// Powers of the bins, a work space.
     powers: Box<[f32]>,
-    /// The window, oldest first at `at`; a ring stored twice.
-    history: Box<[f32]>,
-    at: usize,
+    /// The window.
+    history: Recent,
     averaged: usize,
     sum: f32,
     collected: usize,
@@ -99,8 +99,7 @@ impl CodeDetector {
             bins: (0..count).map(bin).collect(),
             step,
             powers: vec![0.0; count].into(),
-            history: vec![0.0; 2 * length].into(),
-            at: 0,
+            history: Recent::new(length),
             averaged,
             sum: 0.0,
             collected: 0,
@@ -117,13 +116,9 @@ impl CodeDetector {
         if self.collected < self.averaged {
             return None;
         }
-        let length = self.history.len() / 2;
-        let value = self.sum / self.averaged as f32;
+        self.history.push(self.sum / self.averaged as f32);
         self.sum = 0.0;
         self.collected = 0;
-        self.history[self.at] = value;
-        self.history[self.at + length] = value;
-        self.at = (self.at + 1) % length;
         self.until_report -= 1;
         if self.until_report > 0 {
             return None;
@@ -134,9 +129,8 @@ impl CodeDetector {
 
     #[allow(clippy::cast_precision_loss)]
     fn read(&mut self) -> CodeReading {
-        let length = self.history.len() / 2;
-        let window = &self.history[self.at..self.at + length];
-        let mean = window.iter().sum::<f32>() / length as f32;
+        let window = self.history.window();
+        let mean = window.iter().sum::<f32>() / window.len() as f32;
         for (bin, power) in self.bins.iter().zip(&mut self.powers) {
             let mut cosine = 0.0;
             let mut sine = 0.0;
@@ -180,10 +174,6 @@ impl CodeDetector {
         let frequency = self.bins[peak].frequency + offset.clamp(-0.5, 0.5) * self.step;
         (LOWEST_CODE.0..=HIGHEST_CODE.0).contains(&frequency).then(|| (frequency * 1000.0).round() as u32)
     }
-}
-
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use realfft::num_complex::{Complex32, Complex64};
 
 use crate::config::{Carrier, TransmitterConfig};
+use crate::filter::{Recent, dot, sinc};
 
 /// Samples of the envelope in a bit, at least.
 const PER_BIT: f64 = 5.0;
@@ -14,17 +15,13 @@ const LENGTH_BITS: f64 = 4.0;
 const HALF_BAND_BIT_RATES: f64 = 1.15;
 /// Shape of the Kaiser window: side lobes 60 dB down.
 const KAISER: f64 = 5.65;
-/// Partial sums of the filter, so that the compiler can use vector instructions.
-const LANES: usize = 8;
 
 /// One band-pass filter that also moves its carrier to zero and thins the samples out.
 pub struct Front {
-    /// Taps, first for the newest sample; real and imaginary parts apart. The length is a multiple of `LANES`.
+    /// Taps, the one for the oldest sample first; real and imaginary parts apart.
     real: Box<[f32]>,
     imaginary: Box<[f32]>,
-    /// The last samples, twice over, so that they always stand in one piece somewhere.
-    history: Box<[f32]>,
-    at: usize,
+    history: Recent,
     decimation: usize,
     until_output: usize,
     /// Turns the output from the carrier to zero: cycles gone by and cycles for each output.
@@ -40,6 +37,7 @@ impl Front {
     pub fn new(config: &TransmitterConfig, carrier: Carrier) -> Self {
         let rate = config.sample_rate().0;
         let bit_rate = config.bit_rate().0;
+        // At least 1: two carriers with their bands beside each other take more than six samples in a bit.
         let decimation = (rate / (PER_BIT * bit_rate)).floor() as usize;
         let length = (LENGTH_BITS * rate / bit_rate).round() as usize;
         let cut_off = HALF_BAND_BIT_RATES * bit_rate / rate;
@@ -50,24 +48,17 @@ impl Front {
             .map(|i| {
                 let x = i as f64 - middle;
                 let window = bessel_i0(KAISER * (1.0 - (x / (middle + 0.5)).powi(2)).max(0.0).sqrt());
-                let sinc = if x == 0.0 { 1.0 } else { (TAU * cut_off * x).sin() / (TAU * cut_off * x) };
-                window * sinc
+                window * sinc(2.0 * cut_off * x)
             })
             .collect();
         // A real carrier of amplitude 1 has half of it on either side of zero.
         let gain = 2.0 / prototype.iter().sum::<f64>();
-        let padded = length.next_multiple_of(LANES);
-        let tap = |i: usize| match prototype.get(i) {
-            Some(h) => Complex64::from_polar(gain * h, TAU * frequency * i as f64),
-            None => Complex64::default(),
-        };
-        // Stored oldest sample first, as the history is.
-        let taps: Vec<Complex64> = (0..padded).rev().map(tap).collect();
+        let tap = |(i, h): (usize, &f64)| Complex64::from_polar(gain * h, TAU * frequency * i as f64);
+        let taps: Vec<Complex64> = prototype.iter().enumerate().rev().map(tap).collect();
         Self {
             real: taps.iter().map(|c| c.re as f32).collect(),
             imaginary: taps.iter().map(|c| c.im as f32).collect(),
-            history: vec![0.0; 2 * padded].into(),
-            at: 0,
+            history: Recent::new(length),
             decimation,
             until_output: decimation,
             turned: 0.0,
@@ -94,34 +85,21 @@ impl Front {
 
     /// Takes one sample; now and then there is one of the envelope: its magnitude is the carrier's amplitude.
     pub fn push(&mut self, sample: f32) -> Option<Complex32> {
-        let length = self.real.len();
         // A recording may hold values that are no numbers; they must not stay in the filters behind.
         let sample = if sample.is_finite() { sample.clamp(-1e6, 1e6) } else { 0.0 };
-        self.history[self.at] = sample;
-        self.history[self.at + length] = sample;
-        self.at = (self.at + 1) % length;
+        self.history.push(sample);
         self.until_output -= 1;
         if self.until_output > 0 {
             return None;
         }
         self.until_output = self.decimation;
-        let window = &self.history[self.at..self.at + length];
+        let window = self.history.window();
         let filtered = Complex32::new(dot(&self.real, window), dot(&self.imaginary, window));
         let turn = Complex64::from_polar(1.0, -TAU * self.turned);
         self.turned = (self.turned + self.turn).fract();
         #[allow(clippy::cast_possible_truncation)]
         Some(filtered * Complex32::new(turn.re as f32, turn.im as f32))
     }
-}
-
-fn dot(taps: &[f32], samples: &[f32]) -> f32 {
-    let mut sums = [0.0; LANES];
-    for (taps, samples) in taps.chunks_exact(LANES).zip(samples.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            sums[lane] += taps[lane] * samples[lane];
-        }
-    }
-    sums.iter().sum()
 }
 
 /// The modified Bessel function of order zero, by its power series, which converges fast for the small arguments here.

@@ -7,6 +7,7 @@
 //! | [`OnBoard`] | codes and telegrams of both carriers |
 //! | [`TrackCircuit`] | whether its own transmitter's signal arrives (SIG-3) |
 
+mod branch;
 mod carrier;
 mod code;
 mod conventional;

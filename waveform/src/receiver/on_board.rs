@@ -1,11 +1,11 @@
 //! The receiver of a train with digital equipment: codes, bits and telegrams of both carriers.
 
-use atc_kernel::Machine;
 use atc_kernel::code::{CodeTable, Millihertz};
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::telegram::{Deframer, Main, Reception, Sub, Telegram, Window};
+use atc_kernel::telegram::{Main, Reception, Sub};
 
-use super::carrier::{CarrierEvent, CarrierReceiver, Keying, Squelch};
+use super::branch::{Branch, OnCarrier};
+use super::carrier::{Keying, Squelch};
 use super::code::{CodeConfidence, CodeReading};
 use crate::config::{Carrier, TransmitterConfig};
 use crate::units::SampleIndex;
@@ -34,62 +34,13 @@ pub enum Heard {
     Speed(Option<KmhTenths>),
 }
 
-/// One carrier and the kernel's deframer behind it.
-struct Branch {
-    carrier: Carrier,
-    receiver: CarrierReceiver,
-    window: Window,
-    code: Option<Millihertz>,
-}
-
-impl Branch {
-    fn new(config: &TransmitterConfig, carrier: Carrier, confidence: CodeConfidence, squelch: Squelch) -> Self {
-        Self {
-            carrier,
-            receiver: CarrierReceiver::new(config, carrier, Keying::Heard, confidence, squelch),
-            window: Deframer.initial(),
-            code: None,
-        }
-    }
-
-    /// Takes one sample; whether a code was analysed with it.
-    fn push(&mut self, sample: f32, mut events: impl FnMut(Heard)) -> Analysed {
-        let mut analysed = Analysed::Nothing;
-        let (carrier, window, code) = (self.carrier, &mut self.window, &mut self.code);
-        self.receiver.push(sample, |event| match event {
-            CarrierEvent::Bit(bit) => {
-                events(Heard::Bit(carrier, bit));
-                let (next, telegram) = Deframer.step(*window, bit);
-                *window = next;
-                // What is heard on the other kind's carrier is no telegram of this line.
-                match (carrier, telegram) {
-                    (Carrier::Main, Some(Telegram::Main(main))) => events(Heard::Main(main)),
-                    (Carrier::Sub, Some(Telegram::Sub(sub))) => events(Heard::Sub(sub)),
-                    _ => (),
-                }
-            }
-            CarrierEvent::Code(reading) => {
-                *code = reading.millihertz.map(Millihertz);
-                events(Heard::Code(carrier, reading));
-                analysed = Analysed::Code;
-            }
-        });
-        analysed
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Analysed {
-    Code,
-    Nothing,
-}
-
 /// The whole chain of a train: samples in, events out.
 pub struct OnBoard {
     main: Branch,
     sub: Branch,
     table: CodeTable,
     at: u64,
+    main_code: Option<Millihertz>,
 }
 
 impl OnBoard {
@@ -105,15 +56,15 @@ impl OnBoard {
         confidence: CodeConfidence,
         squelch: Squelch,
     ) -> Self {
-        let branch = |carrier| Branch::new(config, carrier, confidence, squelch);
-        Self { main: branch(Carrier::Main), sub: branch(Carrier::Sub), table, at: 0 }
+        let branch = |carrier| Branch::new(config, carrier, Keying::Heard, confidence, squelch);
+        Self { main: branch(Carrier::Main), sub: branch(Carrier::Sub), table, at: 0, main_code: None }
     }
 
     /// The mean amplitude of a carrier over the last 0.2 s, as a part of full scale.
     pub fn level(&self, carrier: Carrier) -> f64 {
         match carrier {
-            Carrier::Main => self.main.receiver.level(),
-            Carrier::Sub => self.sub.receiver.level(),
+            Carrier::Main => self.main.level(),
+            Carrier::Sub => self.sub.level(),
         }
     }
 
@@ -122,13 +73,33 @@ impl OnBoard {
         for &sample in block {
             self.at += 1;
             let at = SampleIndex(self.at);
-            self.main.push(sample, |heard| events(Event { at, heard }));
-            let analysed = self.sub.push(sample, |heard| events(Event { at, heard }));
+            let main_code = &mut self.main_code;
+            self.main.push(sample, |on| {
+                if let OnCarrier::Code(reading) = on {
+                    *main_code = reading.millihertz.map(Millihertz);
+                }
+                events(Event { at, heard: Heard::on(Carrier::Main, on) });
+            });
             // Both carriers are analysed in step, the main one first.
-            if analysed == Analysed::Code {
-                let speed = self.table.heard(self.main.code, self.sub.code);
-                events(Event { at, heard: Heard::Speed(speed) });
-            }
+            let (main_code, table) = (self.main_code, &self.table);
+            self.sub.push(sample, |on| {
+                events(Event { at, heard: Heard::on(Carrier::Sub, on) });
+                if let OnCarrier::Code(reading) = on {
+                    let speed = table.heard(main_code, reading.millihertz.map(Millihertz));
+                    events(Event { at, heard: Heard::Speed(speed) });
+                }
+            });
+        }
+    }
+}
+
+impl Heard {
+    fn on(carrier: Carrier, heard: OnCarrier) -> Self {
+        match heard {
+            OnCarrier::Bit(bit) => Self::Bit(carrier, bit),
+            OnCarrier::Main(main) => Self::Main(main),
+            OnCarrier::Sub(sub) => Self::Sub(sub),
+            OnCarrier::Code(reading) => Self::Code(carrier, reading),
         }
     }
 }

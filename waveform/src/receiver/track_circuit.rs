@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use atc_kernel::Machine;
-use atc_kernel::telegram::{Deframer, SectionId, Telegram, Window};
+use atc_kernel::telegram::SectionId;
 
-use super::carrier::{CarrierEvent, CarrierReceiver, Keying, Squelch};
+use super::branch::{Branch, OnCarrier};
+use super::carrier::{Keying, Squelch};
 use super::code::CodeConfidence;
 use crate::config::{Carrier, TransmitterConfig};
 use crate::units::{Level, SampleIndex, Seconds};
@@ -27,7 +27,7 @@ pub struct TrackCircuitParams {
 /// Which rule the parameters break.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TrackCircuitError {
-    /// The levels must be above 0, and `drop_away` at most `pick_up`.
+    /// The levels must be above 0 and finite, and `drop_away` at most `pick_up`.
     Levels {
         /// The level to become free.
         pick_up: f64,
@@ -48,7 +48,7 @@ impl fmt::Display for TrackCircuitError {
         match self {
             Self::Levels { pick_up, drop_away } => write!(
                 f,
-                "pick_up is {pick_up} and drop_away {drop_away}; both must be above 0 and drop_away at most pick_up"
+                "pick_up is {pick_up} and drop_away {drop_away}; both must be above 0 and finite, and drop_away at most pick_up"
             ),
             Self::Lifetime { seconds, least } => {
                 write!(f, "telegram_lifetime is {seconds} s; it must be from {least} s, one telegram, to 60 s")
@@ -74,9 +74,8 @@ pub enum TrackState {
 /// not modulated.
 pub struct TrackCircuit {
     params: TrackCircuitParams,
-    main: CarrierReceiver,
-    sub: CarrierReceiver,
-    windows: [Window; 2],
+    main: Branch,
+    sub: Branch,
     coded: [Coded; 2],
     at: u64,
     own_until: u64,
@@ -107,12 +106,11 @@ impl TrackCircuit {
         }
         let keying = if params.own.is_some() { Keying::Heard } else { Keying::Ignored };
         let confidence = CodeConfidence::default();
-        let receiver = |carrier| CarrierReceiver::new(config, carrier, keying, confidence, Squelch::default());
+        let receiver = |carrier| Branch::new(config, carrier, keying, confidence, Squelch::default());
         Ok(Self {
             params,
             main: receiver(Carrier::Main),
             sub: receiver(Carrier::Sub),
-            windows: [Deframer.initial(); 2],
             coded: [Coded::No; 2],
             at: 0,
             own_until: 0,
@@ -130,27 +128,20 @@ impl TrackCircuit {
     pub fn process(&mut self, block: &[f32], mut changes: impl FnMut(SampleIndex, TrackState)) {
         for &sample in block {
             self.at += 1;
-            let until = self.at + self.lifetime;
+            // On an analog-only line the lifetime may be anything.
+            let until = self.at.saturating_add(self.lifetime);
             for (place, receiver) in [&mut self.main, &mut self.sub].into_iter().enumerate() {
-                let (window, coded) = (&mut self.windows[place], &mut self.coded[place]);
+                let coded = &mut self.coded[place];
                 let (own, own_until) = (self.params.own, &mut self.own_until);
-                receiver.push(sample, |event| match event {
-                    CarrierEvent::Bit(bit) => {
-                        let (next, telegram) = Deframer.step(*window, bit);
-                        *window = next;
-                        let section = match telegram {
-                            Some(Telegram::Main(main)) if place == 0 => Some(main.section),
-                            Some(Telegram::Sub(sub)) if place == 1 => Some(sub.section),
-                            _ => None,
-                        };
-                        match section {
-                            Some(section) if Some(section) == own => *own_until = until,
-                            // Somebody else's signal is heard so well that ours cannot be there.
-                            Some(_) => *own_until = 0,
-                            None => (),
-                        }
-                    }
-                    CarrierEvent::Code(reading) => {
+                let mut from = |section: SectionId| {
+                    // Somebody else's signal is heard so well that ours cannot be there.
+                    *own_until = if Some(section) == own { until } else { 0 };
+                };
+                receiver.push(sample, |on| match on {
+                    OnCarrier::Bit(_) => (),
+                    OnCarrier::Main(main) => from(main.section),
+                    OnCarrier::Sub(sub) => from(sub.section),
+                    OnCarrier::Code(reading) => {
                         *coded = if reading.millihertz.is_some() { Coded::Yes } else { Coded::No };
                     }
                 });

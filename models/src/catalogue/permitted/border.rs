@@ -1,8 +1,9 @@
 //! The models of what happens at the border of two sections.
 
-use super::{DISTANCE, NO_FIX, NO_LIMITS, NO_MARGIN, SOUND, WORST, about, digital, other, ride};
+use super::{DISTANCE, NO_FIX, NO_LIMITS, NO_MARGIN, SOUND, WORST, about, other, ride};
 use crate::check::Entry;
 use crate::permitted::device::FixOfAnyCycle;
+use crate::permitted::layout::Layout;
 use crate::permitted::ride::{Border, Environment, Fix, Small};
 use crate::permitted::{Purpose, Sight};
 
@@ -24,7 +25,7 @@ fn with(border: Border) -> Environment {
 }
 
 fn distances() -> Vec<Entry> {
-    let layout = digital(&[4, 4, 2], &[8]);
+    let layout = Layout::digital(&[4, 4, 2], &[8]);
     let margin = |margin| Small { margin, ..Small::USUAL };
     let mixed = |fix_ahead| with(Border::Mixed { cells: 2, fix_ahead });
     let sights = Purpose::Safe(&[Sight::Pattern]);
@@ -118,7 +119,7 @@ fn distances() -> Vec<Entry> {
 }
 
 fn limits() -> Vec<Entry> {
-    let mut slow = digital(&[4, 6, 2], &[12]);
+    let mut slow = Layout::digital(&[4, 6, 2], &[12]);
     slow.sections[1].limit = 0;
     let limited = |limit_from| {
         let mut layout = slow.clone();

@@ -1,6 +1,6 @@
 //! The models of transmitters that repeat themselves, and of the counter's range.
 
-use super::{AGE, Conditions, LOOPS, NO_POINT_LIFE, SOUND, about, digital, ride};
+use super::{AGE, Conditions, LOOPS, NO_POINT_LIFE, SOUND, about, ride};
 use crate::check::Entry;
 use crate::permitted::layout::Layout;
 use crate::permitted::ride::{Changes, Delivery, Environment, Motion, Small, Transmitter};
@@ -29,7 +29,7 @@ fn looping(telegrams: u8, keeps: u16) -> Environment {
 const RUN_1: Small = Small { lowest: 1, ..Small::USUAL };
 
 fn moving() -> Layout {
-    digital(&[3, 4, 3], &[7, 9])
+    Layout::digital(&[3, 4, 3], &[7, 9])
 }
 
 fn model(
@@ -144,7 +144,7 @@ fn wrapped() -> Vec<Entry> {
         in_a_cycle: 16,
         ..looping(1, keeps)
     };
-    let standing = digital(&[1, 3], &[1, 3]);
+    let standing = Layout::digital(&[1, 3], &[1, 3]);
     vec![
         model(
             (
@@ -163,7 +163,7 @@ fn wrapped() -> Vec<Entry> {
             (
                 "permitted-wrap-at-once",
                 "The same, and a withdrawn stretch is kept for a cycle less than the life of a telegram: more is permitted than the ground \
-             allows.",
+                 allows.",
                 "the same; a withdrawn stretch is kept for the life less 1 cycle",
             ),
             &standing,
