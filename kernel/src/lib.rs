@@ -15,6 +15,7 @@
 //! | [`pattern`] | the braking pattern | JP4845985B2 |
 //! | [`permitted`] | the permitted speed from codes and telegrams | JP4845985B2 |
 //! | [`position`] | the train's position from a level difference | JP4045174B2 |
+//! | [`interlocking`] | routes, points, signals and the telegrams of every track circuit | JP4290933B2 |
 //! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
 //! | [`time`], [`speed`], [`distance`] | the units that all of them share | |
 //!
@@ -26,7 +27,7 @@
 //!   The initial state is valid and the most restrictive.
 //! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
 //!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`], a lower
-//!   [`permitted::Permission`], a wider [`position::Interval`].
+//!   [`permitted::Permission`], a wider [`position::Interval`], fewer proceed aspects in [`interlocking::Output`].
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -35,6 +36,7 @@ pub mod block;
 pub mod code;
 pub mod distance;
 pub mod duplex;
+pub mod interlocking;
 pub mod pattern;
 pub mod permitted;
 pub mod position;

@@ -1,0 +1,234 @@
+//! The layout of a station: what the plan says, and the same once it is checked.
+
+use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
+use crate::distance::Metres;
+use crate::time::Ticks;
+
+/// The most track circuits of a station.
+pub const MAX_CIRCUITS: usize = 64;
+
+/// The most speed codes: 0 is stop, 1 to 7 are speeds.
+pub const MAX_CODES: usize = 8;
+
+/// A speed code of the ATC telegrams: 0 is stop, a higher one is a higher speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SpeedCode(pub u8);
+
+impl SpeedCode {
+    /// No speed.
+    pub const STOP: Self = Self(0);
+
+    /// The highest code that there can be.
+    pub const MOST: Self = Self(7);
+
+    /// The lower of the two.
+    #[must_use]
+    pub const fn or_lower(self, other: Self) -> Self {
+        if other.0 < self.0 { other } else { self }
+    }
+}
+
+/// One place of a route's path, or its overlap: what is held there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Element {
+    /// The track circuit. An overlap may have several circuits, or none.
+    pub circuits: CircuitSet,
+    /// The points that must stand so, flank points included.
+    pub positions: Positions,
+}
+
+/// A route: from the signal at the exit of `entry` over `path` to the end of its last circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Route<const P: usize> {
+    /// The circuit in rear of the route's signal, where its train waits.
+    pub entry: CircuitSet,
+    /// The circuits on which a train may be that counts on the signal: `entry` among them.
+    pub approach: CircuitSet,
+    /// The path in order of travel; what is beyond `length` is not looked at.
+    pub path: [Element; P],
+    /// How many places the path has, 1 to `P`; 0 means that there is no route of this number.
+    pub length: u8,
+    /// What is kept free beyond the end, in case the train does not stop in time.
+    pub overlap: Element,
+    /// The circuits that adjoin the end of the route: the train is there once it has left the path.
+    pub beyond: CircuitSet,
+    /// The routes that go on where this one ends; their path may run over this route's overlap.
+    pub continuing: RouteSet,
+    /// Routes that must not be held together with this one, whatever their circuits and points.
+    pub conflicts: RouteSet,
+    /// The segment that the route's train comes from, or none.
+    pub from: SegmentSet,
+    /// The segment that the route's train goes out to, or none.
+    pub to: SegmentSet,
+    /// How long the points may take to arrive.
+    pub drive: Ticks,
+    /// How long a withdrawn route stays locked where a train may be coming.
+    pub release: Ticks,
+    /// How long a train must have stood on the last circuit before the overlap is given up.
+    pub stay: Ticks,
+    /// The highest speed code on the route.
+    pub speed: SpeedCode,
+}
+
+impl<const P: usize> Route<P> {
+    /// No route: what fills the places of a layout that are not used.
+    pub const NONE: Self = Self {
+        entry: CircuitSet::EMPTY,
+        approach: CircuitSet::EMPTY,
+        path: [Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE }; P],
+        length: 0,
+        overlap: Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE },
+        beyond: CircuitSet::EMPTY,
+        continuing: RouteSet::EMPTY,
+        conflicts: RouteSet::EMPTY,
+        from: SegmentSet::EMPTY,
+        to: SegmentSet::EMPTY,
+        drive: Ticks(0),
+        release: Ticks(0),
+        stay: Ticks(0),
+        speed: SpeedCode::STOP,
+    };
+
+    /// Whether there is such a route.
+    pub const fn exists(&self) -> bool {
+        self.length > 0
+    }
+
+    /// What the places from `first` on hold, without the overlap.
+    #[inline]
+    pub fn held_from(&self, first: u8) -> Element {
+        let mut held = Element::default();
+        for (place, element) in (0_u8..).zip(&self.path) {
+            if place >= first && place < self.length {
+                held.circuits = held.circuits.or(element.circuits);
+                held.positions = held.positions.or(element.positions);
+            }
+        }
+        held
+    }
+
+    /// The circuit at `place` of the path; none where there is no such place.
+    #[inline]
+    pub fn circuit_at(&self, place: u8) -> CircuitSet {
+        let mut circuit = CircuitSet::EMPTY;
+        for (number, element) in (0_u8..).zip(&self.path) {
+            circuit = circuit.or(element.circuits.only_if(number == place && number < self.length));
+        }
+        circuit
+    }
+
+    /// The last circuit of the path.
+    #[inline]
+    pub fn last(&self) -> CircuitSet {
+        self.circuit_at(self.length.wrapping_sub(1))
+    }
+}
+
+/// A point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Point {
+    /// The circuits whose occupation says that a train may stand on the point or foul it.
+    pub detectors: CircuitSet,
+}
+
+/// A stretch of plain line to a neighbouring station, as far as this device sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment<const P: usize> {
+    /// Its circuits, the one next to the station first; what is beyond `length` is not looked at.
+    pub circuits: [CircuitSet; P],
+    /// How many circuits it has, 1 to `P`; 0 means that there is no segment of this number.
+    pub length: u8,
+    /// The last circuit of every route that goes out to the segment; none if no route does.
+    pub throat: CircuitSet,
+}
+
+impl<const P: usize> Segment<P> {
+    /// No segment: what fills the places of a layout that are not used.
+    pub const NONE: Self = Self { circuits: [CircuitSet::EMPTY; P], length: 0, throat: CircuitSet::EMPTY };
+
+    /// All its circuits.
+    #[inline]
+    pub fn all(&self) -> CircuitSet {
+        let mut all = CircuitSet::EMPTY;
+        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+            all = all.or(circuit.only_if(place < self.length));
+        }
+        all
+    }
+}
+
+/// A layout as a plan gives it: up to `R` routes of up to `P` circuits each, `N` points, `S` segments. Not checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> {
+    /// The routes.
+    pub routes: [Route<P>; R],
+    /// The points.
+    pub points: [Point; N],
+    /// The segments of plain line.
+    pub segments: [Segment<P>; S],
+    /// The length of each circuit.
+    pub lengths: [Metres; MAX_CIRCUITS],
+    /// The distance within which a train stops from the speed of each code; the longest length where there is no such code.
+    pub braking: [Metres; MAX_CODES],
+    /// How many cycles in a row a circuit must be reported clear before it counts as clear, 1 to 255.
+    pub clear: u8,
+    /// For how long the neighbour's permission must have been withdrawn before a segment turns: longer than telegrams live.
+    pub turn: Ticks,
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, N, S> {
+    /// A plan with nothing in it, to be filled.
+    pub const EMPTY: Self = Self {
+        routes: [Route::NONE; R],
+        points: [Point { detectors: CircuitSet::EMPTY }; N],
+        segments: [Segment::NONE; S],
+        lengths: [Metres(0); MAX_CIRCUITS],
+        braking: [Metres(u16::MAX); MAX_CODES],
+        clear: 0,
+        turn: Ticks(0),
+    };
+}
+
+/// A layout that has been checked. The only way to one is [`Layout::new`], or, for proofs and for the models of bad layouts,
+/// [`Layout::with_what_proofs_need`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout<const R: usize, const P: usize, const N: usize, const S: usize> {
+    plan: Plan<R, P, N, S>,
+}
+
+/// A station of the greatest size: 64 routes of up to 16 circuits, 32 points, 8 segments of plain line, 64 circuits.
+pub type Station = Layout<64, 16, 32, 8>;
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P, N, S> {
+    /// A layout that keeps every rule.
+    ///
+    /// # Errors
+    /// The first rule that is broken, and where; [`Plan::check`] tells all of them.
+    pub fn new(plan: Plan<R, P, N, S>) -> Result<Self, super::Broken> {
+        let mut first = None;
+        plan.check(&mut |broken| first = first.or(Some(broken)));
+        match first {
+            Some(broken) => Err(broken),
+            None => Ok(Self { plan }),
+        }
+    }
+
+    /// A layout that keeps the rules that the theorems rest on, and perhaps not those of engineering: the theorems hold for it, but
+    /// trains are not safe on it. For proofs, and to show what a bad layout leads to.
+    ///
+    /// # Errors
+    /// The first rule that is broken, and where.
+    pub fn with_what_proofs_need(plan: Plan<R, P, N, S>) -> Result<Self, super::Broken> {
+        let mut first = None;
+        plan.check_needed(&mut |broken| first = first.or(Some(broken)));
+        match first {
+            Some(broken) => Err(broken),
+            None => Ok(Self { plan }),
+        }
+    }
+
+    /// The plan.
+    pub const fn plan(&self) -> &Plan<R, P, N, S> {
+        &self.plan
+    }
+}

@@ -1,0 +1,231 @@
+//! Interlocking and ATC in one device: routes, points, signals and the telegrams of every track circuit (JP4290933B2).
+//!
+//! One cycle runs in a fixed order over one table that both parts share, so that neither waits for the other: the circuits
+//! are tracked once ([`Track`]); the interlocking checks the request, drives points, reserves routes and sets signals; it writes
+//! the [`Table`]; the ATC reads it and says, for each circuit with a train, which circuit is the last that it may enter and how fast.
+//!
+//! Nothing here knows a station: a [`Layout`] does. The theorems hold for every layout that its constructor accepts.
+//!
+//! Requirements: `spec/interlocking.md`. Read in this order: [`Plan`] and [`Layout`] (parameters), [`Rule`] (what is checked),
+//! [`Input`] and [`Output`], [`State`] with its `is_valid`, [`RouteState`], [`Layout::cycle`].
+
+mod atc;
+mod check;
+mod direction;
+mod layout;
+mod point;
+mod request;
+mod route;
+mod set;
+mod signal;
+mod state;
+mod table;
+mod track;
+mod works;
+
+pub use atc::{MAX_LINKS, Movement, connect, movement};
+pub use check::{Broken, Place, Rule};
+pub use direction::{Directions, Needs, Travel};
+pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, Plan, Point, Route, Segment, SpeedCode, Station};
+pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
+pub use route::{Phase, RouteState};
+pub use set::{
+    CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,
+};
+pub use signal::{Grant, View, grant, ready, shows_proceed};
+pub use state::State;
+pub use table::{Contents, Epoch, Table};
+pub use track::Track;
+pub use works::{Orders, Works};
+
+use crate::Machine;
+use direction::Turned;
+use point::Demand;
+
+/// What the device reads in one logic cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// The circuits that are reported occupied.
+    pub occupied: CircuitSet,
+    /// The positions in which points are detected; a point that is in both is in neither.
+    pub detected: Positions,
+    /// One request, or none.
+    pub request: Option<Request>,
+    /// What staff command.
+    pub orders: Orders,
+    /// The segments where the neighbour permits this station to send trains.
+    pub consent: SegmentSet,
+}
+
+/// What the device commands in one logic cycle, besides the telegrams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Output<const R: usize> {
+    /// The routes whose signals show proceed; all others show stop.
+    pub proceed: RouteSet,
+    /// The points that are driven, and whereto.
+    pub drives: Positions,
+    /// The segments where this station permits the neighbour to send trains.
+    pub permits: SegmentSet,
+    /// The blocked circuits that staff may rely on.
+    pub confirmed: CircuitSet,
+    /// What became of the request.
+    pub answer: Option<Result<(), Refusal>>,
+    /// The shared table. The telegrams follow from it: [`Layout::telegrams`].
+    pub table: Table<R>,
+}
+
+/// Positions as detection delivers them, without points that are in both.
+#[inline]
+const fn plausible(detected: Positions) -> Positions {
+    detected.without(detected.normal.and(detected.reverse))
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P, N, S> {
+    /// One logic cycle: receive, track, check, points, reservation, signals, shared table.
+    #[must_use]
+    pub fn cycle(&self, mut state: State<R, S>, input: Input) -> (State<R, S>, Output<R>) {
+        let (track, occupied) = state.track.step(self.plan().clear, input.occupied);
+        state.track = track;
+        self.interlock(state, Input { occupied, ..input })
+    }
+
+    /// The cycle after the tracking: `input.occupied` are the circuits that count as occupied.
+    #[inline]
+    #[must_use]
+    pub fn interlock(&self, mut state: State<R, S>, input: Input) -> (State<R, S>, Output<R>) {
+        let plan = self.plan();
+        let (occupied, detected) = (input.occupied, plausible(input.detected));
+        state.works = state.works.obey(input.orders);
+        for (route, held) in plan.routes.iter().zip(&mut state.routes) {
+            *held = held.follow(route, occupied);
+        }
+        let under = point::meeting(self, occupied);
+        let directions = (state.directions.toward, state.directions.away);
+        let closed = direction::closed(self, state.works.blocked);
+        let sight = Sight { occupied, blocked: state.works.blocked, closed, detected, under, directions };
+        let (alone, answer) = self.carry_out(&mut state, input, sight);
+        let mut demand = Demand { wanted: alone, ..Demand::default() };
+        for (route, held) in plan.routes.iter().zip(&state.routes) {
+            demand = demand.with(route, *held);
+        }
+        let drives = demand.drives(detected, under);
+        let view = View { occupied, blocked: state.works.blocked, closed, firm: detected.without(drives.points()) };
+        let needs = Needs::of(self, &state.routes);
+        let mut circuits = direction::open_line(self, &state.directions, (occupied, needs));
+        for (route, held) in plan.routes.iter().zip(&mut state.routes) {
+            *held = held.reserve(route, signal::ready(route, *held, view));
+            circuits = circuits.or(held.circuits(route));
+        }
+        state.works = state.works.confirm(circuits, occupied);
+        state.epoch = state.epoch.next();
+        let (proceed, grants) = signal::all(self, &state.routes, view);
+        let contents = Contents {
+            occupied,
+            blocked: state.works.blocked,
+            grants,
+            toward: state.directions.toward,
+            away: state.directions.away,
+            restrictions: state.works.restrictions,
+        };
+        let table = Table::write(state.epoch, contents);
+        let (permits, confirmed) = (state.directions.toward.without(closed), state.works.confirmed);
+        (state, Output { proceed, drives, permits, confirmed, answer, table })
+    }
+
+    /// Carries out the request, or refuses it. The positions are those of an individual point command.
+    #[inline]
+    fn carry_out(
+        &self,
+        state: &mut State<R, S>,
+        input: Input,
+        sight: Sight,
+    ) -> (Positions, Option<Result<(), Refusal>>) {
+        //= spec/interlocking.md#ilk-4-all-or-nothing
+        //# A request that is refused MUST NOT be remembered, and changes nothing but that a segment that is to be turned away is no longer permitted to the neighbour.
+        let mut alone = Positions::NONE;
+        let mut answer = None;
+        for (number, route) in self.plan().routes.iter().enumerate() {
+            match input.request {
+                Some(Request::Set(asked)) if usize::from(asked.number()) == number => {
+                    let refusal = request::refuse_route(self, &state.routes, number, sight);
+                    if refusal.is_none() {
+                        state.routes[number] = RouteState::RESERVED;
+                    }
+                    answer = Some(refusal);
+                }
+                Some(Request::Withdraw(asked)) if usize::from(asked.number()) == number => {
+                    let held = state.routes[number];
+                    let refusal = if route.exists() { Refusal::NotHeld } else { Refusal::Unknown };
+                    answer = Some((!held.is_held()).then_some(refusal));
+                    if held.is_held() {
+                        state.routes[number] = held.withdraw(route, sight.occupied);
+                    }
+                }
+                _ => {}
+            }
+        }
+        if let Some(Request::Drive(point, position)) = input.request {
+            let refusal = request::refuse_point(self, &state.routes, point, sight);
+            alone = Positions::of(point, position).only_if(refusal.is_none());
+            answer = Some(refusal);
+        }
+        let command = match input.request {
+            Some(Request::Turn(segment, travel)) => Some((segment.alone(), travel)),
+            _ => None,
+        };
+        let needs = Needs::of(self, &state.routes);
+        let (directions, turned) =
+            direction::turn(self, state.directions, command, (sight.occupied, sight.closed, needs, input.consent));
+        state.directions = directions;
+        answer = match turned {
+            Some(Turned::Done) => Some(None),
+            Some(Turned::Waiting) => Some(Some(Refusal::Waiting)),
+            Some(Turned::InTheWay) => Some(Some(Refusal::Direction)),
+            Some(Turned::Unknown) => Some(Some(Refusal::Unknown)),
+            Some(Turned::Blocked) => Some(Some(Refusal::Blocked)),
+            None => answer,
+        };
+        let unknown = input.request.map(|_| Some(Refusal::Unknown));
+        (alone, answer.or(unknown).map(|refusal| refusal.map_or(Ok(()), Err)))
+    }
+
+    /// The telegram of each circuit, from the shared table and the number of this cycle: all stop telegrams if the table is not
+    /// of this cycle, or damaged.
+    #[must_use]
+    pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Movement; MAX_CIRCUITS] {
+        let contents = table.read(epoch);
+        let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| atc::begins(self, contents));
+        core::array::from_fn(|number| {
+            let circuit = CircuitSet::nth(number).first().unwrap_or(CircuitId::ZERO);
+            //= spec/interlocking.md#atc-6-unreadable-table
+            //# A table that cannot be read MUST make every telegram a stop telegram.
+            match &contents {
+                Some(contents) if begins.has(circuit) => movement(self, contents, circuit),
+                _ => Movement::stop_in(circuit),
+            }
+        })
+    }
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Machine for Layout<R, P, N, S> {
+    type State = State<R, S>;
+    type Input = Input;
+    type Output = Output<R>;
+
+    const SAFE: Self::Output = Output {
+        proceed: RouteSet::EMPTY,
+        drives: Positions::NONE,
+        permits: SegmentSet::EMPTY,
+        confirmed: CircuitSet::EMPTY,
+        answer: None,
+        table: Table::UNREADABLE,
+    };
+
+    fn initial(&self) -> Self::State {
+        State::INITIAL
+    }
+
+    fn step(&self, state: Self::State, input: Self::Input) -> (Self::State, Self::Output) {
+        self.cycle(state, input)
+    }
+}

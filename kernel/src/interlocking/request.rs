@@ -1,0 +1,168 @@
+//! The conflict check: what a request asks for, and why it is refused.
+
+use super::layout::{Layout, Route};
+use super::route::RouteState;
+use super::set::{CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet};
+use super::{Travel, point};
+
+/// What may be asked for; one thing a cycle. Nothing that is refused is remembered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Set a route.
+    Set(RouteId),
+    /// Withdraw a route.
+    Withdraw(RouteId),
+    /// Drive one point, in this cycle.
+    Drive(PointId, Position),
+    /// Give a segment a direction.
+    Turn(SegmentId, Travel),
+}
+
+/// Why a request is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Refusal {
+    /// There is no route, point or segment of this number.
+    Unknown,
+    /// The route to be set is held already.
+    AlreadyHeld,
+    /// The route to be withdrawn is not held.
+    NotHeld,
+    /// A route that is declared to conflict is held.
+    Conflict,
+    /// A circuit of the path, or the point's detector, is held by another route.
+    PathHeld,
+    /// A circuit of the overlap is held by another route.
+    OverlapHeld,
+    /// A point is needed or locked in another position by a route.
+    PointLocked,
+    /// A circuit of path or overlap is occupied.
+    Occupied,
+    /// A circuit of path or overlap, the point's detector, or a circuit of the segment that the route leads to is blocked.
+    Blocked,
+    /// A point must move, and a train stands on it.
+    PointUnderTrain,
+    /// A segment does not have the direction that the route needs, or cannot turn because of a route or a train.
+    Direction,
+    /// The permission to the neighbour is withdrawn, and the segment cannot be turned away yet: the neighbour's permission is missing, this
+    /// station's own may still be in the air, or a circuit of the segment is blocked.
+    Waiting,
+}
+
+/// What the conflict check looks at besides the routes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sight {
+    /// The circuits that count as occupied.
+    pub occupied: CircuitSet,
+    /// The circuits that are blocked.
+    pub blocked: CircuitSet,
+    /// The segments with a blocked circuit.
+    pub closed: SegmentSet,
+    /// The positions that are detected.
+    pub detected: Positions,
+    /// The points under a train.
+    pub under: PointSet,
+    /// The segments towards this station, and those away from it.
+    pub directions: (SegmentSet, SegmentSet),
+}
+
+/// Why the route of number `asked` cannot be reserved; `None` if it can.
+#[inline]
+pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    routes: &[RouteState; R],
+    asked: usize,
+    sight: Sight,
+) -> Option<Refusal> {
+    //= spec/interlocking.md#ilk-1-request
+    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train.
+    let route = &layout.plan().routes[asked];
+    if !route.exists() {
+        return Some(Refusal::Unknown);
+    }
+    if routes[asked].is_held() {
+        return Some(Refusal::AlreadyHeld);
+    }
+    let (path, overlap) = (route.held_from(0), route.overlap);
+    let mut refusal = None;
+    for (number, (other, state)) in layout.plan().routes.iter().zip(routes).enumerate() {
+        if number != asked && state.is_held() && refusal.is_none() {
+            let numbers = (RouteSet::nth(asked), RouteSet::nth(number));
+            refusal = against(route, numbers, other, *state);
+        }
+    }
+    let ahead = path.circuits.or(overlap.circuits);
+    let needed = path.positions.or(overlap.positions);
+    let (toward, away) = sight.directions;
+    if refusal.is_some() {
+        refusal
+    } else if ahead.meets(sight.occupied) {
+        Some(Refusal::Occupied)
+    } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) {
+        Some(Refusal::Blocked)
+    } else if !toward.contains(route.from) || !away.contains(route.to) {
+        Some(Refusal::Direction)
+    } else if needed.missing_in(sight.detected).points().and(sight.under).is_empty() {
+        None
+    } else {
+        Some(Refusal::PointUnderTrain)
+    }
+}
+
+/// Why `route` cannot be reserved while `other` holds what it holds. The numbers are those of the two.
+#[inline]
+fn against<const P: usize>(
+    route: &Route<P>,
+    (asked, number): (RouteSet, RouteSet),
+    other: &Route<P>,
+    state: RouteState,
+) -> Option<Refusal> {
+    let (path, overlap) = (route.held_from(0), route.overlap);
+    let (held, kept) = (state.path(other), state.overlap(other));
+    //= spec/interlocking.md#ilk-2-overlaps
+    //# A path and a held overlap MUST be held together over a common circuit only if the route of the path is listed as continuing at the end of the route of the overlap, and two overlaps never.
+    let path_under_kept = path.circuits.meets(kept.circuits) && !other.continuing.meets(asked);
+    let held_over_mine = overlap.circuits.meets(held.circuits) && !route.continuing.meets(number);
+    if route.conflicts.meets(number) {
+        Some(Refusal::Conflict)
+    } else if path.circuits.meets(held.circuits) || path_under_kept {
+        Some(Refusal::PathHeld)
+    } else if overlap.circuits.meets(kept.circuits) || held_over_mine {
+        Some(Refusal::OverlapHeld)
+    } else if path.positions.or(overlap.positions).opposes(held.positions.or(kept.positions)) {
+        Some(Refusal::PointLocked)
+    } else {
+        None
+    }
+}
+
+/// Why a point cannot be driven on its own; `None` if it can.
+#[inline]
+pub fn refuse_point<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    routes: &[RouteState; R],
+    asked: PointId,
+    sight: Sight,
+) -> Option<Refusal> {
+    //= spec/interlocking.md#ilk-3-individual-point
+    //# An individual point command MUST be refused if a route holds the point or a detector circuit of it, or such a circuit is occupied or blocked.
+    let it = asked.alone();
+    if !point::meeting(layout, CircuitSet::ALL).meets(it) {
+        return Some(Refusal::Unknown);
+    }
+    let mut held = (PointSet::EMPTY, CircuitSet::EMPTY);
+    for (route, state) in layout.plan().routes.iter().zip(routes) {
+        held.0 = held.0.or(state.positions(route).points());
+        held.1 = held.1.or(state.circuits(route));
+    }
+    if held.0.meets(it) {
+        Some(Refusal::PointLocked)
+    } else if point::meeting(layout, held.1).meets(it) {
+        Some(Refusal::PathHeld)
+    } else if sight.under.meets(it) {
+        Some(Refusal::PointUnderTrain)
+    } else if point::meeting(layout, sight.blocked).meets(it) {
+        Some(Refusal::Blocked)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,215 @@
+//! One route: its phases, what it holds, and how it follows its train.
+
+use super::layout::{Element, Route};
+use super::set::{CircuitSet, Positions};
+use crate::time::Ticks;
+
+/// The phase of a route. Anything but idle holds circuits and points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// Nothing is held.
+    Idle,
+    /// Reserved provisionally: its points are being driven.
+    Provisional,
+    /// A point did not arrive in time; nothing is driven any more.
+    Failed,
+    /// Reserved: its points are locked and its signal may show proceed.
+    Set,
+    /// A train has entered the path, or something has occupied it.
+    InUse,
+    /// Withdrawn: nobody may enter, and everything stays locked until the release time has passed.
+    Releasing,
+}
+
+/// What is remembered of one route. The held part of its path is always a suffix: the places from `tail` on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RouteState {
+    /// The phase.
+    pub phase: Phase,
+    /// How many places of the path have been released.
+    pub tail: u8,
+    /// How many places of the path have been entered, in order.
+    pub head: u8,
+    /// Whether the overlap is held.
+    pub overlap: bool,
+    /// How long the phase has lasted: of provisional and releasing only, otherwise 0.
+    pub time: Ticks,
+    /// Whether the route has been set since it was reserved: only then a train may use it.
+    pub proved: bool,
+    /// For how long the train has stood on the last circuit, as far as that matters for the overlap.
+    pub stood: Ticks,
+}
+
+impl RouteState {
+    /// Nothing is held.
+    pub const IDLE: Self =
+        Self { phase: Phase::Idle, tail: 0, head: 0, overlap: false, proved: false, time: Ticks(0), stood: Ticks(0) };
+
+    /// Reserved provisionally, in this cycle.
+    pub const RESERVED: Self = Self { phase: Phase::Provisional, overlap: true, ..Self::IDLE };
+
+    /// Whether the route holds anything.
+    pub const fn is_held(&self) -> bool {
+        !matches!(self.phase, Phase::Idle)
+    }
+
+    /// Whether the route's points are locked: it is held, and not only provisionally.
+    pub const fn locks(&self) -> bool {
+        !matches!(self.phase, Phase::Idle | Phase::Provisional)
+    }
+
+    /// What the route holds of its path: nothing if it is idle.
+    #[inline]
+    pub fn path<const P: usize>(&self, route: &Route<P>) -> Element {
+        if self.is_held() { route.held_from(self.tail) } else { Element::default() }
+    }
+
+    /// What the route holds beyond its path.
+    #[inline]
+    pub fn overlap<const P: usize>(&self, route: &Route<P>) -> Element {
+        Element {
+            circuits: route.overlap.circuits.only_if(self.overlap),
+            positions: route.overlap.positions.only_if(self.overlap),
+        }
+    }
+
+    /// The circuits that the route holds, overlap included.
+    #[inline]
+    pub fn circuits<const P: usize>(&self, route: &Route<P>) -> CircuitSet {
+        self.path(route).circuits.or(self.overlap(route).circuits)
+    }
+
+    /// The points that the route holds, flank and overlap included.
+    #[inline]
+    pub fn positions<const P: usize>(&self, route: &Route<P>) -> Positions {
+        self.path(route).positions.or(self.overlap(route).positions)
+    }
+
+    /// Whether this is a state of `route` that the machine can be in.
+    pub fn is_valid<const P: usize>(&self, route: &Route<P>) -> bool {
+        let untouched = self.tail == 0 && self.head == 0 && self.overlap && self.stood.0 == 0;
+        let ordered = self.tail <= self.head && self.head <= route.length && (self.tail < route.length || self.overlap);
+        let timed = match self.phase {
+            Phase::Idle => *self == Self::IDLE,
+            Phase::Provisional => untouched && !self.proved && self.time < route.drive,
+            Phase::Failed => untouched && !self.proved && self.time.0 == 0,
+            Phase::Set => untouched && self.proved && self.time.0 == 0,
+            Phase::InUse => ordered && self.proved && self.time.0 == 0,
+            Phase::Releasing => ordered && (untouched || self.proved) && self.time < route.release,
+        };
+        let standing = self.stood.0 == 0
+            || self.overlap && self.head == route.length && self.tail < route.length && self.stood < route.stay;
+        timed && standing && (route.exists() || self.phase == Phase::Idle)
+    }
+
+    /// One cycle of following the train: `occupied` are the circuits that count as occupied.
+    #[inline]
+    #[must_use]
+    pub fn follow<const P: usize>(mut self, route: &Route<P>, occupied: CircuitSet) -> Self {
+        if !matches!(self.phase, Phase::Set | Phase::InUse | Phase::Releasing) {
+            return self;
+        }
+        //= spec/interlocking.md#ilk-6-end-of-proceed
+        //# Occupation of any circuit of a set route's path MUST end its proceed aspect for good.
+        if self.phase == Phase::Set && self.path(route).circuits.meets(occupied) {
+            self.phase = Phase::InUse;
+        }
+        if self.proved {
+            self.enter(route, occupied);
+            self.leave(route, occupied);
+            self.stand(route, occupied);
+        }
+        self.expire(route, occupied);
+        //= spec/interlocking.md#ilk-11-idle
+        //# A route MUST become idle when the last place of its path is released and its overlap is not held.
+        if self.is_held() && self.tail >= route.length && !self.overlap { Self::IDLE } else { self }
+    }
+
+    /// The train's head goes on by one place.
+    #[inline]
+    fn enter<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+        //= spec/interlocking.md#ilk-9-entering
+        //# A place of a path MUST count as entered only in the order of the path, while it is occupied and the one before it (before the first, the entry circuit) is occupied too.
+        let before = if self.head == 0 { route.entry } else { route.circuit_at(self.head - 1) };
+        if self.head < route.length && route.circuit_at(self.head).meets(occupied) && before.meets(occupied) {
+            self.head += 1;
+        }
+    }
+
+    /// The train's tail has left a place.
+    #[inline]
+    fn leave<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+        //= spec/interlocking.md#ilk-10-release
+        //# A place of a path MUST be released behind a train only when all places before it are released, it was entered, it is clear, and the next place was entered or, after the last one, a circuit beyond is occupied.
+        let is_last = self.tail + 1 >= route.length;
+        let gone_on = if is_last { route.beyond.meets(occupied) } else { self.tail + 1 < self.head };
+        let entered = self.tail < self.head;
+        if entered && gone_on && !route.circuit_at(self.tail).meets(occupied) {
+            self.tail += 1;
+        }
+    }
+
+    /// The train stands at the end of the route, or has left it and the overlap.
+    #[inline]
+    fn stand<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+        //= spec/interlocking.md#ilk-14-overlap
+        //# An overlap MUST be held until the last circuit, entered in order, has been occupied without a break for the stay time, or the train has left the path and the overlap is clear.
+        let arrived = self.head == route.length && self.tail < route.length && route.last().meets(occupied);
+        self.stood = Ticks(if self.overlap && arrived { self.stood.0.saturating_add(1) } else { 0 });
+        let left = self.tail >= route.length && !route.overlap.circuits.meets(occupied);
+        if self.stood >= route.stay || left {
+            self.overlap = false;
+            self.stood = Ticks(0);
+        }
+    }
+
+    /// The release time of a withdrawn route passes.
+    #[inline]
+    fn expire<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+        if self.phase != Phase::Releasing {
+            return;
+        }
+        //= spec/interlocking.md#ilk-13-release-time
+        //# When the release time of a withdrawn route has passed, the route MUST be released if what it still holds is clear, and otherwise be in use again, or failed if it was never set.
+        self.time = Ticks(self.time.0.saturating_add(1));
+        if self.time >= route.release {
+            let clear = !self.circuits(route).meets(occupied);
+            let again = if self.proved { Phase::InUse } else { Phase::Failed };
+            *self = if clear { Self::IDLE } else { Self { phase: again, time: Ticks(0), ..*self } };
+        }
+    }
+
+    /// The route is withdrawn by command. It must be held.
+    #[inline]
+    #[must_use]
+    pub fn withdraw<const P: usize>(self, route: &Route<P>, occupied: CircuitSet) -> Self {
+        //= spec/interlocking.md#ilk-12-withdrawal
+        //# A withdrawn route MUST be released at once only if nothing is on its path and, once it has been set, on its approach, and no train has used it; otherwise its release time MUST start anew.
+        let path_clear = !self.path(route).circuits.meets(occupied);
+        let at_once = match self.phase {
+            Phase::Provisional | Phase::Failed => path_clear,
+            Phase::Set => path_clear && !route.approach.meets(occupied),
+            Phase::Idle | Phase::InUse | Phase::Releasing => false,
+        };
+        if at_once { Self::IDLE } else { Self { phase: Phase::Releasing, time: Ticks(0), ..self } }
+    }
+
+    /// The reservation after the points have been looked at: `ready` if all is detected, clear and unblocked.
+    #[inline]
+    #[must_use]
+    pub fn reserve<const P: usize>(self, route: &Route<P>, ready: bool) -> Self {
+        if self.phase != Phase::Provisional {
+            return self;
+        }
+        //= spec/interlocking.md#ilk-5-reservation
+        //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear and unblocked, and failed when that has not come about within the drive time.
+        let time = Ticks(self.time.0.saturating_add(1));
+        if ready {
+            Self { phase: Phase::Set, proved: true, time: Ticks(0), ..self }
+        } else if time >= route.drive {
+            Self { phase: Phase::Failed, time: Ticks(0), ..self }
+        } else {
+            Self { time, ..self }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Signals and grants: which routes show proceed, and which circuits each route grants to which train.
+
+use super::layout::{Layout, Route, SpeedCode};
+use super::route::{Phase, RouteState};
+use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
+
+/// What the signals look at, at the end of the interlocking's part of the cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View {
+    /// The circuits that count as occupied.
+    pub occupied: CircuitSet,
+    /// The circuits that are blocked.
+    pub blocked: CircuitSet,
+    /// The segments with a blocked circuit.
+    pub closed: SegmentSet,
+    /// The positions that are detected, without points that are being driven.
+    pub firm: Positions,
+}
+
+/// The circuits of a route that one train may run over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Grant {
+    /// The circuit of the train's front, or the one from which the route is entered. None: nothing is granted.
+    pub train: CircuitSet,
+    /// The circuits that are granted, in the path's order.
+    pub circuits: CircuitSet,
+    /// The last of them.
+    pub last: CircuitSet,
+    /// Whether the last one is the end of the route.
+    pub complete: bool,
+    /// The highest speed code on the route.
+    pub speed: SpeedCode,
+}
+
+impl Grant {
+    /// Nothing is granted.
+    pub const NONE: Self = Self {
+        train: CircuitSet::EMPTY,
+        circuits: CircuitSet::EMPTY,
+        last: CircuitSet::EMPTY,
+        complete: false,
+        speed: SpeedCode::STOP,
+    };
+}
+
+/// Whether the signal of a route shows proceed.
+#[inline]
+pub fn shows_proceed<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> bool {
+    //= spec/interlocking.md#ilk-7-aspect
+    //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear and unblocked, and no circuit of a segment that it leads to is blocked.
+    state.phase == Phase::Set && ready(route, state, view)
+}
+
+/// Whether all that the route holds is detected, clear and unblocked.
+#[inline]
+pub fn ready<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> bool {
+    let circuits = state.circuits(route);
+    !circuits.meets(view.occupied.or(view.blocked))
+        && !route.to.meets(view.closed)
+        && state.positions(route).missing_in(view.firm).is_empty()
+}
+
+/// What a route grants.
+#[inline]
+pub fn grant<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> Grant {
+    //= spec/interlocking.md#atc-1-grant
+    //# A route MUST grant its path to the train at its entry circuit while its signal shows proceed, and after that the sound circuits beyond the last occupied one to the train there, if it has entered that one in order and its points are sound too; and nothing otherwise.
+    if !state.is_held() {
+        return Grant::NONE;
+    }
+    let proceed = shows_proceed(route, state, view);
+    let entered = state.phase == Phase::InUse && state.head > 0;
+    let mut train = route.entry.only_if(proceed);
+    let mut circuits = CircuitSet::EMPTY;
+    let mut last = CircuitSet::EMPTY;
+    // Whether every circuit since the train's front is sound.
+    let mut open = proceed;
+    for (place, element) in (0_u8..).zip(&route.path) {
+        if place < route.length && place >= state.tail {
+            let sound = element.positions.missing_in(view.firm).is_empty();
+            if entered && element.circuits.meets(view.occupied) {
+                train = element.circuits;
+                circuits = CircuitSet::EMPTY;
+                // The front may stand before a point of its own circuit.
+                open = sound && place < state.head;
+            } else {
+                open &= sound && !element.circuits.meets(view.blocked);
+                circuits = circuits.or(element.circuits.only_if(open));
+                last = if open { element.circuits } else { last };
+            }
+        }
+    }
+    if circuits.is_empty() {
+        return Grant::NONE;
+    }
+    Grant { train, circuits, last, complete: open, speed: route.speed }
+}
+
+/// What all routes show and grant.
+#[inline]
+pub(super) fn all<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    routes: &[RouteState; R],
+    view: View,
+) -> (RouteSet, [Grant; R]) {
+    let mut proceed = RouteSet::EMPTY;
+    let mut grants = [Grant::NONE; R];
+    for (number, (route, state)) in layout.plan().routes.iter().zip(routes).enumerate() {
+        proceed = proceed.or(RouteSet::nth(number).only_if(shows_proceed(route, *state, view)));
+        grants[number] = grant(route, *state, view);
+    }
+    (proceed, grants)
+}

@@ -1,0 +1,78 @@
+//! The state of the whole device.
+
+use super::direction::{Directions, Needs};
+use super::layout::Layout;
+use super::route::RouteState;
+use super::set::{CircuitSet, RouteSet};
+use super::table::Epoch;
+use super::track::Track;
+use super::works::Works;
+
+/// What the device remembers from one logic cycle to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct State<const R: usize, const S: usize> {
+    /// The track circuits.
+    pub track: Track,
+    /// The routes.
+    pub routes: [RouteState; R],
+    /// The segments of plain line.
+    pub directions: Directions<S>,
+    /// Blocks and restrictions.
+    pub works: Works,
+    /// The number of the cycle.
+    pub epoch: Epoch,
+}
+
+impl<const R: usize, const S: usize> State<R, S> {
+    /// The most restrictive state: all circuits occupied, blocked and restricted to stop; no route held; no segment with a direction.
+    pub const INITIAL: Self = Self {
+        track: Track::INITIAL,
+        routes: [RouteState::IDLE; R],
+        directions: Directions::INITIAL,
+        works: Works::INITIAL,
+        epoch: Epoch(0),
+    };
+
+    /// Whether the device can be in this state.
+    pub fn is_valid<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
+        let plan = layout.plan();
+        let mut valid = self.track.is_valid(plan.clear) && self.works.is_valid() && self.directions.is_valid(plan.turn);
+        let mut held = CircuitSet::EMPTY;
+        for (route, state) in plan.routes.iter().zip(&self.routes) {
+            valid &= state.is_valid(route);
+            held = held.or(state.circuits(route));
+        }
+        let needs = Needs::of(layout, &self.routes);
+        valid &= self.directions.toward.contains(needs.toward) && self.directions.away.contains(needs.away);
+        valid &= !held.meets(self.works.confirmed);
+        for one in 0..R {
+            for other in 0..one {
+                valid &= self.compatible(layout, one, other);
+            }
+        }
+        valid
+    }
+
+    /// Whether two routes hold what they may hold together: no common circuit but an overlap under a continuing route, no point both ways,
+    /// no declared conflict.
+    pub fn compatible<const P: usize, const N: usize>(
+        &self,
+        layout: &Layout<R, P, N, S>,
+        one: usize,
+        other: usize,
+    ) -> bool {
+        let routes = &layout.plan().routes;
+        let (states, pair) = ((self.routes[one], self.routes[other]), (&routes[one], &routes[other]));
+        let numbers = (RouteSet::nth(one), RouteSet::nth(other));
+        let paths = (states.0.path(pair.0).circuits, states.1.path(pair.1).circuits);
+        let overlaps = (states.0.overlap(pair.0).circuits, states.1.overlap(pair.1).circuits);
+        let apart = !paths.0.meets(paths.1)
+            && !overlaps.0.meets(overlaps.1)
+            && (!paths.0.meets(overlaps.1) || pair.1.continuing.meets(numbers.0))
+            && (!paths.1.meets(overlaps.0) || pair.0.continuing.meets(numbers.1));
+        let agree = !states.0.positions(pair.0).opposes(states.1.positions(pair.1));
+        let both = states.0.is_held() && states.1.is_held();
+        let declared = pair.0.conflicts.meets(numbers.1) || pair.1.conflicts.meets(numbers.0);
+        apart && agree && !(both && declared)
+    }
+}

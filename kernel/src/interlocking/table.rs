@@ -1,0 +1,101 @@
+//! The table that interlocking and ATC share: written once a cycle by the one, read by the other.
+
+use super::layout::{MAX_CIRCUITS, SpeedCode};
+use super::set::{CircuitSet, SegmentSet};
+use super::signal::Grant;
+
+/// The number of a cycle, modulo 65 536.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Epoch(pub u16);
+
+impl Epoch {
+    /// The next cycle.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        Self(self.0.wrapping_add(1))
+    }
+}
+
+/// What the interlocking tells the ATC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Contents<const R: usize> {
+    /// The circuits that count as occupied.
+    pub occupied: CircuitSet,
+    /// The circuits that are blocked.
+    pub blocked: CircuitSet,
+    /// What each route grants.
+    pub grants: [Grant; R],
+    /// The segments towards the station.
+    pub toward: SegmentSet,
+    /// The segments away from the station.
+    pub away: SegmentSet,
+    /// The highest speed code on each circuit by temporary restriction.
+    pub restrictions: [SpeedCode; MAX_CIRCUITS],
+}
+
+/// The contents of one cycle, with what tells a stale or damaged table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Table<const R: usize> {
+    epoch: Epoch,
+    check: u64,
+    contents: Contents<R>,
+}
+
+impl<const R: usize> Table<R> {
+    /// A table that nobody can read: its check is wrong whatever the epoch.
+    pub const UNREADABLE: Self = Self {
+        epoch: Epoch(0),
+        check: 0,
+        contents: Contents {
+            occupied: CircuitSet::ALL,
+            blocked: CircuitSet::ALL,
+            grants: [Grant::NONE; R],
+            toward: SegmentSet::EMPTY,
+            away: SegmentSet::EMPTY,
+            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+        },
+    };
+
+    /// The table of one cycle.
+    #[inline]
+    pub fn write(epoch: Epoch, contents: Contents<R>) -> Self {
+        Self { epoch, check: fold(epoch, &contents), contents }
+    }
+
+    /// A table as it may be after damage: for proofs and fault injection.
+    pub const fn from_parts(epoch: Epoch, check: u64, contents: Contents<R>) -> Self {
+        Self { epoch, check, contents }
+    }
+
+    /// The table's parts: epoch, check word and contents, for proofs and fault injection.
+    pub const fn parts(&self) -> (Epoch, u64, Contents<R>) {
+        (self.epoch, self.check, self.contents)
+    }
+
+    /// The contents, if they are of this cycle and undamaged.
+    #[inline]
+    pub fn read(&self, epoch: Epoch) -> Option<Contents<R>> {
+        //= spec/interlocking.md#atc-5-shared-table
+        //# The contents of the shared table MUST be reachable only if its epoch is that of the cycle and its check is right.
+        if self.epoch == epoch && self.check == fold(self.epoch, &self.contents) { Some(self.contents) } else { None }
+    }
+}
+
+/// The check word: every bit of the table goes into exactly one bit of it, at a place that depends on where it stands, so that one
+/// wrong bit always shows.
+#[inline]
+fn fold<const R: usize>(epoch: Epoch, contents: &Contents<R>) -> u64 {
+    let mut check =
+        u64::from(epoch.0) ^ u64::from(contents.toward.bits()) << 16 ^ u64::from(contents.away.bits()) << 24;
+    check ^= contents.occupied.bits().rotate_left(1) ^ contents.blocked.bits().rotate_left(3);
+    for grant in &contents.grants {
+        check = check.rotate_left(5) ^ grant.train.bits();
+        check = check.rotate_left(5) ^ grant.circuits.bits();
+        check = check.rotate_left(5) ^ grant.last.bits();
+        check = check.rotate_left(5) ^ (u64::from(grant.complete) | u64::from(grant.speed.0) << 8);
+    }
+    for restriction in contents.restrictions {
+        check = check.rotate_left(5) ^ u64::from(restriction.0);
+    }
+    !check
+}

@@ -1,0 +1,70 @@
+//! Maintenance: blocks of circuits and temporary speed restrictions. Only commands change them.
+
+use super::layout::{MAX_CIRCUITS, SpeedCode};
+use super::set::CircuitSet;
+
+/// What staff command in one cycle; empty sets where they command nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Orders {
+    /// Circuits to block.
+    pub block: CircuitSet,
+    /// Circuits to unblock; a circuit that is to be blocked as well is blocked.
+    pub unblock: CircuitSet,
+    /// Circuits to restrict to `speed`.
+    pub restrict: CircuitSet,
+    /// The highest speed code on them.
+    pub speed: SpeedCode,
+    /// Circuits whose restriction is lifted; a circuit that is to be restricted as well is restricted.
+    pub lift: CircuitSet,
+}
+
+/// What is remembered for each circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Works {
+    /// No route is set over these circuits, and none shows proceed.
+    pub blocked: CircuitSet,
+    /// The blocked circuits that were found neither held nor occupied since: staff may rely on these.
+    pub confirmed: CircuitSet,
+    /// The highest speed code by temporary restriction.
+    pub restrictions: [SpeedCode; MAX_CIRCUITS],
+}
+
+impl Works {
+    /// Every circuit is blocked and restricted to stop.
+    pub const INITIAL: Self =
+        Self { blocked: CircuitSet::ALL, confirmed: CircuitSet::EMPTY, restrictions: [SpeedCode::STOP; MAX_CIRCUITS] };
+
+    /// Whether only blocked circuits are confirmed.
+    pub const fn is_valid(&self) -> bool {
+        self.blocked.contains(self.confirmed)
+    }
+
+    /// The orders of one cycle.
+    #[inline]
+    #[must_use]
+    pub fn obey(mut self, orders: Orders) -> Self {
+        //= spec/interlocking.md#ilk-15-commands-only
+        //# Blocks and restrictions MUST be set and cleared by command only, and a command to block or to restrict is always carried out.
+        self.blocked = self.blocked.without(orders.unblock).or(orders.block);
+        self.confirmed = self.confirmed.and(self.blocked);
+        for (number, restriction) in self.restrictions.iter_mut().enumerate() {
+            let circuit = CircuitSet::nth(number);
+            if orders.restrict.meets(circuit) {
+                *restriction = orders.speed.or_lower(SpeedCode::MOST);
+            } else if orders.lift.meets(circuit) {
+                *restriction = SpeedCode::MOST;
+            }
+        }
+        self
+    }
+
+    /// Confirms as protection what is blocked and neither held by a route nor occupied.
+    #[inline]
+    #[must_use]
+    pub const fn confirm(mut self, held: CircuitSet, occupied: CircuitSet) -> Self {
+        //= spec/interlocking.md#ilk-16-protection
+        //# A block MUST be confirmed as protection only when its circuit is neither held by a route nor occupied, and, on plain line, nobody may be on the way to it: the segment and its throat are clear, no route out is held, and the neighbour has not been permitted to send for the turn time.
+        self.confirmed = self.confirmed.or(self.blocked.without(held.or(occupied)));
+        self
+    }
+}
