@@ -17,6 +17,7 @@ pub mod aspect;
 pub mod block;
 pub mod code;
 pub mod duplex;
+pub mod interlocking;
 pub mod pattern;
 pub mod permitted;
 pub mod position;
@@ -57,5 +58,6 @@ pub const HARNESSES: &[&[Harness]] = &[
     pattern::ALL,
     permitted::ALL,
     position::ALL,
+    interlocking::ALL,
     duplex::ALL,
 ];

@@ -16,7 +16,7 @@ pub const CBMC: [&str; 11] = [
     "--object-bits",
     "14",
     "--unwind",
-    "20",
+    "66",
     "--unwinding-assertions",
     "--slice-formula",
     "--max-field-sensitivity-array-size",

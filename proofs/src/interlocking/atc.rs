@@ -1,0 +1,384 @@
+//! ATC (T-ATC-1, T-ATC-2, T-ATC-4): from what is granted to one telegram.
+//!
+//! What a route grants is proven elsewhere (T-ATC-1, ATC-1.1) and assumed here: circuits of its path that follow each other and are free
+//! and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
+
+use super::{any_circuits, bit};
+use crate::engine::{any_byte, any_flag};
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{
+    CircuitId, CircuitSet, Contents, Element, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Plan, Route, Segment,
+    SegmentSet, SpeedCode, connect, movement,
+};
+use atc_kernel::time::Ticks;
+
+const ROUTES: usize = 2;
+const PATH: usize = 3;
+const SEGMENTS: usize = 2;
+
+const BOUND: &str = "2 routes of up to 3 circuits, 32 circuits, 2 segments of up to 3 circuits";
+
+type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
+
+/// Any route, as far as grants and segments look at it.
+fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
+    let mut place = first;
+    let path = core::array::from_fn(|_| {
+        let circuits = any_circuits(e, "circuit of a place (bits)", place..=place);
+        place = place.wrapping_shl(1);
+        Element { circuits, ..Element::default() }
+    });
+    let timed = Ticks(1);
+    Route {
+        path,
+        length: any_byte(e, "length (places)", 1..=3),
+        drive: timed,
+        release: timed,
+        stay: timed,
+        ..Route::NONE
+    }
+}
+
+/// Any layout, as far as the ATC looks at it.
+fn any_line<E: crate::Engine + ?Sized>(e: &mut E) -> Option<Line> {
+    let mut first = 1 << 1;
+    let routes = core::array::from_fn(|_| {
+        let route = any_path(e, first);
+        first <<= 3;
+        route
+    });
+    let mut place = 1 << 12;
+    let segments = core::array::from_fn(|_| Segment {
+        circuits: core::array::from_fn(|_| {
+            place <<= 1;
+            any_circuits(e, "circuit of a segment (bits)", place..=place)
+        }),
+        length: any_byte(e, "length of a segment (circuits)", 0..=3),
+        throat: any_circuits(e, "throat (bits)", 8..=8),
+    });
+    let plan = Plan { routes, segments, clear: 1, turn: Ticks(1), ..Plan::EMPTY };
+    let layout = Layout::with_what_proofs_need(plan).ok();
+    e.assume(layout.is_some());
+    layout
+}
+
+/// What a route may grant, by places of its path.
+fn any_grant<E: crate::Engine + ?Sized>(e: &mut E, route: &Route<PATH>) -> Grant {
+    let train = CircuitSet::from_bits(bit(e.word("granted to the train in (number)", 0..=8)));
+    let (first, last) = (any_byte(e, "first place granted", 0..=1), any_byte(e, "last place granted", 0..=2));
+    let complete = any_flag(e, "to the end of the route (odd: yes)") && last.wrapping_add(1) == route.length;
+    let speed = SpeedCode(any_byte(e, "speed code of the route", 0..=7));
+    let mut grant = Grant { train, complete, speed, ..Grant::NONE };
+    for (place, element) in (0_u8..).zip(&route.path) {
+        let circuit = element.circuits;
+        if place >= first && place <= last && last < route.length {
+            grant.circuits = grant.circuits.or(circuit);
+            grant.last = circuit;
+        }
+    }
+    let apart = grant.circuits.bits() & train.bits() == 0;
+    e.assume(apart);
+    if grant.circuits.bits() == 0 { Grant::NONE } else { grant }
+}
+
+/// Any contents that the interlocking may write for the ATC, by what is proven of grants.
+fn any_contents<E: crate::Engine + ?Sized>(e: &mut E, line: &Line) -> Contents<ROUTES> {
+    let grants = [any_grant(e, &line.plan().routes[0]), any_grant(e, &line.plan().routes[1])];
+    e.assume(grants[0].circuits.bits() & grants[1].circuits.bits() == 0);
+    let granted = grants[0].circuits.or(grants[1].circuits);
+    let toward = any_byte(e, "toward (segments)", 0..=3) & 3;
+    let away = any_byte(e, "away (segments)", 0..=3) & 3 & !toward;
+    Contents {
+        occupied: any_circuits(e, "occupied (bits)", 0..=u16::MAX).without(granted),
+        blocked: any_circuits(e, "blocked (bits)", 0..=0).without(granted),
+        grants,
+        toward: SegmentSet::from_bits(toward),
+        away: SegmentSet::from_bits(away),
+        restrictions: [SpeedCode::MOST; MAX_CIRCUITS],
+    }
+}
+
+/// How many circuits a segment has.
+fn length_of(segment: &Segment<PATH>) -> usize {
+    let length = usize::from(segment.length);
+    if length < PATH { length } else { PATH }
+}
+
+/// The place of `circuit` in a segment, the one next to the station first; none if it is not there.
+fn place_of(segment: &Segment<PATH>, circuit: CircuitSet) -> Option<usize> {
+    let mut found = None;
+    for place in 0..PATH {
+        if place < length_of(segment) && segment.circuits[place].bits() == circuit.bits() {
+            found = Some(place);
+        }
+    }
+    found
+}
+
+/// How many circuits of a segment a train in `here` has passed in the direction of the segment, the own one included; none if it is not on its way there.
+fn passed(line: &Line, contents: &Contents<ROUTES>, number: usize, here: CircuitSet) -> Option<usize> {
+    let segment = &line.plan().segments[number];
+    let length = length_of(segment);
+    let away = contents.away.bits() >> number & 1 == 1;
+    match place_of(segment, here) {
+        Some(place) if away => Some(place + 1),
+        Some(place) if contents.toward.bits() >> number & 1 == 1 => Some(length - place),
+        None if away && segment.throat.bits() == here.bits() => Some(0),
+        _ => None,
+    }
+}
+
+/// The circuit number `step` of a segment, counted in its direction; none if there is none.
+fn in_direction(line: &Line, contents: &Contents<ROUTES>, number: usize, step: usize) -> u64 {
+    let segment = &line.plan().segments[number];
+    let length = length_of(segment);
+    let away = contents.away.bits() >> number & 1 == 1;
+    let mut bits = 0;
+    for place in 0..PATH {
+        let its = if away { place } else { length.wrapping_sub(place + 1) };
+        bits |= if place < length && its == step { segment.circuits[place].bits() } else { 0 };
+    }
+    bits
+}
+
+harness! {
+    /// Where two grants begin at a circuit, none is used; where one does, it is that one. On plain line a train is granted the free and unblocked circuits that
+    /// follow its own in the direction of the segment, up to the next that is not, and no other.
+    t_atc_1_connect(e)
+    theorem "T-ATC-1";
+    requirements ["ATC-2", "ATC-3"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Two: "where more than one grant begins, of routes or of segments, none is used",
+        One: "where one route's grant begins, and no segment's, it is used",
+        Line: "where one segment's begins, and no route's, it is the circuits that follow without a gap, free and unblocked, as far as there are such",
+        Last: "the last circuit is the farthest of them, and it says it is complete only if no circuit of the segment follows",
+        None: "where none begins nothing is granted",
+    }
+    covers {
+        Routes: "two routes grant to the same circuit",
+        Mixed: "a route and a segment grant to the same circuit",
+        Away: "two circuits are granted from the throat",
+        Toward: "a circuit is granted towards the station",
+        Stops: "a train ahead ends what is granted",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let contents = any_contents(e, &line);
+        let here = CircuitSet::from_bits(bit(e.word("the train's circuit (number)", 0..=15)));
+        let link = connect(&line, &contents, here);
+        let closed = contents.occupied.bits() | contents.blocked.bits();
+        let (mut of_routes, mut of_segments) = (0_u32, 0_u32);
+        let mut expected = Grant::NONE;
+        for grant in contents.grants {
+            if grant.train.bits() == here.bits() && grant.circuits.bits() != 0 {
+                of_routes += 1;
+                expected = grant;
+            }
+        }
+        let mut rightly = false;
+        let mut ends = false;
+        let mut steps = 0;
+        for number in 0..SEGMENTS {
+            let Some(passed) = passed(&line, &contents, number, here) else { continue };
+            let (mut circuits, mut last, mut open) = (0, 0, true);
+            for step in 0..PATH {
+                let next = in_direction(&line, &contents, number, step);
+                if step >= passed && next != 0 {
+                    open &= next & closed == 0;
+                    circuits |= if open { next } else { 0 };
+                    last = if open { next } else { last };
+                    steps += usize::from(open);
+                }
+            }
+            if circuits != 0 {
+                of_segments += 1;
+                rightly = link.circuits.bits() == circuits && link.train.bits() == here.bits();
+                ends = link.last.bits() == last && (!link.complete || open);
+                e.cover(Cover::Stops as u32, !open);
+            }
+        }
+        let found = of_routes + of_segments;
+        e.claim(Claim::Two as u32, found < 2 || link == Grant::NONE);
+        e.claim(Claim::One as u32, found != 1 || of_routes == 0 || link == expected);
+        e.claim(Claim::Line as u32, found != 1 || of_segments == 0 || rightly);
+        e.claim(Claim::Last as u32, found != 1 || of_segments == 0 || ends);
+        e.claim(Claim::None as u32, found != 0 || link == Grant::NONE);
+        e.cover(Cover::Routes as u32, of_routes == 2);
+        e.cover(Cover::Mixed as u32, of_routes == 1 && of_segments == 1);
+        e.cover(Cover::Away as u32, found == 1 && of_segments == 1 && steps == 2 && contents.away.bits() != 0 && contents.toward.bits() == 0);
+        e.cover(Cover::Toward as u32, found == 1 && of_segments == 1 && contents.away.bits() == 0);
+    }
+}
+
+harness! {
+    /// Trains in two different circuits are never told that they may enter the same circuit, nor one that is occupied or blocked.
+    t_atc_1_apart(e)
+    theorem "T-ATC-1";
+    requirements ["ATC-2", "ATC-3"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Apart: "no circuit is granted to trains in two different circuits",
+        Free: "no circuit that is granted is occupied or blocked",
+    }
+    covers {
+        Both: "both trains may run",
+        Line: "both trains may run in one segment",
+        Chain: "a train is granted circuits of a route and of a segment",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let contents = any_contents(e, &line);
+        let numbers = (e.word("a train's circuit (number)", 0..=4) & 31, e.word("another train's circuit (number)", 12..=15) & 31);
+        let Some(one) = CircuitId::new(numbers.0.to_le_bytes()[0]) else { return };
+        let Some(other) = CircuitId::new(numbers.1.to_le_bytes()[0]) else { return };
+        let both = numbers.0 != numbers.1 && contents.occupied.bits() >> numbers.0 & 1 == 1 && contents.occupied.bits() >> numbers.1 & 1 == 1;
+        e.assume(both);
+        let (first, second) = (movement(&line, &contents, one), movement(&line, &contents, other));
+        e.claim(Claim::Apart as u32, first.hold.bits() & second.hold.bits() == 0);
+        let closed = contents.occupied.bits() | contents.blocked.bits();
+        e.claim(Claim::Free as u32, first.hold.bits() & closed == 0);
+        e.cover(Cover::Both as u32, first.open && second.open);
+        let segment = line.plan().segments[0];
+        let mut all = 0;
+        for place in 0..PATH {
+            all |= if place < usize::from(segment.length) { segment.circuits[place].bits() } else { 0 };
+        }
+        e.cover(Cover::Line as u32, first.hold.bits() & all != 0 && second.hold.bits() & all != 0);
+        e.cover(Cover::Chain as u32, first.hold.bits() & all != 0 && first.hold.bits() & contents.grants[0].circuits.bits() != 0);
+    }
+}
+
+harness! {
+    /// The speed code is not above that of a route that is granted, nor of a restriction on the own circuit or a granted one, nor above one from which a
+    /// train stops within what is granted.
+    t_atc_2(e)
+    theorem "T-ATC-2";
+    requirements ["ATC-4"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Route: "the speed code is not above that of a route with a granted circuit",
+        Restriction: "the speed code is not above the restriction of the own circuit or of a granted one",
+        Distance: "the braking distance of the speed code is not longer than the granted circuits together",
+        Table: "a code without a braking distance is never sent",
+    }
+    covers {
+        ByRoute: "the route limits the code",
+        ByRestriction: "a restriction limits the code",
+        ByDistance: "the distance limits the code",
+        Most: "the highest code is sent",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let mut contents = any_contents(e, &line);
+        let number = e.word("a circuit that stands for all (number)", 0..=15) & 31;
+        let own = e.word("the train's circuit (number)", 0..=8) & 31;
+        let Some(circuit) = CircuitId::new(own.to_le_bytes()[0]) else { return };
+        let (its, others) = (any_byte(e, "its restriction (code)", 6..=7), any_byte(e, "restriction elsewhere (code)", 7..=7));
+        contents.restrictions = core::array::from_fn(|place| SpeedCode(if place == usize::from(number) { its } else { others }));
+        let long = e.word("length of circuits with an even number (m)", 0..=400);
+        let short = e.word("length of circuits with an odd number (m)", 0..=400);
+        let mut plan = *line.plan();
+        plan.lengths = core::array::from_fn(|place| Metres(if place % 2 == 0 { long } else { short }));
+        let mut distance = 0;
+        let mut braking = [Metres(0); MAX_CODES];
+        for braking in &mut braking[1..] {
+            distance += 50;
+            *braking = Metres(e.word("braking distance of a code (m)", distance..=distance + 20));
+        }
+        plan.braking = braking;
+        let Ok(line) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
+        let telegram = movement(&line, &contents, circuit);
+        let speed = telegram.speed.0;
+        let hold = telegram.hold.bits();
+        if !telegram.open {
+            // Nothing is granted, and the train stands (ATC-7).
+            return e.claim(Claim::Table as u32, speed == 0);
+        }
+        let mut by_route = true;
+        let mut limit = 7;
+        for grant in contents.grants {
+            let granted = grant.circuits.bits() & hold != 0;
+            by_route &= !granted || speed <= grant.speed.0;
+            limit = if granted && grant.speed.0 < limit { grant.speed.0 } else { limit };
+        }
+        e.claim(Claim::Route as u32, by_route);
+        let restricted = hold >> number & 1 == 1 || own == number && telegram.open;
+        e.claim(Claim::Restriction as u32, !restricted || speed <= its);
+        let (mut sum, mut needed) = (0_u32, 0_u32);
+        for place in 0..MAX_CIRCUITS {
+            let length = if place % 2 == 0 { long } else { short };
+            if hold & 1 << place != 0 {
+                sum = sum.saturating_add(u32::from(length));
+            }
+        }
+        for (code, braking) in (0_u8..).zip(&braking) {
+            needed = if code == speed { u32::from(braking.0) } else { needed };
+        }
+        e.claim(Claim::Distance as u32, needed <= sum);
+        e.claim(Claim::Table as u32, usize::from(speed) < MAX_CODES && needed < u32::from(u16::MAX));
+        e.cover(Cover::ByRoute as u32, telegram.open && speed == limit && speed > 0 && its == 7);
+        e.cover(Cover::ByRestriction as u32, telegram.open && restricted && speed == its && speed < limit && speed > 0);
+        e.cover(Cover::ByDistance as u32, telegram.open && speed < limit && its == 7 && others == 7);
+        e.cover(Cover::Most as u32, speed == 7);
+    }
+}
+
+harness! {
+    /// A circuit without a train has a stop telegram, and so has one whose train is granted nothing. Any other names the last circuit that is granted.
+    t_atc_4(e)
+    theorem "T-ATC-4";
+    requirements ["ATC-7"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Train: "a circuit that counts as clear has a stop telegram",
+        Nothing: "a telegram that grants no circuit is a stop telegram: its own circuit, not open, no speed",
+        Last: "the stop circuit is granted, and the last of its route's grant, or of what its segment grants",
+    }
+    covers {
+        Clear: "something is granted at a circuit without a train",
+        Route: "the stop circuit is on a route",
+        Line: "the stop circuit is on plain line, beyond a route",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let contents = any_contents(e, &line);
+        let own = e.word("the train's circuit (number)", 0..=8) & 31;
+        let Some(circuit) = CircuitId::new(own.to_le_bytes()[0]) else { return };
+        let telegram = movement(&line, &contents, circuit);
+        let Movement { stop, open, speed, hold } = telegram;
+        let is_stop = !open && speed.0 == 0 && u16::from(stop.number()) == own && hold.bits() == 0;
+        let train = contents.occupied.bits() >> own & 1 == 1;
+        e.claim(Claim::Train as u32, train || is_stop);
+        e.claim(Claim::Nothing as u32, hold.bits() != 0 || is_stop);
+        let stop = 1_u64 << stop.number();
+        let mut last = hold.bits() & stop != 0;
+        let mut on_route = false;
+        for grant in contents.grants {
+            on_route |= grant.circuits.bits() & stop != 0;
+            last &= grant.circuits.bits() & stop == 0 || grant.last.bits() == stop;
+        }
+        let mut on_line = false;
+        for number in 0..SEGMENTS {
+            for step in 0..PATH {
+                if in_direction(&line, &contents, number, step) == stop {
+                    on_line = true;
+                    last &= in_direction(&line, &contents, number, step + 1) & hold.bits() == 0;
+                }
+            }
+        }
+        e.claim(Claim::Last as u32, hold.bits() == 0 || open && last && (on_route || on_line));
+        let granted = contents.grants[0].circuits.bits() != 0 && contents.grants[0].train.bits() == 1 << own;
+        e.cover(Cover::Clear as u32, !train && granted);
+        e.cover(Cover::Route as u32, open && on_route);
+        e.cover(Cover::Line as u32, open && on_line && hold.bits() & contents.grants[0].circuits.bits() != 0);
+    }
+}

@@ -1,0 +1,274 @@
+//! Interlocking and ATC: T-ILK, T-TRK, T-ATC and T-LAY of `spec/interlocking.md`, for every layout that the constructor accepts.
+//!
+//! A harness draws a layout, assumes only that [`Layout::with_what_proofs_need`] accepts it, draws a valid state and an input,
+//! runs one cycle after the tracking, and claims. One circuit, one point and one pair of routes stand for all.
+
+mod atc;
+mod direction;
+mod pair;
+mod point;
+mod route;
+mod signal;
+mod table;
+mod track;
+mod works;
+
+use crate::engine::{any_byte, any_flag, any_u32};
+use crate::{Engine, Harness};
+use atc_kernel::interlocking::{
+    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, Orders, Phase, Plan, Point, PointId, PointSet,
+    Position, Positions, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, SpeedCode,
+    State, Track, Travel, Works,
+};
+use atc_kernel::time::Ticks;
+
+/// The places of a path in the harnesses of one route; 16, as many as the machine has, unless the environment variable `ATC_PLACES` says otherwise (1 to 16).
+pub const PLACES: usize = match option_env!("ATC_PLACES") {
+    Some(number) => crate::harness::decimal(number),
+    None => 16,
+};
+
+/// The places of a path in the harnesses of several routes; 4 unless the environment variable `ATC_PATH` says otherwise.
+pub const PATH: usize = match option_env!("ATC_PATH") {
+    Some(number) => crate::harness::decimal(number),
+    None => 4,
+};
+
+/// The points of a layout in the harnesses where points play a part of their own.
+pub const POINTS: usize = 4;
+
+/// All harnesses of this room.
+pub const ALL: &[Harness] = &[
+    pair::t_ilk_1::HARNESS,
+    route::t_ilk_2::HARNESS,
+    signal::t_ilk_3::HARNESS,
+    signal::t_ilk_3_monotone::HARNESS,
+    route::t_ilk_5::HARNESS,
+    route::t_ilk_5_occupied::HARNESS,
+    route::t_ilk_6::HARNESS,
+    route::t_ilk_7::HARNESS,
+    signal::t_atc_1::HARNESS,
+    signal::t_atc_1_sound::HARNESS,
+    signal::t_atc_1_overlap::HARNESS,
+    track::t_trk_1::HARNESS,
+    track::t_trk_1_shared::HARNESS,
+    table::t_atc_3::HARNESS,
+    table::t_atc_3_stale::HARNESS,
+    table::t_atc_3_damaged::HARNESS,
+    works::t_ilk_8::HARNESS,
+    direction::t_ilk_9::HARNESS,
+    point::t_ilk_4::HARNESS,
+    atc::t_atc_1_connect::HARNESS,
+    atc::t_atc_1_apart::HARNESS,
+    atc::t_atc_2::HARNESS,
+    atc::t_atc_4::HARNESS,
+];
+
+/// Any set of 32 circuits; `likely` is for the lower 16.
+fn any_circuits<E: Engine + ?Sized>(
+    e: &mut E,
+    what: &'static str,
+    likely: core::ops::RangeInclusive<u16>,
+) -> CircuitSet {
+    CircuitSet::from_bits(u64::from(any_u32(e, what, likely)))
+}
+
+/// Any positions of 16 points.
+fn any_positions<E: Engine + ?Sized>(e: &mut E) -> Positions {
+    Positions {
+        normal: PointSet::from_bits(u32::from(e.word("points in normal position (bits)", 0..=1))),
+        reverse: PointSet::from_bits(u32::from(e.word("points in reverse position (bits)", 0..=2) & !1)),
+    }
+}
+
+/// Any set of the layout's routes.
+fn any_routes<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> RouteSet {
+    RouteSet::from_bits(u64::from(e.word(what, 0..=1)))
+}
+
+fn any_segments<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> SegmentSet {
+    SegmentSet::from_bits(any_byte(e, what, 0..=1))
+}
+
+/// Any route; `number` only hints at likely circuits.
+fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Route<P> {
+    let first = 1_u16.wrapping_shl(u32::from(number) * 4);
+    let mut place = first;
+    let path = core::array::from_fn(|_| {
+        let circuits = any_circuits(e, "circuit of a place (bits)", place..=place);
+        place = place.wrapping_shl(1);
+        Element { circuits, positions: any_positions(e) }
+    });
+    Route {
+        entry: any_circuits(e, "entry (bits)", first.rotate_right(1)..=first.rotate_right(1)),
+        approach: any_circuits(e, "approach (bits)", 0..=0),
+        path,
+        length: any_byte(e, "length (places)", 1..=4),
+        overlap: Element { circuits: any_circuits(e, "overlap (bits)", 0..=0), positions: any_positions(e) },
+        beyond: any_circuits(e, "beyond (bits)", 0x8000..=0x8000),
+        continuing: any_routes(e, "continuing routes (bits)"),
+        conflicts: any_routes(e, "conflicting routes (bits)"),
+        from: any_segments(e, "from segments (bits)"),
+        to: any_segments(e, "to segments (bits)"),
+        drive: Ticks(e.word("drive time (cycles)", 1..=3)),
+        release: Ticks(e.word("release time (cycles)", 1..=3)),
+        stay: Ticks(e.word("stay time (cycles)", 1..=3)),
+        speed: SpeedCode(any_byte(e, "speed code", 0..=3)),
+    }
+}
+
+/// Any plan, as far as the interlocking looks at it.
+fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
+    e: &mut E,
+) -> Plan<R, P, N, S> {
+    let mut number = 0;
+    let routes = core::array::from_fn(|_| {
+        let route = any_route(e, number);
+        number += 1;
+        route
+    });
+    let points = core::array::from_fn(|_| Point { detectors: any_circuits(e, "detectors of a point (bits)", 0..=0) });
+    let mut place = 0x800_u16;
+    let segments = core::array::from_fn(|_| Segment {
+        circuits: core::array::from_fn(|_| {
+            place = place.rotate_left(1);
+            any_circuits(e, "circuit of a segment (bits)", place..=place)
+        }),
+        length: any_byte(e, "length of a segment (circuits)", 0..=1),
+        throat: any_circuits(e, "throat (bits)", 8..=8),
+    });
+    Plan {
+        routes,
+        points,
+        segments,
+        clear: any_byte(e, "clear (cycles)", 1..=2),
+        turn: Ticks(e.word("turn time (cycles)", 1..=2)),
+        ..Plan::EMPTY
+    }
+}
+
+/// Any layout that the theorems speak of.
+fn any_layout<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
+    e: &mut E,
+) -> Option<Layout<R, P, N, S>> {
+    let layout = Layout::with_what_proofs_need(any_plan(e)).ok();
+    e.assume(layout.is_some());
+    layout
+}
+
+/// Any phase.
+fn any_phase<E: Engine + ?Sized>(e: &mut E) -> Phase {
+    match e.word("phase (0 idle, 1 provisional, 2 failed, 3 set, 4 in use, else releasing)", 0..=5) {
+        0 => Phase::Idle,
+        1 => Phase::Provisional,
+        2 => Phase::Failed,
+        3 => Phase::Set,
+        4 => Phase::InUse,
+        _ => Phase::Releasing,
+    }
+}
+
+/// Any state of a route. What a phase fixes is drawn all the same, and not used.
+fn any_route_state<E: Engine + ?Sized>(e: &mut E) -> RouteState {
+    let phase = any_phase(e);
+    let tail = any_byte(e, "released (places)", 0..=2);
+    let head = any_byte(e, "entered (places)", 0..=4);
+    let overlap = e.word("overlap is held (odd: yes)", 1..=1) & 1 == 1;
+    let time = Ticks(e.word("time in the phase (cycles)", 0..=1));
+    let stood = Ticks(e.word("stood (cycles)", 0..=0));
+    let never_set = any_flag(e, "withdrawn before it was set (odd: yes)");
+    match phase {
+        Phase::Idle => RouteState::IDLE,
+        Phase::Provisional => RouteState { time, ..RouteState::RESERVED },
+        Phase::Failed => RouteState { phase, ..RouteState::RESERVED },
+        Phase::Set => RouteState { phase, proved: true, ..RouteState::RESERVED },
+        Phase::InUse => RouteState { phase, tail, head, overlap, proved: true, time: Ticks(0), stood },
+        Phase::Releasing if never_set => RouteState { phase, time, ..RouteState::RESERVED },
+        Phase::Releasing => RouteState { phase, tail, head, overlap, proved: true, time, stood },
+    }
+}
+
+fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> State<R, S> {
+    State {
+        track: Track::INITIAL,
+        routes: core::array::from_fn(|_| any_route_state(e)),
+        directions: Directions {
+            toward: any_segments(e, "segments towards the station (bits)"),
+            away: any_segments(e, "segments away from the station (bits)"),
+            withdrawn: core::array::from_fn(|_| Ticks(e.word("permission withdrawn for (cycles)", 0..=2))),
+        },
+        works: Works {
+            blocked: any_circuits(e, "blocked (bits)", 0..=0),
+            confirmed: any_circuits(e, "confirmed (bits)", 0..=0),
+            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+        },
+        epoch: Epoch(e.word("epoch", 0..=u16::MAX)),
+    }
+}
+
+/// Any request, or none.
+fn any_request<E: Engine + ?Sized>(e: &mut E) -> Option<Request> {
+    let kind = e.word("request (0 set, 1 withdraw, 2 drive, 3 turn, else none)", 0..=4);
+    let number = any_byte(e, "number of the route, point or segment", 0..=1);
+    let other = any_flag(e, "reverse, or away (odd: yes)");
+    match kind {
+        0 => RouteId::new(number).map(Request::Set),
+        1 => RouteId::new(number).map(Request::Withdraw),
+        2 => {
+            let position = if other { Position::Reverse } else { Position::Normal };
+            PointId::new(number).map(|point| Request::Drive(point, position))
+        }
+        3 => {
+            let travel = if other { Travel::Away } else { Travel::Toward };
+            SegmentId::new(number).map(|segment| Request::Turn(segment, travel))
+        }
+        _ => None,
+    }
+}
+
+fn any_input<E: Engine + ?Sized>(e: &mut E) -> Input {
+    Input {
+        occupied: any_circuits(e, "occupied (bits)", 0..=15),
+        detected: any_positions(e),
+        request: any_request(e),
+        orders: Orders {
+            block: any_circuits(e, "to block (bits)", 0..=0),
+            unblock: any_circuits(e, "to unblock (bits)", 0..=0),
+            restrict: any_circuits(e, "to restrict (bits)", 0..=0),
+            speed: SpeedCode(any_byte(e, "restriction (code)", 0..=7)),
+            lift: any_circuits(e, "to lift (bits)", 0..=0),
+        },
+        consent: any_segments(e, "neighbour permits (bits)"),
+    }
+}
+
+/// Any layout of routes of which points and segments play no part.
+fn any_routes_layout<E: Engine + ?Sized, const R: usize, const P: usize>(e: &mut E) -> Option<Layout<R, P, 0, 0>> {
+    any_layout(e)
+}
+
+/// The bit of circuit or point `number`, of 32.
+fn bit(number: u16) -> u64 {
+    1 << (number & 31)
+}
+
+/// What a route holds of its path, found place by place.
+fn held<const P: usize>(route: &Route<P>, state: RouteState) -> Element {
+    let mut circuits = 0;
+    let (mut normal, mut reverse) = (0, 0);
+    for place in 0..P {
+        let element = route.path[place];
+        if state.phase != Phase::Idle && place >= usize::from(state.tail) && place < usize::from(route.length) {
+            circuits |= element.circuits.bits();
+            normal |= element.positions.normal.bits();
+            reverse |= element.positions.reverse.bits();
+        }
+    }
+    let positions = Positions { normal: PointSet::from_bits(normal), reverse: PointSet::from_bits(reverse) };
+    Element { circuits: CircuitSet::from_bits(circuits), positions }
+}
+
+/// What a route holds beyond its path.
+fn kept<const P: usize>(route: &Route<P>, state: RouteState) -> Element {
+    if state.phase != Phase::Idle && state.overlap { route.overlap } else { Element::default() }
+}

@@ -1,0 +1,126 @@
+//! Two routes: what may be held together (T-ILK-1).
+
+use super::{PATH, any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, bit, held, kept};
+use crate::Engine;
+use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, Sight, refuse_route};
+
+const BOUND: &str = match PATH {
+    4 => "2 routes of up to 4 circuits, 32 circuits, 16 points",
+    8 => "2 routes of up to 8 circuits, 32 circuits, 16 points",
+    _ => "2 routes of another number of circuits than the 16 of the machine",
+};
+
+/// What the conflict check sees besides the routes: anything.
+fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
+    Sight {
+        occupied: any_circuits(e, "occupied (bits)", 0..=0),
+        blocked: any_circuits(e, "blocked (bits)", 0..=0),
+        closed: any_segments(e, "segments with a blocked circuit (bits)"),
+        detected: any_positions(e),
+        under: PointSet::from_bits(u32::from(e.word("points under a train (bits)", 0..=1))),
+        directions: (
+            any_segments(e, "segments towards the station (bits)"),
+            any_segments(e, "segments away from it (bits)"),
+        ),
+    }
+}
+
+/// Whether two routes may hold what they hold, for one circuit and one point that stand for all. The reserved one holds everything.
+#[allow(clippy::struct_excessive_bools, reason = "one for each claim")]
+struct Together {
+    paths: bool,
+    overlaps: bool,
+    continuing: bool,
+    points: bool,
+    conflicts: bool,
+}
+
+fn together<const P: usize>(
+    (reserved, number): (&Route<P>, u64),
+    (other, state, number_of_other): (&Route<P>, RouteState, u64),
+    (circuit, point): (u64, u64),
+) -> Together {
+    let mine = (held(reserved, RouteState::RESERVED), kept(reserved, RouteState::RESERVED));
+    let its = (held(other, state), kept(other, state));
+    let is_in = |set: CircuitSet| set.bits() & circuit != 0;
+    let needs = |one: PointSet, other: PointSet| (u64::from(one.bits()) | u64::from(other.bits())) & point != 0;
+    let normal = (
+        needs(mine.0.positions.normal, mine.1.positions.normal),
+        needs(its.0.positions.normal, its.1.positions.normal),
+    );
+    let reverse = (
+        needs(mine.0.positions.reverse, mine.1.positions.reverse),
+        needs(its.0.positions.reverse, its.1.positions.reverse),
+    );
+    let held = state.phase != Phase::Idle;
+    Together {
+        paths: !(is_in(mine.0.circuits) && is_in(its.0.circuits)),
+        overlaps: !(is_in(mine.1.circuits) && is_in(its.1.circuits)),
+        continuing: (!(is_in(mine.0.circuits) && is_in(its.1.circuits)) || other.continuing.bits() & number != 0)
+            && (!(is_in(mine.1.circuits) && is_in(its.0.circuits))
+                || reserved.continuing.bits() & number_of_other != 0),
+        points: !(normal.0 && reverse.1 || reverse.0 && normal.1),
+        conflicts: !held || reserved.conflicts.bits() & number_of_other == 0 && other.conflicts.bits() & number == 0,
+    }
+}
+
+harness! {
+    /// A route is reserved only if it can be held together with what another route holds, whatever that has released already; if all
+    /// of it is clear, unblocked and has its direction; and if no point of it would have to move under a train.
+    t_ilk_1(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-1", "ILK-2"];
+    assumptions [];
+    bound BOUND;
+    cases 2;
+    claims {
+        Paths: "no circuit is in the held paths of both",
+        Overlaps: "no circuit is in the held overlaps of both",
+        Continuing: "a circuit is in the path of one and the overlap of the other only where the first continues the second",
+        Points: "no point is needed in normal position by one and in reverse by the other",
+        Conflicts: "neither is declared to conflict with the other while both are held",
+        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
+        Direction: "every segment that the route needs has the direction that it needs",
+        Moves: "a point that is not detected in position has no train on it",
+    }
+    covers {
+        Both: "a route is reserved while the other is held",
+        Under: "a route is reserved over the overlap that another holds",
+    }
+    {
+        let Some(layout) = any_routes_layout::<E, 2, PATH>(e) else { return };
+        let asked = e.choose("the route that is asked for", 2);
+        let other = 1 - asked;
+        let routes = &layout.plan().routes;
+        let state = any_route_state(e);
+        let valid = state.is_valid(&routes[other]);
+        e.assume(valid);
+        let mut states = [RouteState::IDLE; 2];
+        states[other] = state;
+        let sight = any_sight(e);
+        let reserved = refuse_route(&layout, &states, asked, sight).is_none();
+        let numbers = if asked == 0 { (1, 2) } else { (2, 1) };
+        let circuit = bit(e.word("a circuit that stands for all (number)", 0..=15));
+        let point = bit(e.word("a point that stands for all (number)", 0..=1));
+        let pair = together((&routes[asked], numbers.0), (&routes[other], state, numbers.1), (circuit, point));
+        e.claim(Claim::Paths as u32, !reserved || pair.paths);
+        e.claim(Claim::Overlaps as u32, !reserved || pair.overlaps);
+        e.claim(Claim::Continuing as u32, !reserved || pair.continuing);
+        e.claim(Claim::Points as u32, !reserved || pair.points);
+        e.claim(Claim::Conflicts as u32, !reserved || pair.conflicts);
+        let route = &routes[asked];
+        let mine = (held(route, RouteState::RESERVED), kept(route, RouteState::RESERVED));
+        let ahead = (mine.0.circuits.bits() | mine.1.circuits.bits()) & circuit;
+        let blocked = ahead & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0;
+        e.claim(Claim::Clear as u32, !reserved || ahead & sight.occupied.bits() == 0 && !blocked);
+        let missing = route.from.bits() & !sight.directions.0.bits() | route.to.bits() & !sight.directions.1.bits();
+        e.claim(Claim::Direction as u32, !reserved || missing == 0);
+        let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
+        let reverse = mine.0.positions.reverse.bits() | mine.1.positions.reverse.bits();
+        let moves = normal & !sight.detected.normal.bits() | reverse & !sight.detected.reverse.bits();
+        e.claim(Claim::Moves as u32, !reserved || u64::from(moves & sight.under.bits()) & point == 0);
+        let both = reserved && state.phase != Phase::Idle;
+        e.cover(Cover::Both as u32, both);
+        e.cover(Cover::Under as u32, both && mine.0.circuits.bits() & kept(&routes[other], state).circuits.bits() & circuit != 0);
+    }
+}

@@ -1,0 +1,99 @@
+//! Points (T-ILK-4): one point stands for all.
+
+use super::{any_input, any_layout, any_state, held, kept};
+use atc_kernel::interlocking::{Phase, Position, Request, State};
+
+const ROUTES: usize = 2;
+const PATH: usize = 2;
+const POINTS: usize = 2;
+
+harness! {
+    /// A point is driven only while a provisional route or an accepted command wants it elsewhere than it is detected; never under a train, never where
+    /// a route past provisional holds the point or a circuit of its detector, and never both ways.
+    t_ilk_4(e)
+    theorem "T-ILK-4";
+    requirements ["ILK-3", "ILK-8"];
+    assumptions [];
+    bound "2 routes of up to 2 circuits, 32 circuits, 2 points, no segment";
+    cases 1;
+    claims {
+        OneWay: "a point is driven at most one way",
+        Train: "no circuit of the detector of a driven point is occupied",
+        Held: "no circuit of the detector of a driven point is held by a route past provisional",
+        Locked: "no route past provisional holds a driven point",
+        Wanted: "a driven point is wanted there by a provisional route, or by a command that is accepted",
+        Elsewhere: "a driven point is not detected where it is driven to",
+        Alone: "a command is accepted only if no route holds the point or a circuit of its detector, and no such circuit is occupied or blocked",
+    }
+    covers {
+        Route: "a point is driven for a route while another route is past provisional",
+        Command: "a point is driven by command",
+        Refused: "a command is refused because of a route",
+        Under: "a wanted point is not driven because of a train",
+        Fails: "a route fails while its point is driven",
+    }
+    {
+        let Some(layout) = any_layout::<E, ROUTES, PATH, POINTS, 0>(e) else { return };
+        let before: State<ROUTES, 0> = any_state(e);
+        let valid = before.is_valid(&layout);
+        e.assume(valid);
+        if !valid {
+            return;
+        }
+        let input = any_input(e);
+        let (after, output) = layout.interlock(before, input);
+        let number = e.word("a point that stands for all (number)", 0..=1) & 1;
+        let mut detectors = 0;
+        for place in 0..POINTS {
+            detectors = if place == usize::from(number) { layout.plan().points[place].detectors.bits() } else { detectors };
+        }
+        let has = |bits: u32| bits >> number & 1 == 1;
+        let (to_normal, to_reverse) = (has(output.drives.normal.bits()), has(output.drives.reverse.bits()));
+        let driven = to_normal || to_reverse;
+        e.claim(Claim::OneWay as u32, !(to_normal && to_reverse));
+        let occupied = input.occupied.bits() & detectors != 0;
+        e.claim(Claim::Train as u32, !driven || !occupied);
+        let (mut asked, mut want_normal, mut want_reverse) = (false, false, false);
+        if let Some(Request::Drive(point, position)) = input.request {
+            asked = u16::from(point.number()) == number;
+            want_normal = asked && position == Position::Normal;
+            want_reverse = asked && position == Position::Reverse;
+        }
+        let accepted = asked && output.answer == Some(Ok(()));
+        (want_normal, want_reverse) = (want_normal && accepted, want_reverse && accepted);
+        let (mut detector_held, mut locked, mut held_at_all, mut past, mut fails, mut wanted) = (false, false, false, false, false, false);
+        for number in 0..ROUTES {
+            let (route, state) = (&layout.plan().routes[number], after.routes[number]);
+            let (path, overlap) = (held(route, state), kept(route, state));
+            let circuits = (path.circuits.bits() | overlap.circuits.bits()) & detectors != 0;
+            let normal = has(path.positions.normal.bits() | overlap.positions.normal.bits());
+            let reverse = has(path.positions.reverse.bits() | overlap.positions.reverse.bits());
+            // A route that fails in this cycle was provisional while the points were driven, be it since this very cycle.
+            let reserved_now = output.answer == Some(Ok(())) && matches!(input.request, Some(Request::Set(route)) if usize::from(route.number()) == number);
+            let was_provisional = before.routes[number].phase == Phase::Provisional || reserved_now;
+            let failed_now = state.phase == Phase::Failed && was_provisional;
+            let provisional = state.phase == Phase::Provisional || failed_now;
+            let is_past = state.phase != Phase::Idle && !provisional;
+            past |= is_past;
+            fails |= failed_now && (normal && to_normal || reverse && to_reverse);
+            detector_held |= is_past && circuits;
+            locked |= is_past && (normal || reverse);
+            held_at_all |= state.phase != Phase::Idle && (circuits || normal || reverse);
+            wanted |= provisional && (normal || reverse);
+            want_normal |= provisional && normal;
+            want_reverse |= provisional && reverse;
+        }
+        e.claim(Claim::Held as u32, !driven || !detector_held);
+        e.claim(Claim::Locked as u32, !driven || !locked);
+        e.claim(Claim::Wanted as u32, (!to_normal || want_normal) && (!to_reverse || want_reverse));
+        let (normal, reverse) = (has(input.detected.normal.bits()), has(input.detected.reverse.bits()));
+        e.claim(Claim::Elsewhere as u32, (!to_normal || !normal || reverse) && (!to_reverse || !reverse || normal));
+        let blocked = after.works.blocked.bits() & detectors != 0;
+        e.claim(Claim::Alone as u32, !accepted || !(held_at_all || occupied || blocked));
+        e.cover(Cover::Route as u32, driven && !accepted && past);
+        e.cover(Cover::Command as u32, driven && accepted);
+        e.cover(Cover::Refused as u32, asked && !accepted && held_at_all && !occupied && !blocked);
+        e.cover(Cover::Under as u32, wanted && occupied && !driven);
+        e.cover(Cover::Fails as u32, fails);
+    }
+}

@@ -1,0 +1,270 @@
+//! Signals and grants of one route (T-ILK-3, T-ATC-1).
+
+use super::{any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, held, kept};
+use crate::Engine;
+use atc_kernel::interlocking::{CircuitSet, Phase, Route, RouteState, View, grant, ready, shows_proceed};
+
+/// The places of a path: half of the machine's, since what is granted is a second path to go through.
+const PLACES: usize = if super::PLACES > 8 { 8 } else { super::PLACES };
+
+const BOUND: &str = match PLACES {
+    8 => "1 route of up to 8 circuits, 32 circuits, 16 points",
+    _ => "1 route of another number of circuits than the 16 of the machine",
+};
+
+/// A route in a valid state, and what its signal looks at.
+struct Scene {
+    route: Route<PLACES>,
+    state: RouteState,
+    view: View,
+}
+
+fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
+    let route = any_routes_layout::<E, 1, PLACES>(e)?.plan().routes[0];
+    let state = any_route_state(e);
+    let valid = state.is_valid(&route);
+    e.assume(valid);
+    let view = View {
+        occupied: any_circuits(e, "occupied (bits)", 0..=15),
+        blocked: any_circuits(e, "blocked (bits)", 0..=0),
+        closed: any_segments(e, "segments with a blocked circuit (bits)"),
+        firm: any_positions(e),
+    };
+    valid.then_some(Scene { route, state, view })
+}
+
+harness! {
+    /// A signal shows proceed exactly while its route is set, all that it holds is clear and unblocked, and every point that it needs, in
+    /// path, flank and overlap, is detected in position and not being driven.
+    t_ilk_3(e)
+    theorem "T-ILK-3";
+    requirements ["ILK-7"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Set: "proceed is shown only for a set route: no train has entered it",
+        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
+        Points: "every point of path, flank and overlap is detected in the position that it is needed in, and undriven",
+        Shown: "and if all this is so, proceed is shown",
+    }
+    covers {
+        Proceed: "proceed is shown over several circuits with a point",
+        Suspended: "a set route shows stop because of a point",
+    }
+    {
+        let Some(Scene { route, state, view }) = any_scene(e) else { return };
+        let proceed = shows_proceed(&route, state, view);
+        let mine = (held(&route, state), kept(&route, state));
+        let circuits = mine.0.circuits.bits() | mine.1.circuits.bits();
+        let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
+        let reverse = mine.0.positions.reverse.bits() | mine.1.positions.reverse.bits();
+        let set = state.phase == Phase::Set && state.head == 0 && state.tail == 0 && state.proved;
+        let clear = circuits & (view.occupied.bits() | view.blocked.bits()) == 0 && route.to.bits() & view.closed.bits() == 0;
+        let points = normal & !view.firm.normal.bits() == 0 && reverse & !view.firm.reverse.bits() == 0;
+        e.claim(Claim::Set as u32, !proceed || set);
+        e.claim(Claim::Clear as u32, !proceed || clear);
+        e.claim(Claim::Points as u32, !proceed || points);
+        e.claim(Claim::Shown as u32, proceed || !(state.phase == Phase::Set && clear && points));
+        e.cover(Cover::Proceed as u32, proceed && route.length > 2 && normal | reverse != 0);
+        e.cover(Cover::Suspended as u32, state.phase == Phase::Set && clear && !points);
+    }
+}
+
+harness! {
+    /// More occupancy never makes a route show proceed: with more circuits occupied in a cycle, a route that was held before it shows
+    /// proceed after it only if it would have with fewer.
+    t_ilk_3_monotone(e)
+    theorem "T-ILK-3";
+    requirements ["ILK-6", "ILK-7"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Safer: "proceed with more circuits occupied is proceed with fewer",
+    }
+    covers {
+        Proceed: "proceed is shown with more circuits occupied",
+        Lost: "proceed is shown with fewer, and not with more",
+    }
+    {
+        let Some(Scene { route, state, view }) = any_scene(e) else { return };
+        e.assume(state.phase != Phase::Idle);
+        let more = any_circuits(e, "occupied besides (bits)", 0..=15);
+        let shown = |occupied: CircuitSet| {
+            let view = View { occupied, ..view };
+            let state = state.follow(&route, occupied);
+            let all_there = ready(&route, state, view);
+            shows_proceed(&route, state.reserve(&route, all_there), view)
+        };
+        let fewer = shown(view.occupied);
+        let all = shown(CircuitSet::from_bits(view.occupied.bits() | more.bits()));
+        e.claim(Claim::Safer as u32, fewer || !all);
+        e.cover(Cover::Proceed as u32, all && more.bits() != 0);
+        e.cover(Cover::Lost as u32, fewer && !all);
+    }
+}
+
+/// What is found of the path, place by place, for a train at `front`: one more than the place of the last occupied circuit.
+struct Found {
+    front: u8,
+    sound: bool,
+    circuit: u64,
+}
+
+fn found(scene: &Scene) -> Found {
+    let mut found = Found { front: 0, sound: false, circuit: 0 };
+    for (place, element) in (0_u8..).zip(&scene.route.path) {
+        let here = place >= scene.state.tail && place < scene.route.length;
+        if here && element.circuits.bits() & scene.view.occupied.bits() != 0 {
+            let normal = element.positions.normal.bits() & !scene.view.firm.normal.bits();
+            let reverse = element.positions.reverse.bits() & !scene.view.firm.reverse.bits();
+            found = Found { front: place + 1, sound: normal | reverse == 0, circuit: element.circuits.bits() };
+        }
+    }
+    found
+}
+
+harness! {
+    /// A route grants only circuits that it holds, to one train: the one at its entry while proceed is shown, and then the one that has entered
+    /// in order, from the last circuit that is occupied.
+    t_atc_1(e)
+    theorem "T-ATC-1";
+    requirements ["ATC-1"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Own: "every circuit that is granted is in the held path",
+        Free: "it is neither occupied nor blocked",
+        Entry: "before entry the grant is for the entry circuit, and proceed is shown",
+        Front: "after entry it is for the last occupied circuit of the path, which was entered in order, and whose own points are in position",
+        Nobody: "in any other phase nothing is granted",
+        Last: "the last circuit is one that is granted",
+    }
+    covers {
+        Entry: "a train at the entry is granted a path",
+        Under: "a train in the path is granted what is ahead",
+        Never: "nothing is granted to a train that is in the path out of order",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { route, state, view } = &scene;
+        let given = grant(route, *state, *view);
+        let circuits = given.circuits.bits();
+        let nothing = circuits == 0;
+        e.claim(Claim::Own as u32, circuits & !held(route, *state).circuits.bits() == 0);
+        e.claim(Claim::Free as u32, circuits & (view.occupied.bits() | view.blocked.bits()) == 0);
+        let at_entry = state.phase == Phase::Set && given.train == route.entry && shows_proceed(route, *state, *view);
+        e.claim(Claim::Entry as u32, nothing || state.phase != Phase::Set || at_entry);
+        let train = found(&scene);
+        let in_order = train.front > 0 && train.front <= state.head && train.sound;
+        let at_front = given.train.bits() == train.circuit && in_order;
+        e.claim(Claim::Front as u32, nothing || state.phase != Phase::InUse || at_front);
+        e.claim(Claim::Nobody as u32, nothing || state.phase == Phase::Set || state.phase == Phase::InUse);
+        e.claim(Claim::Last as u32, given.last.bits() & !circuits == 0 && nothing == (given.last.bits() == 0));
+        e.cover(Cover::Entry as u32, !nothing && state.phase == Phase::Set && route.length > 2);
+        e.cover(Cover::Under as u32, !nothing && state.phase == Phase::InUse);
+        e.cover(Cover::Never as u32, nothing && state.phase == Phase::InUse && train.front > state.head && state.head > 0);
+    }
+}
+
+harness! {
+    /// What is granted is one stretch: from the place ahead of the train on, each place sound, up to the last one, and complete exactly if that
+    /// is the end of the path.
+    t_atc_1_sound(e)
+    theorem "T-ATC-1";
+    requirements ["ATC-1"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Sound: "the points of every place that is granted are in position",
+        Stretch: "a place is granted only if every place between it and the train is",
+        Beyond: "no place behind the train is granted",
+        End: "a grant is complete exactly if its last circuit is the last of the path",
+        Speed: "it carries the route's speed code, or that of stop if it is empty",
+    }
+    covers {
+        Short: "a grant ends before the end of the path",
+        Whole: "a grant reaches the end of the path",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { route, state, view } = &scene;
+        let given = grant(route, *state, *view);
+        let circuits = given.circuits.bits();
+        let front = if state.phase == Phase::Set { 0 } else { found(&scene).front };
+        let one = e.word("a place that stands for all (number)", 1..=3).to_le_bytes()[0];
+        let mut sound = true;
+        let mut mine = 0;
+        let mut between = 0;
+        let mut last = 0;
+        for (place, element) in (0_u8..).zip(&route.path) {
+            if place < route.length {
+                last = element.circuits.bits();
+                if place == one {
+                    mine = element.circuits.bits();
+                    let normal = element.positions.normal.bits() & !view.firm.normal.bits();
+                    let reverse = element.positions.reverse.bits() & !view.firm.reverse.bits();
+                    sound = normal | reverse == 0;
+                } else if place >= front && place < one {
+                    between |= element.circuits.bits();
+                }
+            }
+        }
+        let granted = mine & circuits != 0;
+        e.claim(Claim::Sound as u32, !granted || sound);
+        e.claim(Claim::Stretch as u32, !granted || between & !circuits == 0);
+        e.claim(Claim::Beyond as u32, !granted || one >= front);
+        e.claim(Claim::End as u32, circuits == 0 || given.complete == (given.last.bits() == last));
+        let stop = circuits == 0 && given.speed.0 == 0;
+        e.claim(Claim::Speed as u32, stop || circuits != 0 && given.speed == route.speed);
+        e.cover(Cover::Short as u32, granted && !given.complete);
+        e.cover(Cover::Whole as u32, granted && given.complete);
+    }
+}
+
+harness! {
+    /// A circuit of a held overlap is granted to a train only by the route that continues there, and before that train has entered it, to a
+    /// train on the last circuit before the overlap: the one that the overlap is for.
+    t_atc_1_overlap(e)
+    theorem "T-ATC-1";
+    requirements ["LAY-1"];
+    assumptions [];
+    bound "2 routes of up to 4 circuits, 32 circuits";
+    cases 1;
+    claims {
+        Last: "a grant over a circuit of another route's held overlap, before entry, is for a train on that route's last circuit",
+    }
+    covers {
+        Over: "a circuit of a held overlap is granted",
+    }
+    {
+        let Some(layout) = any_routes_layout::<E, 2, 4>(e) else { return };
+        let routes = &layout.plan().routes;
+        let states = [any_route_state(e), any_route_state(e)];
+        let valid = states[0].is_valid(&routes[0]) && states[1].is_valid(&routes[1]);
+        e.assume(valid);
+        let view = View {
+            occupied: any_circuits(e, "occupied (bits)", 0..=0),
+            blocked: any_circuits(e, "blocked (bits)", 0..=0),
+            closed: any_segments(e, "segments with a blocked circuit (bits)"),
+            firm: any_positions(e),
+        };
+        let under = kept(&routes[0], states[0]).circuits.bits();
+        let path = held(&routes[1], states[1]).circuits.bits();
+        // What T-ILK-1 says of any two routes that are held.
+        e.assume(under & path == 0 || routes[0].continuing.bits() & 2 != 0);
+        let given = grant(&routes[1], states[1], view);
+        let over = valid && given.circuits.bits() & under != 0 && states[1].phase == Phase::Set;
+        let mut last = 0;
+        for (place, element) in (1_u8..).zip(&routes[0].path) {
+            if place == routes[0].length {
+                last = element.circuits.bits();
+            }
+        }
+        e.claim(Claim::Last as u32, !over || given.train.bits() == last);
+        e.cover(Cover::Over as u32, over);
+    }
+}

@@ -1,0 +1,207 @@
+//! The shared table (T-ATC-3): read only fresh and whole.
+
+use super::any_circuits;
+use crate::Engine;
+use crate::engine::{any_byte, any_flag};
+use atc_kernel::interlocking::{
+    CircuitId, CircuitSet, Contents, Epoch, Grant, Layout, MAX_CIRCUITS, Plan, SegmentSet, SpeedCode, Table,
+};
+use atc_kernel::time::Ticks;
+
+/// The routes of the table.
+const GRANTS: usize = 2;
+
+/// Any set of all 64 circuits.
+fn any_set<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> CircuitSet {
+    let high = any_circuits(e, what, 0..=1).bits();
+    CircuitSet::from_bits(high << 32 | any_circuits(e, what, 0..=1).bits())
+}
+
+/// Any grant, whether a route may make it or not.
+fn any_grant<E: Engine + ?Sized>(e: &mut E) -> Grant {
+    Grant {
+        train: any_set(e, "granted to (bits)"),
+        circuits: any_set(e, "granted (bits)"),
+        last: any_set(e, "last (bits)"),
+        complete: any_flag(e, "complete (odd: yes)"),
+        speed: SpeedCode(e.word("speed code", 0..=7).to_le_bytes()[0]),
+    }
+}
+
+/// Any contents, whether the interlocking may write them or not.
+fn any_contents<E: Engine + ?Sized, const R: usize>(e: &mut E) -> Contents<R> {
+    Contents {
+        occupied: any_set(e, "occupied (bits)"),
+        blocked: any_set(e, "blocked (bits)"),
+        grants: core::array::from_fn(|_| any_grant(e)),
+        toward: SegmentSet::from_bits(e.word("toward (bits)", 0..=1).to_le_bytes()[0]),
+        away: SegmentSet::from_bits(e.word("away (bits)", 0..=1).to_le_bytes()[0]),
+        restrictions: core::array::from_fn(|_| SpeedCode(e.word("restriction (code)", 0..=7).to_le_bytes()[0])),
+    }
+}
+
+fn flipped(set: CircuitSet, bit: u16) -> CircuitSet {
+    CircuitSet::from_bits(set.bits() ^ 1 << (bit & 63))
+}
+
+fn flipped_segment(set: SegmentSet, bit: u16) -> SegmentSet {
+    SegmentSet::from_bits(set.bits() ^ 1 << (bit & 7))
+}
+
+fn flipped_code(code: SpeedCode, bit: u16) -> SpeedCode {
+    SpeedCode(code.0 ^ 1 << (bit & 7))
+}
+
+/// The fields of a grant.
+const OF_A_GRANT: usize = 5;
+
+/// The first case that is a restriction.
+const RESTRICTIONS: usize = 6 + GRANTS * OF_A_GRANT;
+
+/// The fields of a table: epoch, check, occupied, blocked, toward, away, those of each grant, each restriction.
+const FIELDS: usize = RESTRICTIONS + MAX_CIRCUITS / TOGETHER;
+
+/// How many restrictions are one case.
+const TOGETHER: usize = 8;
+
+harness! {
+    /// A table is read as it was written in the cycle in which it was written; an older one is refused, and so is one with a wrong bit,
+    /// wherever the bit is and in whatever cycle it is read.
+    t_atc_3(e)
+    theorem "T-ATC-3";
+    requirements ["ATC-5"];
+    assumptions [];
+    bound "2 routes";
+    cases FIELDS;
+    claims {
+        Fresh: "a table that was written in this cycle is read as written",
+        Stale: "a table that was written in another cycle is refused",
+        Damaged: "a table with one wrong bit is refused in every cycle",
+        Unreadable: "the table of the safe output is refused in every cycle",
+    }
+    covers {
+        Looks: "the wrong bit makes the epoch that of the cycle",
+        High: "the highest bit of its field is wrong",
+    }
+    {
+        let epoch = Epoch(e.word("epoch", 0..=3));
+        let other = Epoch(e.word("epoch of another cycle", 0..=3));
+        let field = e.choose("field with the wrong bit", FIELDS);
+        let bit = e.word("wrong bit of the field (number)", 0..=63);
+        let contents: Contents<GRANTS> = any_contents(e);
+        let table = Table::write(epoch, contents);
+        e.claim(Claim::Fresh as u32, table.read(epoch) == Some(contents));
+        e.claim(Claim::Stale as u32, epoch == other || table.read(other).is_none());
+        let (_, check, _) = table.parts();
+        let (mut wrong_epoch, mut wrong_check, mut wrong) = (epoch, check, contents);
+        match field {
+            0 => wrong_epoch.0 ^= 1 << (bit & 15),
+            1 => wrong_check ^= 1 << (bit & 63),
+            2 => wrong.occupied = flipped(wrong.occupied, bit),
+            3 => wrong.blocked = flipped(wrong.blocked, bit),
+            4 => wrong.toward = flipped_segment(wrong.toward, bit),
+            5 => wrong.away = flipped_segment(wrong.away, bit),
+            RESTRICTIONS.. => {
+                for (number, restriction) in wrong.restrictions.iter_mut().enumerate() {
+                    let here = number / TOGETHER == field - RESTRICTIONS && number % TOGETHER == usize::from(bit >> 3 & 7);
+                    *restriction = if here { flipped_code(*restriction, bit) } else { *restriction };
+                }
+            }
+            _ => {
+                for (number, grant) in wrong.grants.iter_mut().enumerate() {
+                    if number == (field - 6) / OF_A_GRANT {
+                        match (field - 6) % OF_A_GRANT {
+                            0 => grant.train = flipped(grant.train, bit),
+                            1 => grant.circuits = flipped(grant.circuits, bit),
+                            2 => grant.last = flipped(grant.last, bit),
+                            3 => grant.complete = !grant.complete,
+                            _ => grant.speed = flipped_code(grant.speed, bit),
+                        }
+                    }
+                }
+            }
+        }
+        let damaged = Table::from_parts(wrong_epoch, wrong_check, wrong);
+        e.claim(Claim::Damaged as u32, damaged.read(other).is_none());
+        e.claim(Claim::Unreadable as u32, Table::<GRANTS>::UNREADABLE.read(other).is_none());
+        e.cover(Cover::Looks as u32, field != 0 || wrong_epoch == other);
+        e.cover(Cover::High as u32, bit & 63 == 63);
+    }
+}
+
+harness! {
+    /// Where the table is of another cycle, every circuit gets a telegram that tells a train to stay where it is.
+    t_atc_3_stale(e)
+    theorem "T-ATC-3";
+    requirements ["ATC-6"];
+    assumptions [];
+    bound "1 route, no segment, no restriction";
+    cases 1;
+    claims {
+        Stop: "the telegram's stop circuit is its own, its speed is stop, it is not open and holds nothing",
+    }
+    covers {
+        Train: "the table says that a train in the circuit is granted something",
+    }
+    {
+        let number = any_byte(e, "a circuit that stands for all (number)", 0..=7);
+        let Some(circuit) = CircuitId::new(number) else { return e.assume(false) };
+        let plan = Plan::<1, 1, 0, 1> { clear: 1, turn: Ticks(1), ..Plan::EMPTY };
+        let Ok(layout) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
+        let contents: Contents<1> = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
+        let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+        let written = Epoch(e.word("epoch", 0..=1));
+        if written == now {
+            return e.assume(false);
+        }
+        let table = Table::write(written, contents);
+        let telegrams = layout.telegrams(&table, now);
+        let mut stop = true;
+        for (place, it) in (0_u8..).zip(&telegrams) {
+            stop &= place != number || it.stop == circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
+        }
+        e.claim(Claim::Stop as u32, stop);
+        let train = contents.occupied.bits() >> number & 1 == 1;
+        let granted = contents.grants[0].train.bits() == 1_u64 << number && contents.grants[0].circuits.bits() != 0;
+        e.cover(Cover::Train as u32, train && granted);
+    }
+}
+
+harness! {
+    /// Where the check of the table is wrong, every circuit gets a telegram that tells a train to stay where it is.
+    t_atc_3_damaged(e)
+    theorem "T-ATC-3";
+    requirements ["ATC-6"];
+    assumptions [];
+    bound "1 route, no segment, no restriction";
+    cases 1;
+    claims {
+        Stop: "the telegram's stop circuit is its own, its speed is stop, it is not open and holds nothing",
+    }
+    covers {
+        Train: "the table says that a train in the circuit is granted something",
+    }
+    {
+        let number = any_byte(e, "a circuit that stands for all (number)", 0..=7);
+        let Some(circuit) = CircuitId::new(number) else { return e.assume(false) };
+        let plan = Plan::<1, 1, 0, 1> { clear: 1, turn: Ticks(1), ..Plan::EMPTY };
+        let Ok(layout) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
+        let contents: Contents<1> = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
+        let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+        let damage = u64::from(e.word("difference of the check", 0..=1));
+        if damage == 0 {
+            return e.assume(false);
+        }
+        let (_, right, _) = Table::write(now, contents).parts();
+        let table = Table::from_parts(now, right ^ damage, contents);
+        let telegrams = layout.telegrams(&table, now);
+        let mut stop = true;
+        for (place, it) in (0_u8..).zip(&telegrams) {
+            stop &= place != number || it.stop == circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
+        }
+        e.claim(Claim::Stop as u32, stop);
+        let train = contents.occupied.bits() >> number & 1 == 1;
+        let granted = contents.grants[0].train.bits() == 1_u64 << number && contents.grants[0].circuits.bits() != 0;
+        e.cover(Cover::Train as u32, train && granted);
+    }
+}

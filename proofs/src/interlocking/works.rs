@@ -1,0 +1,112 @@
+//! Maintenance (T-ILK-8): blocks, restrictions, and which blocks staff may rely on.
+
+use super::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
+use atc_kernel::interlocking::{Layout, MAX_CIRCUITS, SpeedCode, State, Works};
+
+const ROUTES: usize = 1;
+const PATH: usize = 2;
+
+harness! {
+    /// A circuit is blocked or restricted by command only, and always by command. A block is confirmed only where no route holds the circuit
+    /// and no train is on it, and on plain line only while nobody may be on the way to it; what makes it protection lasts.
+    t_ilk_8(e)
+    theorem "T-ILK-8";
+    requirements ["ILK-15", "ILK-16"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
+    cases 1;
+    claims {
+        Blocked: "a circuit is blocked exactly if that is commanded, or it was and the opposite is not commanded",
+        Restricted: "its restriction is the commanded one, and changes by command only; a command to restrict goes before one to lift",
+        Told: "the shared table has these blocks and restrictions, whatever routes do",
+        Confirmed: "only a blocked circuit that no route holds is confirmed",
+        Clear: "it becomes confirmed only while it is not occupied",
+        Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and the neighbour has not been permitted to send for the turn time",
+        Lasts: "while it stays confirmed, the neighbour is not permitted to send and no route out is held",
+    }
+    covers {
+        Becomes: "a circuit of a held route's segment becomes confirmed",
+        Held: "a blocked circuit is not confirmed because a route holds it",
+        Moving: "a blocked circuit of plain line is not confirmed because the neighbour was permitted to send",
+        Both: "a circuit is to be blocked and unblocked",
+        Lifts: "a restriction is lifted",
+    }
+    {
+        let Some(layout) = any_layout::<E, ROUTES, PATH, 1, 1>(e) else { return };
+        let layout: Layout<ROUTES, PATH, 1, 1> = layout;
+        let state: State<ROUTES, 1> = any_state(e);
+        let it = bit(e.word("a circuit that stands for all (number)", 0..=15));
+        let has = |bits: u64| bits & it != 0;
+        let restriction = SpeedCode(e.word("its restriction (code)", 0..=7).to_le_bytes()[0]);
+        let elsewhere = SpeedCode(e.word("restriction elsewhere (code)", 0..=7).to_le_bytes()[0]);
+        let restrictions: [SpeedCode; MAX_CIRCUITS] =
+            core::array::from_fn(|place| if it >> place & 1 == 1 { restriction } else { elsewhere });
+        let blocked = any_circuits(e, "blocked (bits)", 0..=u16::MAX);
+        // A valid state confirms nothing else.
+        let confirmed = any_circuits(e, "confirmed, if blocked (bits)", 0..=u16::MAX).and(blocked);
+        let before = State { works: Works { restrictions, blocked, confirmed }, ..state };
+        let segment = layout.plan().segments[0];
+        let mut line = 0;
+        for place in 0..PATH {
+            line |= if place < usize::from(segment.length) { segment.circuits[place].bits() } else { 0 };
+        }
+        let on_line = has(line);
+        let turn = layout.plan().turn;
+        let out = |state: &State<ROUTES, 1>| {
+            let mut out = false;
+            for number in 0..ROUTES {
+                let idle = held(&layout.plan().routes[number], state.routes[number]).circuits.bits() == 0
+                    && kept(&layout.plan().routes[number], state.routes[number]).circuits.bits() == 0;
+                out |= layout.plan().routes[number].to.bits() & 1 == 1 && !idle;
+            }
+            out
+        };
+        let protects = |state: &State<ROUTES, 1>| state.directions.toward.bits() & 1 == 0 && state.directions.withdrawn[0] == turn && !out(state);
+        let was_confirmed = has(before.works.confirmed.bits());
+        let valid = before.is_valid(&layout) && (!was_confirmed || !on_line || protects(&before));
+        e.assume(valid);
+        if !valid {
+            return;
+        }
+        let input = any_input(e);
+        let (after, output) = layout.interlock(before, input);
+        let orders = input.orders;
+        let (block, unblock) = (has(orders.block.bits()), has(orders.unblock.bits()));
+        let expected = block || has(before.works.blocked.bits()) && !unblock;
+        let is_blocked = has(after.works.blocked.bits());
+        e.claim(Claim::Blocked as u32, is_blocked == expected);
+        let (restrict, lift) = (has(orders.restrict.bits()), has(orders.lift.bits()));
+        let commanded = if orders.speed.0 < 7 { orders.speed.0 } else { 7 };
+        let wanted = if restrict { commanded } else if lift { 7 } else { restriction.0 };
+        let mut found = 0;
+        let (_, _, contents) = output.table.parts();
+        let mut told = 0;
+        for place in 0..32 {
+            if it >> place & 1 == 1 {
+                found = after.works.restrictions[place].0;
+                told = contents.restrictions[place].0;
+            }
+        }
+        e.claim(Claim::Restricted as u32, found == wanted);
+        e.claim(Claim::Told as u32, has(contents.blocked.bits()) == expected && told == wanted);
+        let mut in_route = false;
+        for number in 0..ROUTES {
+            let route = &layout.plan().routes[number];
+            in_route |= has(held(route, after.routes[number]).circuits.bits() | kept(route, after.routes[number]).circuits.bits());
+        }
+        let confirmed = has(after.works.confirmed.bits()) || has(output.confirmed.bits());
+        e.claim(Claim::Confirmed as u32, !confirmed || is_blocked && !in_route);
+        let occupied = input.occupied.bits();
+        let becomes = confirmed && !was_confirmed;
+        e.claim(Claim::Clear as u32, !becomes || !has(occupied));
+        let clear = occupied & (line | segment.throat.bits()) == 0;
+        let quiet = clear && protects(&after);
+        e.claim(Claim::Quiet as u32, !becomes || !on_line || quiet);
+        e.claim(Claim::Lasts as u32, !confirmed || !on_line || protects(&after) && output.permits.bits() & 1 == 0);
+        e.cover(Cover::Becomes as u32, becomes && on_line);
+        e.cover(Cover::Held as u32, is_blocked && !confirmed && in_route && !has(occupied));
+        e.cover(Cover::Moving as u32, is_blocked && !confirmed && on_line && clear && !out(&after));
+        e.cover(Cover::Both as u32, block && unblock);
+        e.cover(Cover::Lifts as u32, lift && !restrict && restriction.0 < 7);
+    }
+}
