@@ -1,0 +1,77 @@
+//! Rules of a route's ends: approach, overlap, what lies beyond.
+
+use crate::derive::{Shortfall, back};
+use crate::form;
+use crate::form::EndKind;
+use crate::model::{Circuits, Model, Route};
+use crate::problem::Problem;
+use crate::rule::Rule;
+
+/// The rules of the route's approach, overlap and end.
+pub fn check(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    approach(given, model, route, problems);
+    overlap(given, model, route, problems);
+    beyond(given, model, route, problems);
+}
+
+fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    let named = given.approach.as_ref().and_then(|named| named.first());
+    let span = named.map_or(&route.span, |named| &named.span);
+    let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
+    let from = (route.start, route.entry);
+    let found = back(&model.graph, &model.circuits, from, route.approach_m, &ahead, Some(&route.approach));
+    if let Some((covered, why)) = found.short {
+        let why = match why {
+            Shortfall::Line(joint) => {
+                format!("the line is not described beyond joint {}", model.graph.joints[joint].name)
+            }
+            Shortfall::Circuit(circuit) => format!("{} is not in it", model.circuits[circuit].name),
+        };
+        let what = format!("route {}: the approach reaches {covered} m back from the signal, where {why}", route.name);
+        let right = format!(
+            "{} m are needed: the braking distance, and what a train runs in {} ms",
+            route.approach_m, model.values.telegram_age_ms
+        );
+        problems.push(Problem::new(Rule::ApproachTooShort, span, what, right));
+    }
+    let everything = back(&model.graph, &model.circuits, from, u32::MAX, &ahead, Some(&route.approach));
+    for apart in route.approach.difference(&everything.circuits).filter(|apart| !ahead.contains(apart)) {
+        let what = format!(
+            "route {}: {} is in the approach, but does not lead to the signal through it",
+            route.name, model.circuits[*apart].name
+        );
+        problems.push(Problem::new(Rule::ApproachApart, span, what, "leave it out, or add what lies between"));
+    }
+}
+
+fn overlap(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    if let Some(reason) = &given.short_overlap {
+        if reason.trim().is_empty() {
+            let what = format!("route {} lacks the reason for its short overlap", route.name);
+            problems.push(Problem::new(Rule::OverlapTooShort, &reason.span, what, "say why it is long enough"));
+        }
+        return;
+    }
+    let length: u32 = route.overlap.iter().map(|circuit| u32::from(model.circuits[*circuit].length.0)).sum();
+    let least = model.values.least_overlap.0;
+    // Nothing is to be run into behind a buffer stop, and the direction of a segment is held against what is on plain line.
+    let nothing_ahead = model.graph.joints[route.exit].end == Some(EndKind::Buffer) || route.to.is_some();
+    if length < u32::from(least) && !nothing_ahead {
+        let what = format!("route {} has an overlap of {length} m, and the least one is {least} m", route.name);
+        let right = "name circuits beyond the end as overlap, or give short_overlap = \"the reason\"";
+        let span = given.overlap.first().map_or(&route.span, |first| &first.span);
+        problems.push(Problem::new(Rule::OverlapTooShort, span, what, right));
+    }
+}
+
+fn beyond(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    let (Some(last), Some(named)) = (route.last(), &given.beyond) else { return };
+    for circuit in &route.beyond {
+        if *circuit != last && model.graph.between(last, *circuit).is_empty() {
+            let (name, last) = (&model.circuits[*circuit].name, &model.circuits[last].name);
+            let span = named.iter().find(|named| named.value == *name).map_or(&route.span, |named| &named.span);
+            let what = format!("route {}: {name} does not adjoin the last circuit {last}", route.name);
+            problems.push(Problem::new(Rule::BeyondApart, span, what, format!("name neighbours of {last}")));
+        }
+    }
+}

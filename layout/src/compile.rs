@@ -1,0 +1,223 @@
+//! From the model to the kernel's plan.
+
+use std::collections::BTreeMap;
+
+use atc_kernel::interlocking::{
+    Broken, CircuitSet, Element, Layout, MAX_CIRCUITS, Place, Plan, PointSet, Positions, Route, RouteSet, Segment,
+    SegmentSet,
+};
+
+use crate::form::{self, Position};
+use crate::model::{self, Model, Note};
+use crate::problem::{Errors, Problem, Source};
+use crate::rule::Rule;
+
+/// A layout for the kernel, with the names of its numbers.
+#[derive(Clone, Debug)]
+pub struct Compiled<const R: usize = 64, const P: usize = 16, const N: usize = 32, const S: usize = 8> {
+    /// The plan. It breaks no rule.
+    pub plan: Box<Plan<R, P, N, S>>,
+    /// What the numbers stand for.
+    pub names: Names,
+    /// What the file left out and how it was filled in.
+    pub derived: Vec<Note>,
+    /// The same layout with everything that the plan has no place for.
+    pub model: Model,
+}
+
+/// What the numbers of a plan stand for: circuit 0 is the first name, and so on.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Names {
+    /// The station.
+    pub station: String,
+    /// The circuits.
+    pub circuits: Vec<String>,
+    /// The points.
+    pub points: Vec<String>,
+    /// The routes.
+    pub routes: Vec<String>,
+    /// The signals of the routes.
+    pub signals: Vec<String>,
+    /// The segments.
+    pub segments: Vec<String>,
+}
+
+impl Names {
+    fn of(station: &form::Station, model: &Model) -> Self {
+        Self {
+            station: station.name.clone(),
+            circuits: model.circuits.iter().map(|circuit| circuit.name.clone()).collect(),
+            points: model.points.iter().map(|point| point.name.clone()).collect(),
+            routes: model.routes.iter().map(|route| route.name.clone()).collect(),
+            signals: model.routes.iter().map(|route| route.signal.clone()).collect(),
+            segments: model.segments.iter().map(|segment| segment.name.clone()).collect(),
+        }
+    }
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Compiled<R, P, N, S> {
+    /// The layout for the kernel.
+    ///
+    /// # Panics
+    /// Never: the plan was checked when this was made.
+    pub fn layout(&self) -> Box<Layout<R, P, N, S>> {
+        Box::new(Layout::new(*self.plan).expect("the plan was checked when it was compiled"))
+    }
+}
+
+/// Numbers a model that breaks no rule of its own, and checks the plan.
+///
+/// # Errors
+/// What does not fit, and every rule that the plan breaks.
+pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
+    source: &Source,
+    station: &form::Station,
+    model: Model,
+) -> Result<Compiled<R, P, N, S>, Errors> {
+    let mut problems = Vec::new();
+    room::<R, P, N, S>(&model, &mut problems);
+    if !problems.is_empty() {
+        return Err(Errors::new(source, problems));
+    }
+    let plan = Box::new(plan::<R, P, N, S>(&model));
+    plan.check(&mut |broken| problems.push(of_plan(broken, &model)));
+    if !problems.is_empty() {
+        return Err(Errors::new(source, problems));
+    }
+    Ok(Compiled { plan, names: Names::of(station, &model), derived: model.notes.clone(), model })
+}
+
+fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model, problems: &mut Vec<Problem>) {
+    let counts = [
+        ("track circuits", model.circuits.len(), MAX_CIRCUITS),
+        ("points", model.points.len(), N.min(32)),
+        ("routes", model.routes.len(), R.min(64)),
+        ("segments", model.segments.len(), S.min(8)),
+    ];
+    for (kind, count, room) in counts {
+        if count > room {
+            let what = format!("the layout has {count} {kind}, and there is room for {room}");
+            let right = "choose routes with --only, or divide the station";
+            problems.push(Problem::new(Rule::TooMany, &(0..0), what, right));
+        }
+    }
+    let paths = model.routes.iter().map(|route| ("route", &route.name, route.path.len(), &route.span));
+    let segments =
+        model.segments.iter().map(|segment| ("segment", &segment.name, segment.circuits.len(), &segment.span));
+    for (kind, name, length, span) in paths.chain(segments) {
+        if length > P {
+            let what = format!("{kind} {name} has {length} circuits, and there is room for {P}");
+            problems.push(Problem::new(Rule::TooMany, span, what, "divide it"));
+        }
+    }
+}
+
+fn set<T>(numbers: impl IntoIterator<Item = usize>, empty: T, or: impl Fn(T, usize) -> T) -> T {
+    numbers.into_iter().fold(empty, or)
+}
+
+fn circuits(numbers: impl IntoIterator<Item = usize>) -> CircuitSet {
+    set(numbers, CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)))
+}
+
+fn routes(numbers: impl IntoIterator<Item = usize>) -> RouteSet {
+    set(numbers, RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number)))
+}
+
+fn positions(given: &BTreeMap<usize, Position>) -> Positions {
+    let of = |wanted: Position| {
+        let numbers = given.iter().filter(|(_, position)| **position == wanted).map(|(point, _)| *point);
+        set(numbers, PointSet::EMPTY, |all, number| all.or(PointSet::nth(number)))
+    };
+    Positions { normal: of(Position::Normal), reverse: of(Position::Reverse) }
+}
+
+fn segment_set(segment: Option<usize>) -> SegmentSet {
+    segment.map_or(SegmentSet::EMPTY, SegmentSet::nth)
+}
+
+fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model) -> Plan<R, P, N, S> {
+    let mut plan = Plan::EMPTY;
+    for (place, route) in plan.routes.iter_mut().zip(&model.routes) {
+        *place = route_of(route);
+    }
+    for (place, point) in plan.points.iter_mut().zip(&model.points) {
+        place.detectors = circuits(point.detectors.iter().copied());
+    }
+    for (place, segment) in plan.segments.iter_mut().zip(&model.segments) {
+        *place = Segment {
+            length: u8::try_from(segment.circuits.len()).unwrap_or(u8::MAX),
+            throat: circuits(segment.throat),
+            ..Segment::NONE
+        };
+        for (circuit, number) in place.circuits.iter_mut().zip(&segment.circuits) {
+            *circuit = CircuitSet::nth(*number);
+        }
+    }
+    for (place, circuit) in plan.lengths.iter_mut().zip(&model.circuits) {
+        *place = circuit.length;
+    }
+    plan.braking = model.values.braking;
+    plan.clear = model.values.clear;
+    plan.turn = model.values.turn;
+    plan
+}
+
+fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
+    let mut made = Route {
+        entry: CircuitSet::nth(route.entry),
+        approach: circuits(route.approach.iter().copied()),
+        length: u8::try_from(route.path.len()).unwrap_or(u8::MAX),
+        overlap: Element {
+            circuits: circuits(route.overlap.iter().copied()),
+            positions: positions(&route.overlap_positions),
+        },
+        beyond: circuits(route.beyond.iter().copied()),
+        continuing: routes(route.continuing.iter().copied()),
+        conflicts: routes(route.conflicts.iter().copied()),
+        from: segment_set(route.from),
+        to: segment_set(route.to),
+        drive: route.drive,
+        release: route.release,
+        stay: route.stay,
+        speed: route.speed,
+        ..Route::NONE
+    };
+    for (element, place) in made.path.iter_mut().zip(&route.path) {
+        *element = Element { circuits: CircuitSet::nth(place.circuit), positions: positions(&place.positions) };
+    }
+    made
+}
+
+/// A broken rule of the plan in the words of the file.
+fn of_plan(broken: Broken, model: &Model) -> Problem {
+    let route = |number: u8| &model.routes[usize::from(number)];
+    let segment = |number: u8| &model.segments[usize::from(number)];
+    let (about, span) = match broken.place {
+        Place::Plan => ("the layout".to_owned(), 0..0),
+        Place::Route(number) => (format!("route {}", route(number).name), route(number).span.clone()),
+        Place::Overlap(number) => (format!("the overlap of route {}", route(number).name), route(number).span.clone()),
+        Place::Path(number, place) => {
+            let place = &route(number).path[usize::from(place)];
+            (format!("{} of route {}", model.circuits[place.circuit].name, route(number).name), place.span.clone())
+        }
+        Place::Routes(one, other) => {
+            (format!("routes {} and {}", route(one).name, route(other).name), route(one).span.clone())
+        }
+        Place::Point(number) => {
+            let point = &model.points[usize::from(number)];
+            (format!("point {}", point.name), point.span.clone())
+        }
+        Place::Segment(number) => (format!("segment {}", segment(number).name), segment(number).span.clone()),
+        Place::Segments(one, other) => {
+            (format!("segments {} and {}", segment(one).name, segment(other).name), segment(one).span.clone())
+        }
+        Place::Circuit(number) => {
+            let circuit = &model.circuits[usize::from(number)];
+            (format!("circuit {}", circuit.name), circuit.span.clone())
+        }
+    };
+    let rule = Rule::Plan(broken.rule);
+    let what = format!("{about} breaks a rule: {}", rule.text());
+    Problem::new(rule, &span, what, crate::rule::remedy(broken.rule))
+}

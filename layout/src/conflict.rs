@@ -1,0 +1,68 @@
+//! Why two routes cannot be held together.
+
+use crate::model::{Model, Route};
+
+/// A reason for which two routes exclude each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reason {
+    /// Their paths share a circuit.
+    Circuit,
+    /// They need a point in opposite positions.
+    Point,
+    /// The overlap of one has a circuit of the other's path or overlap, and the other does not continue it.
+    Overlap,
+    /// The file declares it.
+    Declared,
+    /// They need opposite directions of a segment.
+    Direction,
+}
+
+impl Reason {
+    /// A word for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Circuit => "circuit",
+            Self::Point => "point",
+            Self::Overlap => "overlap",
+            Self::Declared => "declared",
+            Self::Direction => "direction",
+        }
+    }
+
+    /// A letter for it.
+    pub const fn letter(self) -> char {
+        match self {
+            Self::Circuit => 'c',
+            Self::Point => 'p',
+            Self::Overlap => 'o',
+            Self::Declared => 'd',
+            Self::Direction => 's',
+        }
+    }
+}
+
+/// Every reason for which the routes number `one` and `other` exclude each other while both are held whole; none for a route and
+/// itself.
+pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
+    let (a, b) = (&model.routes[one], &model.routes[other]);
+    if one == other {
+        return Vec::new();
+    }
+    let meets = |a: &Route, b: &Route| a.circuits().any(|circuit| b.circuits().any(|same| same == circuit));
+    let under = |overlap: &Route, number: usize, path: &Route| {
+        let touched = path.circuits().any(|circuit| overlap.overlap.contains(&circuit));
+        touched && !overlap.continuing.contains(&number)
+    };
+    let overlaps = a.overlap.iter().any(|circuit| b.overlap.contains(circuit));
+    let opposed =
+        a.positions().any(|(point, position)| b.positions().any(|(same, needed)| same == point && needed != position));
+    let opposite = |a: &Route, b: &Route| a.from.is_some() && a.from == b.to;
+    let all = [
+        (meets(a, b), Reason::Circuit),
+        (opposed, Reason::Point),
+        (overlaps || under(a, other, b) || under(b, one, a), Reason::Overlap),
+        (a.conflicts.contains(&other) || b.conflicts.contains(&one), Reason::Declared),
+        (opposite(a, b) || opposite(b, a), Reason::Direction),
+    ];
+    all.into_iter().filter_map(|(holds, reason)| holds.then_some(reason)).collect()
+}

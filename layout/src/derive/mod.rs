@@ -1,0 +1,148 @@
+//! From names to numbers, and everything that the file leaves out.
+
+mod approach;
+mod ends;
+mod flank;
+pub mod positions;
+mod route;
+pub mod values;
+mod way;
+
+pub use approach::{Back, Shortfall, back};
+
+use crate::at::At;
+use crate::form::Station;
+use crate::graph::Graph;
+use crate::model::{Circuit, Circuits, Model, Note, Point, Segment};
+use crate::names::Names;
+use crate::problem::Problem;
+use crate::rule::Rule;
+
+use atc_kernel::distance::Metres;
+
+/// The model of `station` as far as it can be made; what cannot is a problem.
+pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
+    let names = Names::of(station, problems);
+    let graph = Graph::of(station, &names, problems);
+    let (values, cycle) = values::values(station, problems);
+    let mut model = Model { graph, values, ..Model::default() };
+    model.circuits = circuits(station, problems);
+    model.points = points(station, &names, &mut model.notes, problems);
+    model.segments = segments(station, &names, problems);
+    for fouling in &station.fouling {
+        let [one, other] = &fouling.between;
+        if let (Some(one), Some(other)) = (names.circuit(one, problems), names.circuit(other, problems)) {
+            model.fouling.push((one, other));
+        }
+    }
+    for platform in &station.platforms {
+        all(&platform.circuits, &names, problems);
+    }
+    for given in &station.routes {
+        let route = route::route(station, given, &names, &model, cycle, problems);
+        model.routes.push(route);
+    }
+    ends::ends(station, &names, &mut model, problems);
+    positions::positions(&mut model);
+    approaches(station, &names, &mut model, problems);
+    model
+}
+
+fn circuits(station: &Station, problems: &mut Vec<Problem>) -> Vec<Circuit> {
+    let made = station.circuits.iter().map(|given| {
+        if given.length_m.value == 0 || given.length_m.value == u16::MAX {
+            let what = format!("circuit {} is {} m long", given.name, given.length_m);
+            problems.push(Problem::new(Rule::Range, &given.length_m.span, what, "1 to 65 534 m are possible"));
+        }
+        Circuit { name: given.name.value.clone(), length: Metres(given.length_m.value), span: given.name.span.clone() }
+    });
+    made.collect()
+}
+
+/// The circuits of a list of names.
+fn all(given: &[At<String>], names: &Names, problems: &mut Vec<Problem>) -> Circuits {
+    given.iter().filter_map(|name| names.circuit(name, problems)).collect()
+}
+
+fn points(station: &Station, names: &Names, notes: &mut Vec<Note>, problems: &mut Vec<Problem>) -> Vec<Point> {
+    let mut points = Vec::new();
+    for given in &station.points {
+        // The graph has told of a circuit that is not there.
+        let circuit = names.circuit(&given.circuit, &mut Vec::new());
+        let fouled_in = all(&given.fouled_in, names, problems);
+        let detectors = if let Some(detectors) = &given.detectors {
+            all(detectors, names, problems)
+        } else {
+            let detectors: Circuits = fouled_in.iter().copied().chain(circuit).collect();
+            let listed: Vec<&str> = detectors.iter().map(|circuit| station.circuits[*circuit].name.as_str()).collect();
+            notes.push(Note {
+                about: format!("point {}", given.name),
+                text: format!("detectors: the circuit it lies in and those it is fouled in: {}", listed.join(", ")),
+            });
+            detectors
+        };
+        let throw = given.throw_ms.as_ref().unwrap_or(&station.times.throw_ms);
+        points.push(Point {
+            name: given.name.value.clone(),
+            circuit,
+            detectors,
+            fouled_in,
+            throw_ms: throw.value,
+            unprotected: [&given.normal_unprotected, &given.reverse_unprotected]
+                .map(|reason| reason.as_ref().map(|reason| reason.value.clone())),
+            span: given.name.span.clone(),
+        });
+        for reason in [&given.normal_unprotected, &given.reverse_unprotected].into_iter().flatten() {
+            if reason.trim().is_empty() {
+                let what = format!("point {} lacks the reason why a leg needs no protection", given.name);
+                problems.push(Problem::new(Rule::NoFlank, &reason.span, what, "say what keeps vehicles off"));
+            }
+        }
+    }
+    points
+}
+
+fn segments(station: &Station, names: &Names, problems: &mut Vec<Problem>) -> Vec<Segment> {
+    let mut segments = Vec::new();
+    for given in &station.segments {
+        if given.circuits.is_empty() {
+            let what = format!("segment {} has no circuit", given.name);
+            problems.push(Problem::new(
+                Rule::Range,
+                &given.name.span,
+                what,
+                "name at least the one next to the station",
+            ));
+        }
+        segments.push(Segment {
+            name: given.name.value.clone(),
+            circuits: given.circuits.iter().filter_map(|name| names.circuit(name, problems)).collect(),
+            throat: given.throat.as_ref().and_then(|name| names.circuit(name, problems)),
+            span: given.name.span.clone(),
+        });
+    }
+    segments
+}
+
+fn approaches(station: &Station, names: &Names, model: &mut Model, problems: &mut Vec<Problem>) {
+    for number in 0..model.routes.len() {
+        let route = &model.routes[number];
+        if !route.is_sound() {
+            continue;
+        }
+        let given = &station.routes[number];
+        let approach = if let Some(given) = &given.approach {
+            all(given, names, problems)
+        } else {
+            let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
+            let from = (route.start, route.entry);
+            let found = back(&model.graph, &model.circuits, from, route.approach_m, &ahead, None);
+            let listed: Vec<&str> =
+                found.circuits.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect();
+            let text = format!("approach: {} m back from the signal: {}", route.approach_m, listed.join(", "));
+            model.notes.push(Note { about: format!("route {}", given.name), text });
+            found.circuits
+        };
+        model.routes[number].approach = approach;
+    }
+}

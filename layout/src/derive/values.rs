@@ -1,0 +1,155 @@
+//! Times in cycles, speeds as codes, braking distances.
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
+use atc_kernel::pattern::{Deceleration, pattern};
+use atc_kernel::speed::KmhTenths;
+use atc_kernel::telegram::Gradient;
+use atc_kernel::time::{Cycle, Millis, Ticks};
+
+use crate::at::At;
+use crate::form::Station;
+use crate::model::Values;
+use crate::problem::Problem;
+use crate::rule::Rule;
+
+/// Which way a time is rounded to whole cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Its lapse permits something: up.
+    Permits,
+    /// Its lapse restricts: down.
+    Restricts,
+}
+
+/// A time in cycles.
+pub fn ticks(what: &str, time: &At<u32>, rounding: Rounding, cycle: Cycle, problems: &mut Vec<Problem>) -> Ticks {
+    let ticks = match rounding {
+        Rounding::Permits => cycle.at_least(Millis(time.value)),
+        Rounding::Restricts => cycle.at_most(Millis(time.value)),
+    };
+    match ticks {
+        Some(Ticks(0)) | None => {
+            let cycle_ms = cycle.length().0;
+            let what =
+                format!("{what} is {time} ms, {} cycles of {cycle_ms} ms", f64::from(time.value) / f64::from(cycle_ms));
+            problems.push(Problem::new(Rule::Range, &time.span, what, "1 to 60 000 cycles are possible"));
+            Ticks(1)
+        }
+        Some(ticks) => ticks,
+    }
+}
+
+/// The values for the whole station.
+pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle) {
+    let times = &station.times;
+    let cycle = Cycle::new(Millis(times.cycle_ms.value)).unwrap_or_else(|| {
+        problems.push(Problem::new(Rule::Range, &times.cycle_ms.span, "a cycle has 0 ms", "give it 1 ms or more"));
+        // Any other length will do to find what else is wrong.
+        const { Cycle::new(Millis(100)).expect("100 ms is a cycle") }
+    });
+    let clear = ticks("clear_ms", &times.clear_ms, Rounding::Permits, cycle, problems);
+    let clear = u8::try_from(clear.0).unwrap_or_else(|_| {
+        let what = format!("clear_ms is {} cycles", clear.0);
+        problems.push(Problem::new(Rule::Range, &times.clear_ms.span, what, "1 to 255 cycles are possible"));
+        u8::MAX
+    });
+    let turn = ticks("turn_ms", &times.turn_ms, Rounding::Permits, cycle, problems);
+    let (speeds_kmh, braking) = codes(station, problems);
+    let values = Values {
+        cycle_ms: cycle.length().0,
+        clear,
+        turn,
+        telegram_age_ms: times.telegram_age_ms.value,
+        speeds_kmh,
+        braking,
+        least_overlap: Metres(station.overlaps.least_m.value),
+        longest_train: station.longest_train_m.as_ref().map(|length| Metres(length.value)),
+    };
+    (values, cycle)
+}
+
+fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [Metres; MAX_CODES]) {
+    let given = &station.braking;
+    let worst = station.circuits.iter().filter_map(|circuit| circuit.gradient.as_ref());
+    let worst = worst.map(|gradient| gradient.value.saturating_abs().saturating_neg()).min().unwrap_or(0);
+    let brake = Deceleration::brake(given.deceleration_mm_s2.value).map(|brake| brake.on(Gradient(worst)));
+    let speeds = &given.speeds_kmh;
+    let mut right = !speeds.is_empty() && speeds.len() < MAX_CODES;
+    right &= speeds.windows(2).all(|pair| pair[0] < pair[1]) && speeds.iter().all(|speed| (1..=409).contains(speed));
+    if !right {
+        let what = format!("the speeds {:?} km/h cannot be those of the codes", speeds.value);
+        problems.push(Problem::new(
+            Rule::Range,
+            &speeds.span,
+            what,
+            "give 1 to 7 speeds that rise from 1 to at most 409",
+        ));
+    }
+    let mut table = ([0; MAX_CODES], [Metres(u16::MAX); MAX_CODES]);
+    let Some(brake) = brake else {
+        let what = format!("no train brakes with {} mm/s²", given.deceleration_mm_s2);
+        problems.push(Problem::new(Rule::Range, &given.deceleration_mm_s2.span, what, "1 to 4095 mm/s² are possible"));
+        return table;
+    };
+    if !right {
+        return table;
+    }
+    table.1[0] = Metres(0);
+    for (code, speed) in (1..MAX_CODES).zip(&speeds.value) {
+        table.0[code] = *speed;
+        match stopping(brake, KmhTenths(speed * 10)) {
+            Some(distance) => table.1[code] = distance,
+            None => problems.push(Problem::new(
+                Rule::Range,
+                &given.deceleration_mm_s2.span,
+                format!(
+                    "with {} mm/s² on a fall of {} ‰ a train does not stop from {speed} km/h within 65 534 m",
+                    given.deceleration_mm_s2,
+                    -i16::from(worst)
+                ),
+                "give a stronger brake, a lower speed or less gradient",
+            )),
+        }
+    }
+    table
+}
+
+/// The least distance, in whole metres, within which the kernel's braking pattern allows `speed`.
+pub fn stopping(brake: Deceleration, speed: KmhTenths) -> Option<Metres> {
+    let (mut least, mut most) = (0_u16, u16::MAX - 1);
+    if pattern(brake, Metres(most)) < speed {
+        return None;
+    }
+    while least < most {
+        let middle = least + (most - least) / 2;
+        if pattern(brake, Metres(middle)) < speed { least = middle + 1 } else { most = middle }
+    }
+    Some(Metres(least))
+}
+
+/// The highest code whose speed is not over `speed`.
+pub fn code(values: &Values, speed: &At<u16>, problems: &mut Vec<Problem>) -> SpeedCode {
+    let fits = (1_u8..).zip(&values.speeds_kmh[1..]).filter(|(_, of_code)| (1..=speed.value).contains(*of_code));
+    if let Some((code, _)) = fits.last() {
+        return SpeedCode(code);
+    }
+    if values.speeds_kmh[1] > 0 {
+        let what = format!("no code is as slow as {speed} km/h");
+        let right = format!("give {} km/h or more, or add a lower speed to [braking]", values.speeds_kmh[1]);
+        problems.push(Problem::new(Rule::Range, &speed.span, what, right));
+    }
+    SpeedCode(1)
+}
+
+/// How far back an approach must reach for trains of `speed_kmh`: braking distance and what is run while a telegram ages.
+pub fn approach_m(values: &Values, speed_kmh: u16) -> u32 {
+    // The first code that is at least as fast: its braking distance is not shorter.
+    let code = (1..MAX_CODES).find(|code| values.speeds_kmh[*code] >= speed_kmh);
+    let braking = code.map_or_else(
+        || values.braking.iter().map(|distance| distance.0).filter(|metres| *metres < u16::MAX).max().unwrap_or(0),
+        |code| values.braking[code].0,
+    );
+    let aged = (u64::from(speed_kmh) * u64::from(values.telegram_age_ms)).div_ceil(3600);
+    u32::from(braking).saturating_add(u32::try_from(aged).unwrap_or(u32::MAX))
+}

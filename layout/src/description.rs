@@ -1,0 +1,115 @@
+//! A layout file that was read, and what is made of it.
+
+use std::fs;
+use std::path::Path;
+
+use crate::compile::{Compiled, compile};
+use crate::form::Station;
+use crate::model::Model;
+use crate::problem::{Errors, Problem, Source};
+use crate::rule::Rule;
+use crate::{check, derive};
+
+/// The rules that names and tracks must keep before anything can be said of routes.
+const TRACKS: [Rule; 4] = [Rule::NameTwice, Rule::NoSuchName, Rule::Joint, Rule::OpenJoint];
+
+/// A layout in the words of its file.
+#[derive(Clone, Debug, Default)]
+pub struct Description {
+    /// What the file says.
+    pub station: Station,
+    /// The text it was read from.
+    pub source: Source,
+}
+
+impl Description {
+    /// The layout that a text in TOML describes; `name` stands in front of what is wrong with it.
+    ///
+    /// # Errors
+    /// The first place where the text is no TOML, or not of the form of a layout.
+    pub fn from_toml(name: &str, text: &str) -> Result<Self, Errors> {
+        let source = Source { name: name.to_owned(), text: text.to_owned() };
+        match toml::from_str(text) {
+            Ok(station) => Ok(Self { station, source }),
+            Err(error) => {
+                let span = error.span().unwrap_or(0..0);
+                // An empty range has no place; at the end of the text there is a last character.
+                let span =
+                    if span.is_empty() { span.start.min(text.len().saturating_sub(1))..text.len() } else { span };
+                let what = error.message().replace('\n', " ");
+                let problem = Problem::new(Rule::Form, &span, what, "layout.schema.json describes the form");
+                Err(Errors::one(&source, problem))
+            }
+        }
+    }
+
+    /// The text of the layout in TOML.
+    ///
+    /// # Panics
+    /// Never: every layout has a form in TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(&self.station).expect("a layout has a form in TOML")
+    }
+
+    /// The layout with everything derived that the file leaves out, of any size, after every rule that needs names, geometry and times
+    /// has been checked. The rules of the kernel's plan are checked by [`Description::compile`].
+    ///
+    /// # Errors
+    /// Every broken rule.
+    pub fn model(&self) -> Result<Model, Errors> {
+        let mut problems = Vec::new();
+        let model = derive::model(&self.station, &mut problems);
+        // What follows from tracks that are wrong would only hide what is wrong with them.
+        if problems.iter().any(|problem| TRACKS.contains(&problem.rule)) {
+            problems.retain(|problem| TRACKS.contains(&problem.rule));
+        } else {
+            check::check(&self.station, &model, &mut problems);
+        }
+        if problems.is_empty() { Ok(model) } else { Err(Errors::new(&self.source, problems)) }
+    }
+
+    /// The tracks, and the routes as far as they are sound: what a drawing needs. Only the form of the tracks is checked.
+    ///
+    /// # Errors
+    /// What is wrong with names, joints and values.
+    pub fn tracks(&self) -> Result<Model, Errors> {
+        let mut problems = Vec::new();
+        let model = derive::model(&self.station, &mut problems);
+        problems.retain(|problem| TRACKS.contains(&problem.rule));
+        if problems.is_empty() { Ok(model) } else { Err(Errors::new(&self.source, problems)) }
+    }
+
+    /// The layout for the kernel, at its greatest size.
+    ///
+    /// # Errors
+    /// Every broken rule, or what there is no room for.
+    pub fn compile(&self) -> Result<Compiled, Errors> {
+        self.compile_to()
+    }
+
+    /// The layout for a kernel with room for `R` routes of up to `P` circuits, `N` points and `S` segments.
+    ///
+    /// # Errors
+    /// As [`Description::compile`].
+    pub fn compile_to<const R: usize, const P: usize, const N: usize, const S: usize>(
+        &self,
+    ) -> Result<Compiled<R, P, N, S>, Errors> {
+        compile(&self.source, &self.station, self.model()?)
+    }
+}
+
+/// The layout of a file.
+///
+/// # Errors
+/// That the file cannot be read, or the first place where it is not of the form of a layout.
+pub fn read(path: impl AsRef<Path>) -> Result<Description, Errors> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    match fs::read_to_string(path) {
+        Ok(text) => Description::from_toml(&name, &text),
+        Err(error) => {
+            let source = Source { name, text: String::new() };
+            Err(Errors::one(&source, Problem::new(Rule::Form, &(0..0), format!("cannot be read: {error}"), "")))
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The marks of a track plan.
+
+use std::fmt::Write as _;
+
+use crate::table::escape;
+
+const STYLE: &str = "\
+svg.plan .track{fill:none;stroke:#222;stroke-width:3}\
+svg.plan .reverse{stroke:#222}\
+svg.plan .joint{stroke:#222;stroke-width:2}\
+svg.plan .end{stroke:#222;stroke-width:3;fill:none}\
+svg.plan text{font:12px system-ui,sans-serif;fill:#222;text-anchor:middle}\
+svg.plan .circuit{fill:#0b4a8f}\
+svg.plan .small{font-size:10px}\
+svg.plan .point{fill:#a03000;font-size:11px;font-weight:600}\
+svg.plan .signal{font-size:10px}\
+svg.plan .lamp{fill:#c22;stroke:#222}\
+svg.plan .mast{stroke:#222;stroke-width:1.5;fill:none}\
+svg.plan .segment{fill:#e6f1e4}\
+svg.plan .platform{fill:#d8d8d8}\
+svg.plan .name{fill:#555;font-size:10px}\
+svg.plan .title{font-size:16px;font-weight:600;text-anchor:start}";
+
+/// A drawing under way. Places are relative to the tracks' own origin.
+pub struct Ink {
+    text: String,
+    origin: (i32, i32),
+}
+
+impl Ink {
+    /// An empty sheet of `size` with a title.
+    pub fn new(title: &str, size: (i32, i32), origin: (i32, i32)) -> Self {
+        let (width, height) = size;
+        let title = escape(title);
+        let mut text = String::new();
+        let _ = write!(
+            text,
+            "<svg class=\"plan\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">\n<title>Track plan: {title}</title>\n<style>{STYLE}</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n<text class=\"title\" x=\"20\" y=\"28\">{title}</text>\n"
+        );
+        Self { text, origin }
+    }
+
+    fn at(&self, (x, y): (i32, i32)) -> (i32, i32) {
+        (x + self.origin.0, y + self.origin.1)
+    }
+
+    fn label(&mut self, class: &str, at: (i32, i32), text: &str) {
+        let (x, y) = self.at(at);
+        let _ = writeln!(self.text, "<text class=\"{class}\" x=\"{x}\" y=\"{y}\">{}</text>", escape(text));
+    }
+
+    /// A piece of track.
+    pub fn track(&mut self, class: &str, title: &str, corners: &[(i32, i32)]) {
+        let places: Vec<String> =
+            corners.iter().map(|corner| self.at(*corner)).map(|(x, y)| format!("{x},{y}")).collect();
+        let _ = writeln!(
+            self.text,
+            "<polyline class=\"{class}\" points=\"{}\"><title>{}</title></polyline>",
+            places.join(" "),
+            escape(title)
+        );
+    }
+
+    /// A joint between two circuits.
+    pub fn joint(&mut self, at: (i32, i32), title: &str) {
+        let (x, y) = self.at(at);
+        let _ = writeln!(
+            self.text,
+            "<path class=\"joint\" d=\"M{x} {}v10\"><title>{}</title></path>",
+            y - 5,
+            escape(title)
+        );
+    }
+
+    /// A buffer stop.
+    pub fn buffer(&mut self, at: (i32, i32)) {
+        let (x, y) = self.at(at);
+        let _ = writeln!(self.text, "<path class=\"end\" d=\"M{x} {}v16\"/>", y - 8);
+    }
+
+    /// The line goes on to the left (−1) or the right (1).
+    pub fn goes_on(&mut self, at: (i32, i32), toward: i32) {
+        let (x, y) = self.at(at);
+        let _ = writeln!(
+            self.text,
+            "<path class=\"end\" stroke-dasharray=\"3 3\" d=\"M{x} {y}h{}\"/>\n<path class=\"mast\" d=\"M{} {}l{} 5l{} 5\"/>",
+            toward * 18,
+            x + toward * 18,
+            y - 5,
+            toward * 6,
+            -toward * 6
+        );
+    }
+
+    /// The name of a circuit.
+    pub fn circuit(&mut self, at: (i32, i32), name: &str) {
+        self.label("circuit", at, name);
+    }
+
+    /// The name of a circuit that is hardly longer than its point.
+    pub fn small_circuit(&mut self, at: (i32, i32), name: &str) {
+        self.label("circuit small", at, name);
+    }
+
+    /// The name of a point.
+    pub fn point(&mut self, at: (i32, i32), name: &str) {
+        self.label("point", at, name);
+    }
+
+    /// A signal at the left of the track for trains to the right (1) or to the left (−1).
+    pub fn signal(&mut self, (x, y): (i32, i32), toward: i32, name: &str) {
+        let (base_x, base_y) = self.at((x - toward * 4, y - toward * 4));
+        let up = base_y - toward * 9;
+        let _ = writeln!(
+            self.text,
+            "<path class=\"mast\" d=\"M{base_x} {base_y}V{up}h{}\"/><circle class=\"lamp\" cx=\"{}\" cy=\"{up}\" r=\"3.5\"/>",
+            -toward * 6,
+            base_x - toward * 9
+        );
+        let below = if toward > 0 { -7 } else { 14 };
+        self.label("signal", (x - toward * 14, y - toward * 13 + below), name);
+    }
+
+    /// A stretch of plain line.
+    pub fn segment(&mut self, (left, right): (i32, i32), height: i32, name: &str) {
+        let (x, y) = self.at((left, height));
+        let _ = writeln!(
+            self.text,
+            "<rect class=\"segment\" x=\"{x}\" y=\"{}\" width=\"{}\" height=\"34\"/>",
+            y - 20,
+            right - left
+        );
+        self.label("name", (i32::midpoint(left, right), height + 25), name);
+    }
+
+    /// A platform below its track.
+    pub fn platform(&mut self, (left, right): (i32, i32), height: i32, name: &str) {
+        let (x, y) = self.at((left, height));
+        let width = (right - left - 20).max(10);
+        let _ = writeln!(
+            self.text,
+            "<rect class=\"platform\" x=\"{}\" y=\"{}\" width=\"{width}\" height=\"13\" rx=\"2\"/>",
+            x + 10,
+            y + 8
+        );
+        self.label("name", (i32::midpoint(left, right), height + 18), name);
+    }
+
+    /// The drawing.
+    pub fn finish(mut self) -> String {
+        self.text.push_str("</svg>\n");
+        self.text
+    }
+}

@@ -1,0 +1,90 @@
+//! What a file of another form leaves open and a layout must say: filled in and reported, each to be confirmed.
+
+use std::collections::BTreeSet;
+
+use super::Report;
+use crate::at::At;
+use crate::derive;
+use crate::form::{EndKind, Position, Segment, Station};
+use crate::graph::Graph;
+use crate::model::Guard;
+use crate::names::Names;
+
+/// Fills in segments of plain line, missing flank protection and missing overlaps.
+pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
+    segments(station, report);
+    let model = derive::model(station, &mut Vec::new());
+    let mut open = BTreeSet::new();
+    for route in &model.routes {
+        for flank in &route.flanks {
+            let kept = |guard: &Guard| match guard {
+                Guard::Point(point, position) => {
+                    route.path.iter().any(|place| place.positions.get(point) == Some(position))
+                }
+                Guard::Signal(_) | Guard::Line => false,
+                Guard::Own | Guard::Buffer | Guard::Declared(_) => true,
+            };
+            if !flank.guards.iter().all(kept) {
+                open.insert((flank.point, flank.leg));
+            }
+        }
+    }
+    for (point, leg) in open {
+        let given = &mut station.points[point];
+        let (field, word) = match leg {
+            Position::Normal => (&mut given.normal_unprotected, "normal"),
+            Position::Reverse => (&mut given.reverse_unprotected, "reverse"),
+        };
+        *field = Some(At::derived(format!(
+            "assumed on import: signals and ATC keep trains off, as the {form} file names no flank point"
+        )));
+        report
+            .defaulted
+            .push(format!("point {}: no point protects its {word} leg; signals and ATC are taken to do", given.name));
+    }
+    for (number, route) in model.routes.iter().enumerate() {
+        let at_line = route.to.is_some() || model.graph.joints.get(route.exit).is_some_and(|joint| joint.end.is_some());
+        let length: u32 = route.overlap.iter().map(|circuit| u32::from(model.circuits[*circuit].length.0)).sum();
+        if route.is_sound() && !at_line && length < u32::from(station.overlaps.least_m.value) {
+            let given = &mut station.routes[number];
+            given.short_overlap =
+                Some(At::derived(format!("assumed on import: the {form} file gives no overlap that is long enough")));
+            report.defaulted.push(format!("route {}: an overlap of {length} m is taken to be enough", given.name));
+        }
+    }
+}
+
+/// Makes a segment of the circuits between an open end of the line and the first circuit that a route holds.
+fn segments(station: &mut Station, report: &mut Report) {
+    let mut ignored = Vec::new();
+    let names = Names::of(station, &mut ignored);
+    let graph = Graph::of(station, &names, &mut ignored);
+    let held = station.routes.iter().flat_map(|route| route.path.iter().chain(&route.overlap));
+    let mut used: BTreeSet<usize> =
+        held.filter_map(|element| names.circuit_at(&element.circuit, &element.span, &mut ignored)).collect();
+    for point in &station.points {
+        used.extend(names.circuit(&point.circuit, &mut ignored));
+    }
+    for (joint, _) in graph.joints.iter().enumerate().filter(|(_, joint)| joint.end == Some(EndKind::Line)) {
+        let mut circuits = Vec::new();
+        let mut at = (joint, graph.circuits_at(joint).next());
+        while let (from, Some(circuit)) = at {
+            if used.contains(&circuit) || circuits.len() >= 16 {
+                break;
+            }
+            used.insert(circuit);
+            circuits.push(circuit);
+            let ways = graph.ways(circuit, from);
+            let [way] = ways.as_slice() else { break };
+            at = (way.exit, graph.across(way.exit, circuit));
+        }
+        if circuits.is_empty() || station.segments.len() >= 8 {
+            continue;
+        }
+        let listed: Vec<At<String>> =
+            circuits.iter().rev().map(|circuit| At::derived(station.circuits[*circuit].name.value.clone())).collect();
+        let name = format!("line at {}", listed[0]);
+        report.defaulted.push(format!("segment {name}: the circuits up to the open end {}", graph.joints[joint].name));
+        station.segments.push(Segment { name: At::derived(name), circuits: listed, throat: None });
+    }
+}

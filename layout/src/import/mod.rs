@@ -1,0 +1,106 @@
+//! Layouts in the forms of others: railML 3 and OSRD infrastructures.
+
+mod complete;
+mod network;
+mod only;
+mod osrd;
+mod railml;
+mod search;
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+use crate::description::Description;
+use crate::problem::{Errors, Problem, Source};
+use crate::rule::Rule;
+
+pub use only::only;
+
+/// What an import did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// What was taken, with counts.
+    pub taken: Vec<String>,
+    /// What the file does not say, and the value that stands for it: each is to be confirmed.
+    pub defaulted: Vec<String>,
+    /// What the file lacks and nothing stands for.
+    pub lacking: Vec<String>,
+    /// What the file has and the import does not use.
+    pub skipped: Vec<String>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = [
+            ("taken", &self.taken),
+            ("defaulted, to be confirmed", &self.defaulted),
+            ("lacking", &self.lacking),
+            ("not used", &self.skipped),
+        ];
+        for (title, lines) in parts {
+            writeln!(f, "{title}:{}", if lines.is_empty() { " nothing" } else { "" })?;
+            for line in lines {
+                writeln!(f, "  {line}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A layout in another form, and what the import did.
+#[derive(Clone, Debug, Default)]
+pub struct Imported {
+    /// The layout. It may break rules: [`Description::compile`] tells.
+    pub description: Description,
+    /// What was taken, defaulted, lacking and skipped.
+    pub report: Report,
+}
+
+/// The layout of a railML 3 file.
+///
+/// # Errors
+/// That the text is no XML, no railML 3, or has nothing that a layout could be made of.
+pub fn railml(name: &str, text: &str) -> Result<Imported, Errors> {
+    railml::import(&Source { name: name.to_owned(), text: text.to_owned() })
+}
+
+/// The layout of an OSRD infrastructure.
+///
+/// # Errors
+/// That the text is no JSON, no infrastructure, or has nothing that a layout could be made of.
+pub fn osrd(name: &str, text: &str) -> Result<Imported, Errors> {
+    osrd::import(&Source { name: name.to_owned(), text: text.to_owned() })
+}
+
+/// The layout of a file of any form: TOML, railML 3 (`.xml`, `.railml`) or an OSRD infrastructure (`.json`).
+///
+/// # Errors
+/// That the file cannot be read, or is not of the form that its name says.
+pub fn read_any(path: impl AsRef<Path>) -> Result<Imported, Errors> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let bytes = fs::read(path).map_err(|error| broken(&name, format!("cannot be read: {error}"), ""))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        broken(&name, format!("byte {valid} is not UTF-8"), "save the file as UTF-8")
+    })?;
+    match ending.as_str() {
+        "toml" => {
+            Description::from_toml(&name, &text).map(|description| Imported { description, ..Imported::default() })
+        }
+        "xml" | "railml" | "railmlx" => railml(&name, &text),
+        "json" => osrd(&name, &text),
+        _ => Err(broken(
+            &name,
+            "the name does not tell the form of the file".to_owned(),
+            "it must end in .toml, .xml, .railml or .json",
+        )),
+    }
+}
+
+fn broken(name: &str, what: String, right: &str) -> Errors {
+    let source = Source { name: name.to_owned(), text: String::new() };
+    Errors::one(&source, Problem::new(Rule::Form, &(0..0), what, right))
+}

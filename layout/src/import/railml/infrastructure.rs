@@ -1,0 +1,298 @@
+//! The infrastructure of a railML file: topology, lengths, switches, signals, buffer stops.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use roxmltree::Node;
+
+use super::xml::{Xml, child, children, duration, number, references};
+use crate::import::Report;
+use crate::import::network::{Edge, EdgeEnd, Network, Side, Switch};
+use crate::problem::Problem;
+use crate::rule::Rule;
+
+/// A place on a track.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// The edge.
+    pub edge: usize,
+    /// Metres from its begin.
+    pub at: f64,
+    /// Whether what stands there is for trains that run toward the end of the edge; none if it says nothing.
+    pub toward_end: Option<bool>,
+}
+
+/// The tracks of a file.
+pub struct Tracks<'a> {
+    /// The network, without cuts.
+    pub network: Network,
+    /// Train detection elements by id.
+    pub detectors: BTreeMap<&'a str, Spot>,
+    /// Signals by id.
+    pub signals: BTreeMap<&'a str, Spot>,
+    /// Buffer stops by id, and their names in the network.
+    pub buffers: BTreeMap<&'a str, String>,
+    /// Switches by id: their number, and whether the left branch is the normal leg.
+    pub switches: BTreeMap<&'a str, (usize, bool)>,
+}
+
+/// Length of an edge of which the file tells none, in metres.
+const DEFAULT_LENGTH: f64 = 100.0;
+
+/// Reads the infrastructure.
+pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>) -> Tracks<'a> {
+    let mut edges = BTreeMap::new();
+    let mut network = Network::default();
+    let micro: BTreeSet<&str> = xml
+        .all("level")
+        .filter(|level| level.attribute("descriptionLevel") == Some("Micro"))
+        .flat_map(|level| references(level, "networkResource"))
+        .collect();
+    let lengths = track_lengths(xml);
+    let mut unknown = Vec::new();
+    for element in xml.all("netElement") {
+        let Some(id) = element.attribute("id") else { continue };
+        let aggregated =
+            child(element, "elementCollectionUnordered").or(child(element, "elementCollectionOrdered")).is_some();
+        if aggregated || !micro.is_empty() && !micro.contains(id) || edges.contains_key(id) {
+            continue;
+        }
+        let length = length(element).or_else(|| lengths.get(id).copied()).unwrap_or_else(|| {
+            unknown.push(id);
+            DEFAULT_LENGTH
+        });
+        edges.insert(id, network.edges.len());
+        network.edges.push(Edge { name: id.to_owned(), length });
+    }
+    if network.edges.is_empty() {
+        let what = "the file has no netElements, and without topology there are no tracks";
+        problems.push(Problem::new(Rule::Form, &(0..0), what, "export the infrastructure with its topology"));
+    }
+    if !unknown.is_empty() {
+        report.defaulted.push(format!(
+            "length of {} net elements: {DEFAULT_LENGTH} m: {}",
+            unknown.len(),
+            unknown.join(", ")
+        ));
+    }
+    report.taken.push(format!("{} net elements", network.edges.len()));
+    let relations = relations(xml, &edges);
+    let mut tracks = Tracks {
+        network,
+        detectors: BTreeMap::new(),
+        signals: BTreeMap::new(),
+        buffers: BTreeMap::new(),
+        switches: BTreeMap::new(),
+    };
+    switches(xml, &relations, &mut tracks, report);
+    links(&relations, &mut tracks, report);
+    let mut lost = Vec::new();
+    for (list, detector) in [("trainDetectionElement", true), ("signalIS", false)] {
+        for node in xml.all(list) {
+            let Some(id) = node.attribute("id") else { continue };
+            match spot(node, &edges, &tracks.network) {
+                Some(spot) if detector => drop(tracks.detectors.insert(id, spot)),
+                Some(spot) => drop(tracks.signals.insert(id, spot)),
+                None => lost.push(id),
+            }
+        }
+    }
+    for node in xml.all("bufferStop") {
+        let Some(id) = node.attribute("id") else { continue };
+        let Some(spot) = spot(node, &edges, &tracks.network) else {
+            lost.push(id);
+            continue;
+        };
+        let side = if spot.at * 2.0 < tracks.network.edges[spot.edge].length { Side::Begin } else { Side::End };
+        let name = Xml::name(node).value;
+        tracks.network.buffers.push((name.clone(), (spot.edge, side)));
+        tracks.buffers.insert(id, name);
+    }
+    if !lost.is_empty() {
+        report.lacking.push(format!("a place on a net element of: {}", lost.join(", ")));
+    }
+    tracks
+}
+
+/// The length of a net element by its own words, in metres.
+fn length(element: Node<'_, '_>) -> Option<f64> {
+    if let Some(length) = number(element, "length").filter(|length| *length > 0.0) {
+        return Some(length);
+    }
+    let coordinates: Vec<Node<'_, '_>> =
+        element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate").collect();
+    let measures: Vec<f64> = coordinates
+        .iter()
+        .filter_map(|node| child(*node, "linearCoordinate").and_then(|at| number(at, "measure")))
+        .collect();
+    if let [first, .., last] = measures[..] {
+        return Some((last - first).abs()).filter(|length| *length > 0.0);
+    }
+    let geometric = coordinates.iter().filter_map(|node| child(*node, "geometricCoordinate"));
+    let corners: Vec<(f64, f64)> = geometric.filter_map(|at| number(at, "x").zip(number(at, "y"))).collect();
+    let run: f64 = corners.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
+    (run > 0.0).then_some(run)
+}
+
+/// Lengths that tracks give for the one net element that they lie on.
+fn track_lengths<'a>(xml: &Xml<'a>) -> BTreeMap<&'a str, f64> {
+    let mut lengths = BTreeMap::new();
+    for track in xml.all("track") {
+        let on: Vec<&str> = track
+            .descendants()
+            .filter(|node| node.tag_name().name() == "associatedNetElement")
+            .filter_map(|node| node.attribute("netElementRef"))
+            .collect();
+        let length = children(track, "length").find_map(|length| number(length, "value"));
+        if let ([only], Some(length)) = (on.as_slice(), length.filter(|length| *length > 0.0)) {
+            lengths.insert(*only, length);
+        }
+    }
+    lengths
+}
+
+fn spot(node: Node<'_, '_>, edges: &BTreeMap<&str, usize>, network: &Network) -> Option<Spot> {
+    let location = child(node, "spotLocation")?;
+    let edge = *edges.get(location.attribute("netElementRef")?)?;
+    let length = network.edges[edge].length;
+    let at = match (number(location, "intrinsicCoord"), number(location, "pos")) {
+        (Some(share), _) => share.clamp(0.0, 1.0) * length,
+        (None, Some(metres)) => metres.clamp(0.0, length),
+        (None, None) => child(location, "linearCoordinate").and_then(|at| number(at, "measure"))?.clamp(0.0, length),
+    };
+    let toward_end = match location.attribute("applicationDirection") {
+        Some("normal") => Some(true),
+        Some("reverse") => Some(false),
+        _ => None,
+    };
+    Some(Spot { edge, at, toward_end })
+}
+
+/// The navigable relations by id: which ends they join.
+type Relations<'a> = BTreeMap<&'a str, (EdgeEnd, EdgeEnd)>;
+
+fn relations<'a>(xml: &Xml<'a>, edges: &BTreeMap<&str, usize>) -> Relations<'a> {
+    let side = |node: Node<'_, '_>, name: &str| match node.attribute(name) {
+        Some("0") => Some(Side::Begin),
+        Some("1") => Some(Side::End),
+        _ => None,
+    };
+    let mut relations = BTreeMap::new();
+    for relation in xml.all("netRelation") {
+        let edge = |name: &str| super::xml::reference(relation, name).and_then(|id| edges.get(id)).copied();
+        let one = edge("elementA").zip(side(relation, "positionOnA"));
+        let other = edge("elementB").zip(side(relation, "positionOnB"));
+        let navigable = relation.attribute("navigability") != Some("None") && one != other;
+        if let (Some(id), Some(one), Some(other), true) = (relation.attribute("id"), one, other, navigable) {
+            relations.insert(id, (one, other));
+        }
+    }
+    relations
+}
+
+fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a>, report: &mut Report) {
+    let throw = |id: &str| {
+        let il = xml.all("switchIL").find(|il| super::xml::reference(*il, "refersTo") == Some(id));
+        let throw =
+            il.and_then(|il| il.attribute("maxThrowTime").or(il.attribute("typicalThrowTime"))).and_then(duration);
+        (throw, il.and_then(|il| il.attribute("preferredPosition")))
+    };
+    let mut assumed = Vec::new();
+    let mut used = BTreeSet::new();
+    for switch in xml.all("switchIS") {
+        let Some(id) = switch.attribute("id") else { continue };
+        let branch = |name: &'static str| -> Vec<(EdgeEnd, EdgeEnd)> {
+            children(switch, name)
+                .filter_map(|branch| relations.get(branch.attribute("netRelationRef")?).copied())
+                .collect()
+        };
+        let (left, right) = (branch("leftBranch"), branch("rightBranch"));
+        let ([left], [right]) = (left.as_slice(), right.as_slice()) else {
+            crossing(id, switch, &[branch("straightBranch"), branch("turningBranch")].concat(), tracks, report);
+            continue;
+        };
+        let shared = [left.0, left.1].into_iter().find(|end| *end == right.0 || *end == right.1);
+        let Some(toe) = shared else {
+            report.lacking.push(format!("switch {id}: its two branches have no toe in common"));
+            continue;
+        };
+        let other = |pair: &(EdgeEnd, EdgeEnd)| if pair.0 == toe { pair.1 } else { pair.0 };
+        let (left, right) = (other(left), other(right));
+        if left == right || ![toe, left, right].iter().all(|end| used.insert(*end)) {
+            report.lacking.push(format!("switch {id}: its ends belong to another switch or to one track"));
+            continue;
+        }
+        let (throw_ms, preferred) = throw(id);
+        let course = preferred.or(switch.attribute("continueCourse")).filter(|side| ["left", "right"].contains(side));
+        if course.is_none() {
+            assumed.push(id);
+        }
+        let left_is_normal = course != Some("right");
+        let ports = if left_is_normal { [toe, left, right] } else { [toe, right, left] };
+        tracks.switches.insert(id, (tracks.network.switches.len(), left_is_normal));
+        tracks.network.switches.push(Switch { name: Xml::name(switch), ports, throw_ms });
+    }
+    if !assumed.is_empty() {
+        report
+            .defaulted
+            .push(format!("normal position of {}: left (no preferredPosition or continueCourse)", assumed.join(", ")));
+    }
+    report.taken.push(format!("{} switches", tracks.network.switches.len()));
+}
+
+/// A crossing with slips becomes two points toe to toe; one without, two tracks that cross.
+fn crossing<'a>(
+    id: &'a str,
+    switch: Node<'a, 'a>,
+    ways: &[(EdgeEnd, EdgeEnd)],
+    tracks: &mut Tracks<'a>,
+    report: &mut Report,
+) {
+    let network = &mut tracks.network;
+    if let [one, other] = ways {
+        network.crossings.push([network.links.len(), network.links.len() + 1]);
+        network.links.extend([*one, *other]);
+        return;
+    }
+    let Some((a1, b1)) = ways.first().copied() else {
+        report.lacking.push(format!("switch {id}: its branches name no net relations"));
+        return;
+    };
+    let beside = |end: EdgeEnd, not: EdgeEnd| {
+        ways.iter().find_map(|(one, other)| {
+            let across = if *one == end { *other } else { *one };
+            ((*one == end || *other == end) && across != not).then_some(across)
+        })
+    };
+    let (Some(b2), Some(a2)) = (beside(a1, b1), beside(b1, a1)) else {
+        report.lacking.push(format!("switch {id}: its branches are not those of a slip"));
+        return;
+    };
+    if ways.len() < 4 {
+        report.defaulted.push(format!("switch {id}: a single slip is taken as a double one"));
+    }
+    let name = Xml::name(switch);
+    let between = network.edges.len();
+    network.edges.push(Edge { name: id.to_owned(), length: 0.0 });
+    for (letter, side, legs) in [("A", Side::Begin, [a1, a2]), ("B", Side::End, [b1, b2])] {
+        let mut name = name.clone();
+        name.value = format!("{name}.{letter}");
+        network.switches.push(Switch { name, ports: [(between, side), legs[0], legs[1]], throw_ms: None });
+    }
+}
+
+/// What is left over of the relations joins tracks without branches.
+fn links(relations: &Relations<'_>, tracks: &mut Tracks<'_>, report: &mut Report) {
+    let mut taken: BTreeSet<EdgeEnd> = tracks.network.switches.iter().flat_map(|switch| switch.ports).collect();
+    taken.extend(tracks.network.links.iter().flat_map(|(one, other)| [*one, *other]));
+    for (id, (one, other)) in relations {
+        match (taken.contains(one), taken.contains(other)) {
+            (false, false) => {
+                taken.extend([*one, *other]);
+                tracks.network.links.push((*one, *other));
+            }
+            // The relations of a switch: both ends are its ports.
+            (true, true) => {}
+            _ => report.lacking.push(format!("a switch for the net relation {id}, which branches")),
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Looking things up in a railML tree: by local name, by id, with durations and names.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use roxmltree::{Document, Node};
+
+use crate::at::At;
+use crate::import::Report;
+
+/// A railML tree with its ids.
+pub struct Xml<'a> {
+    root: Node<'a, 'a>,
+    ids: BTreeMap<&'a str, Node<'a, 'a>>,
+}
+
+/// Elements that are looked at; the others are reported as not used.
+const USED: [&str; 27] = [
+    "netElements",
+    "netRelations",
+    "networks",
+    "switchesIS",
+    "trainDetectionElements",
+    "signalsIS",
+    "bufferStops",
+    "tracks",
+    "tvdSections",
+    "switchesIL",
+    "signalsIL",
+    "routes",
+    "overlaps",
+    "conflictingRoutes",
+    "routeRelations",
+    "platforms",
+    "borders",
+    "metadata",
+    "common",
+    "organizationalUnits",
+    "positioning",
+    "geometricPositioningSystems",
+    "linearPositioningSystems",
+    "crossings",
+    "topology",
+    "infrastructureVisualizations",
+    "specificIMs",
+];
+
+impl<'a> Xml<'a> {
+    /// Indexes the ids of a document.
+    pub fn new(document: &'a Document<'a>) -> Self {
+        let root = document.root_element();
+        let with_id = root.descendants().filter_map(|node| node.attribute("id").map(|id| (id, node)));
+        Self { root, ids: with_id.collect() }
+    }
+
+    /// Every element of this local name, in the order of the file.
+    pub fn all(&self, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> + 'a {
+        self.root.descendants().filter(move |node| node.is_element() && node.tag_name().name() == name)
+    }
+
+    /// The element with this id.
+    pub fn id(&self, id: &str) -> Option<Node<'a, 'a>> {
+        self.ids.get(id).copied()
+    }
+
+    /// The element of the infrastructure that one of the interlocking stands for: that of its `refersTo`, or itself.
+    pub fn referred(&self, id: &str) -> Option<Node<'a, 'a>> {
+        let node = self.id(id)?;
+        match reference(node, "refersTo").and_then(|id| self.id(id)) {
+            Some(referred) => Some(referred),
+            None => Some(node),
+        }
+    }
+
+    /// A title of the file: its metadata, or the name of an operational point.
+    pub fn title(&self) -> Option<String> {
+        let point = self.all("operationalPoint").next().map(|point| Self::name(point).value);
+        let title = self
+            .all("title")
+            .filter_map(|title| title.text())
+            .map(|text| text.trim().to_owned())
+            .find(|text| !text.is_empty());
+        point.or(title)
+    }
+
+    /// What people call an element: its name, its designator, or its id.
+    pub fn name(node: Node<'a, 'a>) -> At<String> {
+        let named = node.children().find_map(|child| match child.tag_name().name() {
+            "name" | "objectName" | "assetName" => child.attribute("name"),
+            "designator" => child.attribute("entry"),
+            _ => None,
+        });
+        let name = named.filter(|name| !name.trim().is_empty()).or_else(|| node.attribute("id")).unwrap_or("unnamed");
+        // The start tag alone: an element may be long.
+        let range = node.range();
+        At::new(name.to_owned(), range.start..range.end.min(range.start + 1))
+    }
+
+    /// Reports the lists of elements that the import does not look at, each once with its length.
+    pub fn unused(&self, report: &mut Report) {
+        let wanted: BTreeSet<&str> = USED.into_iter().collect();
+        let lists = ["functionalInfrastructure", "assetsForIL", "assetsForInterlocking", "infrastructure"];
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for parent in lists.iter().flat_map(|list| self.all(list)) {
+            for list in parent.children().filter(Node::is_element) {
+                let name = list.tag_name().name();
+                if !wanted.contains(name) && !lists.contains(&name) {
+                    *counts.entry(name).or_default() += list.children().filter(Node::is_element).count();
+                }
+            }
+        }
+        for (name, count) in counts {
+            report.skipped.push(format!("{name} with {count} elements"));
+        }
+    }
+}
+
+/// The first child of this local name.
+pub fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+    node.children().find(|child| child.is_element() && child.tag_name().name() == name)
+}
+
+/// The children of this local name.
+pub fn children<'a>(node: Node<'a, 'a>, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> + 'a {
+    node.children().filter(move |child| child.is_element() && child.tag_name().name() == name)
+}
+
+/// The id that the child of this name refers to.
+pub fn reference<'a>(node: Node<'a, 'a>, name: &str) -> Option<&'a str> {
+    child(node, name).and_then(|child| child.attribute("ref"))
+}
+
+/// The ids that the children of this name refer to.
+pub fn references<'a>(node: Node<'a, 'a>, name: &'a str) -> impl Iterator<Item = &'a str> + 'a {
+    children(node, name).filter_map(|child| child.attribute("ref"))
+}
+
+/// A number that an attribute gives, if it is finite.
+pub fn number(node: Node<'_, '_>, name: &str) -> Option<f64> {
+    node.attribute(name)?.trim().parse::<f64>().ok().filter(|number| number.is_finite())
+}
+
+/// A time like `PT4S`, `PT1M30S` or `PT0.5S` in ms, rounded up; days, hours, minutes and seconds.
+pub fn duration(text: &str) -> Option<u32> {
+    let (days, time) = text.trim().strip_prefix('P')?.split_once('T')?;
+    let mut seconds = match days.strip_suffix('D') {
+        Some(days) => days.parse::<f64>().ok()? * 86_400.0,
+        None if days.is_empty() => 0.0,
+        None => return None,
+    };
+    let mut figure = String::new();
+    for letter in time.chars() {
+        let unit = match letter {
+            'H' => 3600.0,
+            'M' => 60.0,
+            'S' => 1.0,
+            _ => {
+                figure.push(letter);
+                continue;
+            }
+        };
+        seconds += figure.parse::<f64>().ok()? * unit;
+        figure.clear();
+    }
+    let ms = (seconds * 1000.0).ceil();
+    if !figure.is_empty() || !(0.0..=4e9).contains(&ms) {
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is in the range of the type")]
+    let ms = ms as u32;
+    Some(ms)
+}

@@ -1,0 +1,40 @@
+//! Layouts of stations: read, checked and compiled for the kernel's interlocking.
+//!
+//! * [`read`] and [`Description`]: a layout in the words of its file ([`form`]).
+//! * [`Description::compile`]: names become numbers, what the file leaves out is derived, every rule is checked ([`Rule`]), and the
+//!   kernel's plan comes out ([`Compiled`]).
+//! * [`Errors`]: every broken rule with its place in the file and what would be right.
+
+mod at;
+mod check;
+mod compile;
+pub mod conflict;
+pub mod derive;
+mod description;
+pub mod draw;
+pub mod form;
+pub mod graph;
+pub mod import;
+pub mod model;
+mod names;
+mod problem;
+mod rule;
+pub mod table;
+mod values;
+
+pub use at::At;
+pub use compile::{Compiled, Names};
+pub use description::{Description, read};
+pub use problem::{Errors, LineColumn, Problem, Source};
+pub use rule::Rule;
+pub use values::{Braking, Overlaps, Speeds, Times};
+
+/// The JSON Schema of the layout form, as the file `layout.schema.json` has it.
+///
+/// # Panics
+/// Never: a schema is JSON.
+pub fn schema() -> String {
+    let schema = schemars::schema_for!(form::Station);
+    let text = serde_json::to_string_pretty(&schema).expect("a schema is JSON");
+    format!("{text}\n")
+}

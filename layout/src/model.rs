@@ -1,0 +1,241 @@
+//! A layout with numbers for names and everything derived that the file leaves out; of any size.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
+use atc_kernel::time::Ticks;
+
+use crate::form::Position;
+use crate::graph::{Graph, Passed};
+
+/// Numbers of circuits.
+pub type Circuits = BTreeSet<usize>;
+
+/// Positions of points, by number.
+pub type Positions = BTreeMap<usize, Position>;
+
+/// A layout: names are numbered in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// The tracks.
+    pub graph: Graph,
+    /// The circuits.
+    pub circuits: Vec<Circuit>,
+    /// The points.
+    pub points: Vec<Point>,
+    /// The segments.
+    pub segments: Vec<Segment>,
+    /// Pairs of circuits that foul each other.
+    pub fouling: Vec<(usize, usize)>,
+    /// The routes.
+    pub routes: Vec<Route>,
+    /// The values for the whole station.
+    pub values: Values,
+    /// What was derived or defaulted.
+    pub notes: Vec<Note>,
+}
+
+/// A circuit.
+#[derive(Clone, Debug, Default)]
+pub struct Circuit {
+    /// Its name.
+    pub name: String,
+    /// Its length.
+    pub length: Metres,
+    /// Where it is named.
+    pub span: Range<usize>,
+}
+
+/// A point.
+#[derive(Clone, Debug, Default)]
+pub struct Point {
+    /// Its name.
+    pub name: String,
+    /// The circuit it lies in; none if the file names none that exists.
+    pub circuit: Option<usize>,
+    /// Its detectors.
+    pub detectors: Circuits,
+    /// The other circuits in which it is fouled.
+    pub fouled_in: Circuits,
+    /// Its stroke, in ms.
+    pub throw_ms: u32,
+    /// The reasons for which the normal and the reverse leg need no protection.
+    pub unprotected: [Option<String>; 2],
+    /// Where it is named.
+    pub span: Range<usize>,
+}
+
+/// A segment of plain line.
+#[derive(Clone, Debug, Default)]
+pub struct Segment {
+    /// Its name.
+    pub name: String,
+    /// Its circuits, outward from the station.
+    pub circuits: Vec<usize>,
+    /// The last circuit of the routes out to it.
+    pub throat: Option<usize>,
+    /// Where it is named.
+    pub span: Range<usize>,
+}
+
+/// What keeps vehicles off one leg of a point that a path runs over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Guard {
+    /// Another point in this position.
+    Point(usize, Position),
+    /// The signal of a route, at stop.
+    Signal(String),
+    /// A buffer stop: no track goes on.
+    Buffer,
+    /// The route itself holds what is there.
+    Own,
+    /// Nothing: the line goes on.
+    Line,
+    /// The file says why nothing is needed.
+    Declared(String),
+}
+
+/// The protection of one leg.
+#[derive(Clone, Debug)]
+pub struct Flank {
+    /// The point that the path runs over.
+    pub point: usize,
+    /// The leg that the path does not use.
+    pub leg: Position,
+    /// What is there, for each track that leads to it.
+    pub guards: Vec<Guard>,
+}
+
+/// One place of a path.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// The circuit.
+    pub circuit: usize,
+    /// The points that the path runs over there.
+    pub passed: Vec<Passed>,
+    /// Every position that is needed there, flank included.
+    pub positions: Positions,
+    /// Where the place is named.
+    pub span: Range<usize>,
+}
+
+/// A route.
+#[derive(Clone, Debug, Default)]
+pub struct Route {
+    /// Its name.
+    pub name: String,
+    /// Its signal.
+    pub signal: String,
+    /// The entry circuit.
+    pub entry: usize,
+    /// The joint of its signal.
+    pub start: usize,
+    /// The path; empty if the file gives none that a train can run.
+    pub path: Vec<Place>,
+    /// The joint at its end.
+    pub exit: usize,
+    /// The circuits of the overlap, in order of travel.
+    pub overlap: Vec<usize>,
+    /// The positions of points in the overlap.
+    pub overlap_positions: Positions,
+    /// The points that the overlap runs over.
+    pub overlap_passed: Vec<Passed>,
+    /// Why the overlap may be short or missing.
+    pub short_overlap: Option<String>,
+    /// The approach.
+    pub approach: Circuits,
+    /// How far the approach must reach back from the signal, in metres.
+    pub approach_m: u32,
+    /// The circuits beyond the end.
+    pub beyond: Circuits,
+    /// The routes that continue this one.
+    pub continuing: BTreeSet<usize>,
+    /// The routes that it is declared in conflict with.
+    pub conflicts: BTreeSet<usize>,
+    /// The segment it comes from.
+    pub from: Option<usize>,
+    /// The segment it goes out to.
+    pub to: Option<usize>,
+    /// The time for points to arrive.
+    pub drive: Ticks,
+    /// The time of the approach lock.
+    pub release: Ticks,
+    /// The time after which the overlap is given up.
+    pub stay: Ticks,
+    /// The speed code.
+    pub speed: SpeedCode,
+    /// The protection of the legs that the path does not use.
+    pub flanks: Vec<Flank>,
+    /// Where it is named.
+    pub span: Range<usize>,
+}
+
+impl Route {
+    /// Whether its path is one that a train can run.
+    pub fn is_sound(&self) -> bool {
+        !self.path.is_empty()
+    }
+
+    /// The circuits of its path, in order of travel.
+    pub fn circuits(&self) -> impl Iterator<Item = usize> + '_ {
+        self.path.iter().map(|place| place.circuit)
+    }
+
+    /// The last circuit of the path.
+    pub fn last(&self) -> Option<usize> {
+        self.path.last().map(|place| place.circuit)
+    }
+
+    /// Every position that it needs, over path, flank and overlap.
+    pub fn positions(&self) -> impl Iterator<Item = (usize, Position)> + '_ {
+        let path = self.path.iter().flat_map(|place| &place.positions);
+        path.chain(&self.overlap_positions).map(|(point, position)| (*point, *position))
+    }
+}
+
+/// Values for the whole station.
+#[derive(Clone, Debug)]
+pub struct Values {
+    /// The length of a logic cycle, in ms.
+    pub cycle_ms: u32,
+    /// T_clear, in cycles.
+    pub clear: u8,
+    /// The time for which a permission must have been withdrawn before a segment turns.
+    pub turn: Ticks,
+    /// The age of a telegram, in ms.
+    pub telegram_age_ms: u32,
+    /// The speed of each code, in km/h; 0 where there is no such code, and for code 0.
+    pub speeds_kmh: [u16; MAX_CODES],
+    /// The braking distance from the speed of each code; the longest length where there is no such code.
+    pub braking: [Metres; MAX_CODES],
+    /// The least length of an overlap.
+    pub least_overlap: Metres,
+    /// The length of the longest train, if the file gives it.
+    pub longest_train: Option<Metres>,
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self {
+            cycle_ms: 0,
+            clear: 0,
+            turn: Ticks(0),
+            telegram_age_ms: 0,
+            speeds_kmh: [0; MAX_CODES],
+            braking: [Metres(u16::MAX); MAX_CODES],
+            least_overlap: Metres(0),
+            longest_train: None,
+        }
+    }
+}
+
+/// Something that the file does not say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// What it is about: `route W1-1`, `point 2`.
+    pub about: String,
+    /// What was derived or assumed.
+    pub text: String,
+}

@@ -1,0 +1,166 @@
+//! The rules of a layout file: those of the kernel, and those that need names, geometry and times.
+
+use atc_kernel::interlocking::Rule as Kernel;
+
+/// A rule of a layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rule {
+    /// The file has the form of a layout.
+    Form,
+    /// A name stands for one thing of its kind.
+    NameTwice,
+    /// What is named exists.
+    NoSuchName,
+    /// A value is within its range.
+    Range,
+    /// A joint connects two ends.
+    Joint,
+    /// A joint that only one end reaches is declared as an end of the tracks.
+    OpenJoint,
+    /// Circuits that follow each other in a path adjoin, and a train can run through them in that order.
+    NoWay,
+    /// The way through a path is the only one.
+    ManyWays,
+    /// The overlap goes on from the end of the path.
+    OverlapNotAhead,
+    /// A position that the file gives is the one that the path runs over.
+    PositionContradicts,
+    /// A point's detectors cover the circuit it lies in and those in which it is fouled.
+    DetectorsIncomplete,
+    /// The approach covers the braking distance and what the train runs while its telegram ages.
+    ApproachTooShort,
+    /// Circuits of an approach lead to the signal.
+    ApproachApart,
+    /// The drive time of a route is not shorter than the stroke of a point that it needs.
+    DriveUnderThrow,
+    /// The release time is longer than the stroke that a point finishes after its drive was withdrawn.
+    ReleaseUnderThrow,
+    /// A track from which a vehicle can run into the path is kept off by a point, or the file says why not.
+    NoFlank,
+    /// The overlap is as long as the least one, or the file says why not.
+    OverlapTooShort,
+    /// Routes over circuits that foul each other exclude each other.
+    FoulingUndeclared,
+    /// T_clear is longer than the longest tolerated loss of shunt.
+    ClearUnderShunt,
+    /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
+    TurnUnderTelegram,
+    /// The circuits of a segment follow each other outward from the station.
+    SegmentOrder,
+    /// Circuits beyond the end of a route adjoin it.
+    BeyondApart,
+    /// The layout fits the interlocking.
+    TooMany,
+    /// A rule of the kernel's plan.
+    Plan(Kernel),
+}
+
+impl Rule {
+    /// A short name, the same in every release: it stands at the end of a message.
+    pub fn name(self) -> String {
+        let Self::Plan(kernel) = self else { return kebab(&format!("{self:?}")) };
+        format!("plan-{}", kebab(&format!("{kernel:?}")))
+    }
+
+    /// What the rule demands.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Form => "the file has the form of a layout",
+            Self::NameTwice => "a name stands for one thing of its kind",
+            Self::NoSuchName => "what is named exists",
+            Self::Range => "a value is within its range",
+            Self::Joint => "a joint connects two ends",
+            Self::OpenJoint => "a joint that only one end reaches is declared as an end of the tracks",
+            Self::NoWay => {
+                "circuits that follow each other in a path adjoin, and a train can run through them in that order"
+            }
+            Self::ManyWays => "the way through a path is the only one",
+            Self::OverlapNotAhead => "the overlap goes on from the end of the path",
+            Self::PositionContradicts => "a position that the file gives is the one that the path runs over",
+            Self::DetectorsIncomplete => {
+                "a point's detectors cover the circuit it lies in and those in which it is fouled"
+            }
+            Self::ApproachTooShort => "the approach covers the braking distance and the age of a telegram",
+            Self::ApproachApart => "the circuits of an approach lead to the signal",
+            Self::DriveUnderThrow => "the drive time is not shorter than the stroke of the points",
+            Self::ReleaseUnderThrow => {
+                "the release time is longer than the stroke of a point whose drive was withdrawn"
+            }
+            Self::NoFlank => "a track from which a vehicle can run into the path is kept off, or the file says why not",
+            Self::OverlapTooShort => "the overlap is as long as the least one, or the file says why not",
+            Self::FoulingUndeclared => "routes over circuits that foul each other exclude each other",
+            Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
+            Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
+            Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
+            Self::BeyondApart => "circuits beyond the end of a route adjoin it",
+            Self::TooMany => "the layout fits the interlocking",
+            Self::Plan(kernel) => of_plan(kernel),
+        }
+    }
+}
+
+/// What a rule of the kernel's plan demands, in the words of a layout file.
+const fn of_plan(rule: Kernel) -> &'static str {
+    match rule {
+        Kernel::PathTooLong => "a path or a segment has no more circuits than there is room for",
+        Kernel::NoTime => "every time is one cycle or more",
+        Kernel::PointBothWays => "a route needs no point both ways, over path, flank and overlap together",
+        Kernel::PointNotPositioned => "a point whose detector is among the circuits of a place is positioned there",
+        Kernel::ConflictOneWay => "declared conflicts go both ways",
+        Kernel::ContinuesElsewhere => "a route that continues another one enters at its last circuit",
+        Kernel::ThroatsDiffer => "all routes out to a segment end at the segment's throat",
+        Kernel::SegmentShared => "a segment shares no circuit with a path, an overlap or another segment",
+        Kernel::NotOneCircuit => "each place of a path or a segment is one circuit",
+        Kernel::CircuitTwice => "no circuit comes twice in a path or a segment",
+        Kernel::OverlapUnderOwnPath => "an overlap has no circuit of its own path",
+        Kernel::EntryNotInApproach => "the entry is one circuit, and among the approach",
+        Kernel::ApproachInPath => "the approach has no circuit of the path or the overlap",
+        Kernel::NothingBeyond => "there is a circuit beyond the end, and it is not the last one",
+        Kernel::ConflictsWithItself => "a route does not conflict with itself",
+        Kernel::NotThere => "what is named exists",
+        Kernel::NoDetector => "a point that a route needs has a detector",
+        Kernel::NoLength => "a circuit of a path or a segment has a length",
+        Kernel::BrakingFalls => "braking distances rise with the code",
+        Kernel::CodeOutOfTable => "the code of a route is in the table of braking distances",
+        Kernel::ManySegments => "a route comes from at most one segment and goes out to at most one",
+    }
+}
+
+fn kebab(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !text.is_empty() {
+            text.push('-');
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}
+
+/// What to do where a rule of the kernel's plan is broken.
+pub const fn remedy(rule: Kernel) -> &'static str {
+    match rule {
+        Kernel::PathTooLong => "divide it",
+        Kernel::NoTime => "give a longer time or a shorter cycle",
+        Kernel::PointBothWays => {
+            "run the overlap over the leg that the flank or the path leaves, or give a reason instead of the flank"
+        }
+        Kernel::PointNotPositioned => "give the position of the point at that circuit",
+        Kernel::ConflictOneWay => "name each route among the conflicts of the other",
+        Kernel::ContinuesElsewhere => "name only routes whose entry is the last circuit",
+        Kernel::ThroatsDiffer => "let all routes out to the segment end at one circuit next to it",
+        Kernel::SegmentShared => "end routes and overlaps where the segment begins",
+        Kernel::NotOneCircuit | Kernel::CircuitTwice => "name every circuit once, in order",
+        Kernel::OverlapUnderOwnPath => "let the overlap begin behind the path",
+        Kernel::EntryNotInApproach => "add the entry to the approach",
+        Kernel::ApproachInPath => "leave the circuits of path and overlap out of the approach",
+        Kernel::NothingBeyond => "name the circuits that a train reaches from the last one",
+        Kernel::ConflictsWithItself => "leave the route out of its own conflicts",
+        Kernel::NotThere => "name only what the file describes",
+        Kernel::NoDetector => "name the circuits that detect a train on the point",
+        Kernel::NoLength => "give its length",
+        Kernel::BrakingFalls => "give rising speeds whose braking distances differ by a metre or more",
+        Kernel::CodeOutOfTable => "give the route one of the speeds of the table",
+        Kernel::ManySegments => "name one segment",
+    }
+}

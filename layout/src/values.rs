@@ -1,0 +1,91 @@
+//! The numbers of a layout file that hold for the whole station, and their defaults.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::at::At;
+
+/// Times for the whole station, in ms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Times {
+    /// The length of a logic cycle.
+    pub cycle_ms: At<u32>,
+    /// How long a circuit must be reported clear before it counts as clear: longer than `shunt_loss_ms`, at most 255 cycles.
+    pub clear_ms: At<u32>,
+    /// The longest time for which the shunt of a train may be lost.
+    pub shunt_loss_ms: At<u32>,
+    /// How long points may take to arrive before the route has failed.
+    pub drive_ms: At<u32>,
+    /// The longest time of a point's stroke.
+    pub throw_ms: At<u32>,
+    /// How long a route stays locked after it was withdrawn with a train coming.
+    pub release_ms: At<u32>,
+    /// How long a train must have stood on the last circuit before the overlap is given up.
+    pub stay_ms: At<u32>,
+    /// For how long the neighbour's permission must have been withdrawn before plain line turns: longer than `telegram_age_ms`.
+    pub turn_ms: At<u32>,
+    /// The age up to which a train acts on a telegram.
+    pub telegram_age_ms: At<u32>,
+}
+
+impl Default for Times {
+    fn default() -> Self {
+        Self {
+            cycle_ms: At::derived(100),
+            clear_ms: At::derived(2_000),
+            shunt_loss_ms: At::derived(1_000),
+            drive_ms: At::derived(10_000),
+            throw_ms: At::derived(7_000),
+            release_ms: At::derived(60_000),
+            stay_ms: At::derived(30_000),
+            turn_ms: At::derived(5_000),
+            telegram_age_ms: At::derived(1_000),
+        }
+    }
+}
+
+/// The brake, and the speeds of the codes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Braking {
+    /// The deceleration on the level that every train has at least, 1 to 4095 mm/s².
+    pub deceleration_mm_s2: At<u16>,
+    /// The speeds of the codes 1, 2, … in km/h: 1 to 7 of them, rising, at most 409.
+    pub speeds_kmh: At<Vec<u16>>,
+}
+
+impl Default for Braking {
+    fn default() -> Self {
+        Self { deceleration_mm_s2: At::derived(800), speeds_kmh: At::derived(vec![15, 25, 45, 55, 65, 75, 90]) }
+    }
+}
+
+/// Speeds where a route names none.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Speeds {
+    /// The highest speed of a train that comes up to a signal, in km/h [default: that of the highest code].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line_kmh: Option<At<u16>>,
+    /// The highest speed on a route over a reverse point, in km/h [default: `route_kmh`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reverse_kmh: Option<At<u16>>,
+    /// The highest speed on a route, in km/h [default: `line_kmh`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub route_kmh: Option<At<u16>>,
+}
+
+/// What is asked of overlaps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Overlaps {
+    /// The least length of an overlap, in metres.
+    pub least_m: At<u16>,
+}
+
+impl Default for Overlaps {
+    fn default() -> Self {
+        Self { least_m: At::derived(50) }
+    }
+}

@@ -1,0 +1,184 @@
+//! Imports of files that are wrong, strange or mutilated: an error or a report, never a panic.
+
+mod support;
+
+use atc_layout::Rule;
+use atc_layout::import::{Imported, osrd, railml, read_any};
+use proptest::prelude::*;
+use support::railml::{Version, railml as written};
+use support::{East, station};
+
+fn small() -> String {
+    written(&station(3, East::OneBay), Version::V31)
+}
+
+fn imported(text: &str) -> Imported {
+    railml("station.railml", text).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn refused(text: &str, says: &str) {
+    let errors = railml("station.railml", text).unwrap_err();
+    assert!(errors.breaks(Rule::Form) && errors.to_string().contains(says), "{says:?} is not in: {errors}");
+}
+
+#[test]
+fn what_is_no_railml_3_is_refused_with_its_place() {
+    refused("", "this is no XML");
+    refused(&small().replace("</infrastructure>", ""), "this is no XML");
+    refused("<railML xmlns=\"https://www.railml.org/schemas/2013\" version=\"2.2\"/>", "railML 3.1 or later");
+    refused("<osm/>", "the root element is osm");
+    refused("<railML xmlns=\"https://www.railml.org/schemas/3.1\" version=\"3.1\"/>", "no netElements");
+    let errors = railml("station.railml", "<railML>\n<a></b></railML>").unwrap_err();
+    assert!(errors.to_string().starts_with("station.railml:2:"), "{errors}");
+}
+
+#[test]
+fn what_is_not_known_is_skipped_and_reported() {
+    let text =
+        small().replace("<bufferStops>", "<balises><balise id=\"b1\"/><balise id=\"b2\"/></balises><bufferStops>");
+    let report = imported(&text).report;
+    assert!(report.skipped.iter().any(|line| line == "balises with 2 elements"), "{report}");
+}
+
+#[test]
+fn what_is_missing_is_defaulted_and_reported() {
+    let without = |what: &str| imported(&small().replace(what, ""));
+    let release = without(" approachReleaseDelay=\"PT60S\"").report;
+    assert!(release.defaulted.iter().any(|line| line.contains("no approachReleaseDelay")), "{release}");
+    let normal =
+        imported(&small().replace(" preferredPosition=\"left\"", "").replace(" continueCourse=\"left\"", "")).report;
+    assert!(normal.defaulted.iter().any(|line| line.starts_with("normal position of sw0")), "{normal}");
+    let lengths = imported(&small().replace(" length=\"", " long=\"")).report;
+    assert!(lengths.defaulted.iter().any(|line| line.contains("100 m: ne0")), "{lengths}");
+    let flank = imported(&small()).report;
+    assert!(flank.defaulted.iter().any(|line| line.contains("no point protects")), "{flank}");
+    let no_routes = imported(&small().replace("<route ", "<other ").replace("</route>", "</other>")).report;
+    assert!(no_routes.lacking.iter().any(|line| line.starts_with("routes: the file has none")), "{no_routes}");
+    let no_signal = imported(&small().replacen("<refersTo ref=\"ilsig", "<refersTo ref=\"gone", 1)).report;
+    assert!(no_signal.lacking.iter().any(|line| line.contains("does not exist; it is left out")), "{no_signal}");
+}
+
+#[test]
+fn sections_are_enough_without_exits_and_exits_without_sections() {
+    let text = small();
+    let all = imported(&text).description.station.routes.len();
+    let start = |line: &&str| !line.contains("<hasTvdSection") || line.contains("<overlap");
+    let without_sections: String = text.lines().filter(start).flat_map(|line| [line, "\n"]).collect();
+    assert_eq!(imported(&without_sections).description.station.routes.len(), all);
+    // An exit and the end of its route stand in two lines.
+    let without_exits: String =
+        text.lines().filter(|line| !line.contains("<routeExit")).flat_map(|line| [line, "\n"]).collect();
+    let found = imported(&without_exits);
+    assert_eq!(found.description.station.routes.len(), all, "{}", found.report);
+}
+
+#[test]
+fn a_flank_point_of_a_route_relation_is_held() {
+    let text = small()
+        .replacen("<routeExit", "<additionalRelation ref=\"rr\"/><routeExit", 1)
+        .replace("<conflictingRoutes>", "<routeRelations><routeRelation id=\"rr\"><requiredSwitchPosition><relatedSwitchAndPosition inPosition=\"right\"><refersToSwitch ref=\"swil2\"/></relatedSwitchAndPosition></requiredSwitchPosition></routeRelation></routeRelations><conflictingRoutes>");
+    let model = imported(&text).description.model().unwrap();
+    let held = model.routes[0].path[0].positions.get(&2);
+    assert_eq!(held, Some(&atc_layout::form::Position::Reverse));
+}
+
+/// A station of our own in the form of OSRD: a line with a loop, cut by four detectors.
+const OSRD: &str = r#"{
+  "track_sections": [{"id": "a", "length": 900.0}, {"id": "b", "length": 400.0}, {"id": "c", "length": 400.0}, {"id": "d", "length": 900.0}],
+  "switches": [
+    {"id": "p", "switch_type": "point_switch", "group_change_delay": 6.0, "ports": {"A": {"endpoint": "END", "track": "a"}, "B1": {"endpoint": "BEGIN", "track": "b"}, "B2": {"endpoint": "BEGIN", "track": "c"}}},
+    {"id": "q", "switch_type": "point_switch", "ports": {"A": {"endpoint": "BEGIN", "track": "d"}, "B1": {"endpoint": "END", "track": "b"}, "B2": {"endpoint": "END", "track": "c"}}}],
+  "detectors": [
+    {"id": "da", "track": "a", "position": 850.0}, {"id": "db1", "track": "b", "position": 30.0}, {"id": "db2", "track": "b", "position": 370.0},
+    {"id": "dc1", "track": "c", "position": 30.0}, {"id": "dc2", "track": "c", "position": 370.0}, {"id": "dd", "track": "d", "position": 50.0}],
+  "buffer_stops": [{"id": "ba", "track": "a", "position": 0.0}, {"id": "bd", "track": "d", "position": 900.0}],
+  "routes": [
+    {"id": "in b", "entry_point": {"type": "Detector", "id": "da"}, "entry_point_direction": "START_TO_STOP", "exit_point": {"type": "Detector", "id": "db2"}, "release_detectors": ["db1"], "switches_directions": {"p": "A_B1"}},
+    {"id": "in c", "entry_point": {"type": "Detector", "id": "da"}, "entry_point_direction": "START_TO_STOP", "exit_point": {"type": "Detector", "id": "dc2"}, "switches_directions": {"p": "A_B2"}},
+    {"id": "out c", "entry_point": {"type": "Detector", "id": "dc2"}, "entry_point_direction": "START_TO_STOP", "exit_point": {"type": "BufferStop", "id": "bd"}, "switches_directions": {}},
+    {"id": "there", "entry_point": {"type": "BufferStop", "id": "ba"}, "entry_point_direction": "START_TO_STOP", "exit_point": {"type": "Detector", "id": "da"}, "switches_directions": {}}]
+}"#;
+
+#[test]
+fn an_osrd_infrastructure_becomes_a_layout() {
+    let imported = osrd("loop.json", OSRD).unwrap_or_else(|errors| panic!("{errors}"));
+    let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(compiled.names.routes, ["in b", "in c", "out c"]);
+    assert_eq!(compiled.names.circuits.len(), 6);
+    let shortest = compiled.model.circuits.iter().map(|circuit| circuit.length.0).min();
+    assert_eq!(shortest, Some(80), "50 m to the blades and 30 m behind them");
+    assert_eq!(compiled.model.points[0].throw_ms, 6000);
+    assert!(
+        imported.report.lacking.iter().any(|line| line.contains("one circuit at a buffer stop")),
+        "{}",
+        imported.report
+    );
+    assert!(osrd("x.json", "{").unwrap_err().to_string().starts_with("x.json:1:"));
+    assert!(
+        osrd("x.json", &OSRD.replace("\"track\": \"d\"", "\"track\": \"e\"")).unwrap_err().breaks(Rule::NoSuchName)
+    );
+}
+
+/// The real infrastructures, where their folder is at hand: none is in the project.
+#[test]
+fn real_osrd_infrastructures_import() {
+    let Some(folder) = std::env::var_os("ATC_OSRD") else { return };
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let imported = read_any(&path).unwrap_or_else(|errors| panic!("{errors}"));
+        imported.description.model().unwrap_or_else(|errors| panic!("{errors}"));
+        let errors = imported.description.compile().err();
+        let limits = errors.iter().flat_map(|errors| &errors.problems).all(|problem| problem.rule == Rule::TooMany);
+        assert!(limits, "{errors:?}");
+        seen += 1;
+    }
+    assert!(seen > 0);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 192, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Attributes go, ids change places, numbers become others, elements vanish: no panic, whatever comes of it.
+    #[test]
+    fn a_mutilated_railml_file_is_no_panic(changes in prop::collection::vec((0_usize..6, any::<prop::sample::Index>(), any::<prop::sample::Index>()), 1..8)) {
+        let mut text = small();
+        for (kind, at, other) in changes {
+            let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+            let (one, two) = (at.index(lines.len()), other.index(lines.len()));
+            let mut lines = lines;
+            match kind {
+                0 => { lines.remove(one); }
+                1 => lines.swap(one, two),
+                2 => { let line = lines[two].clone(); lines.insert(one, line); }
+                3 => lines[one] = lines[one].replace("\"0", "\"1"),
+                4 => lines[one] = lines[one].replacen("ref=\"", "ref=\"x", 1),
+                _ => lines[one] = lines[one].replacen('"', "\"-", 1).replace("PT", "P").replace("length=\"", "length=\"1e9"),
+            }
+            text = lines.join("\n");
+        }
+        if let Ok(imported) = railml("station.railml", &text) {
+            let model = imported.description.model();
+            let _ = imported.description.compile();
+            if let Ok(model) = model {
+                let _ = atc_layout::draw::svg(&imported.description.station, &model);
+                let _ = atc_layout::table::csv(&model);
+            }
+        }
+    }
+
+    /// The same for a file in TOML, by bytes.
+    #[test]
+    fn a_mutilated_layout_is_no_panic(cuts in prop::collection::vec((any::<prop::sample::Index>(), "[a-z0-9\"=\\[\\]]{0,3}"), 1..6)) {
+        let mut text = include_str!("../../layouts/terminus.toml").to_owned();
+        for (at, put) in cuts {
+            let mut at = at.index(text.len());
+            while !text.is_char_boundary(at) { at -= 1; }
+            let end = text[at..].chars().next().map_or(at, |letter| at + letter.len_utf8());
+            text.replace_range(at..end, &put);
+        }
+        if let Err(errors) = atc_layout::Description::from_toml("x", &text).and_then(|description| description.compile()) {
+            prop_assert!(!errors.problems.is_empty());
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! Each rule of a layout file is broken by a file that breaks nothing else, and the message says where.
+
+use atc_kernel::interlocking::Rule as Kernel;
+use atc_layout::{Description, Errors, Rule};
+
+const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
+const JUNCTION: &str = include_str!("../../layouts/junction.toml");
+const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
+
+fn errors(text: &str) -> Errors {
+    Description::from_toml("station.toml", text)
+        .and_then(|description| description.compile())
+        .expect_err("it breaks a rule")
+}
+
+/// Replaces the first `from` after `anchor`.
+fn change(text: &str, anchor: &str, from: &str, to: &str) -> String {
+    let start = text.find(anchor).unwrap_or_else(|| panic!("{anchor} is in the sample"));
+    let at = start + text[start..].find(from).unwrap_or_else(|| panic!("{from} is after {anchor}"));
+    format!("{}{to}{}", &text[..at], &text[at + from.len()..])
+}
+
+/// The file breaks `rule` and no other, and says so with a line.
+fn breaks(text: &str, rule: Rule, says: &str) {
+    let errors = errors(text);
+    let message = errors.to_string();
+    let others: Vec<_> = errors.problems.iter().filter(|problem| problem.rule != rule).collect();
+    assert!(errors.breaks(rule) && others.is_empty(), "expected only {rule:?}:\n{message}");
+    assert!(message.contains(says), "{says:?} is not in:\n{message}");
+    assert!(message.starts_with("station.toml"), "{message}");
+    assert!(!rule.text().is_empty() && message.contains(&format!("[{}]", rule.name())));
+}
+
+#[test]
+fn form() {
+    breaks(&change(LOOP, "[[route]]", "entry", "enter"), Rule::Form, "unknown field `enter`");
+    breaks("name = \"x", Rule::Form, "station.toml:1:");
+    assert!(errors(&change(LOOP, "[[route]]", "entry", "enter")).to_string().starts_with("station.toml:103:1: "));
+}
+
+#[test]
+fn name_twice() {
+    breaks(&change(LOOP, "name = \"W-2\"", "W-2", "W-1"), Rule::NameTwice, "two routes called W-1");
+}
+
+#[test]
+fn no_such_name() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "\"W1\"", "\"W11\""),
+        Rule::NoSuchName,
+        "there is no circuit W11; is W1 meant?",
+    );
+}
+
+#[test]
+fn range() {
+    breaks(&change(LOOP, "name = \"W2\"", "300", "0"), Rule::Range, "circuit W2 is 0 m long");
+    breaks(
+        &format!("{}\n[times]\ncycle_ms = 0\n", change(LOOP, "name", "name", "name")),
+        Rule::Range,
+        "a cycle has 0 ms",
+    );
+    breaks(&format!("{LOOP}\n[times]\nclear_ms = 30000\n"), Rule::Range, "300 cycles");
+    breaks(&format!("{LOOP}\n[braking]\nspeeds_kmh = [45, 15]\n"), Rule::Range, "cannot be those of the codes");
+    breaks(&format!("{LOOP}\n[braking]\ndeceleration_mm_s2 = 5000\n"), Rule::Range, "1 to 4095");
+}
+
+#[test]
+fn joint() {
+    breaks(
+        &change(LOOP, "[[segment]]", "[[segment]]", "[[end]]\njoint = \"b\"\nkind = \"line\"\n\n[[segment]]"),
+        Rule::Joint,
+        "joint b is an end, and two tracks reach it",
+    );
+    breaks(&change(LOOP, "name = \"1T\"", "left = \"d\"\n", ""), Rule::Joint, "circuit 1T has only one end");
+}
+
+#[test]
+fn open_joint() {
+    breaks(
+        &change(LOOP, "joint = \"a\"", "[[end]]\njoint = \"j\"\nkind = \"line\"", ""),
+        Rule::OpenJoint,
+        "only one track reaches joint j",
+    );
+}
+
+#[test]
+fn no_way() {
+    breaks(&change(LOOP, "name = \"W-1\"", "\"P1T\", \"1T\"", "\"1T\""), Rule::NoWay, "does not adjoin the entry W1");
+    let skips = change(TERMINUS, "name = \"A-1\"", "\"P4T\", ", "");
+    breaks(&skips, Rule::NoWay, "goes from P1T to P5T, which does not adjoin it");
+}
+
+#[test]
+fn many_ways() {
+    let wide = change(TERMINUS, "name = \"A-1\"", ", \"1T\"", "");
+    breaks(&wide, Rule::ManyWays, "there are 2 ways through the path");
+}
+
+#[test]
+fn overlap_not_ahead() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "overlap = [\"P2T\"]", "overlap = [\"E1\"]"),
+        Rule::OverlapNotAhead,
+        "P2T follows",
+    );
+}
+
+#[test]
+fn position_contradicts() {
+    let against = "path = [{ circuit = \"P1T\", points = { P1 = \"reverse\" } }, \"1T\"]";
+    let text = change(LOOP, "name = \"W-1\"", "path = [\"P1T\", \"1T\"]", against);
+    breaks(&text, Rule::PositionContradicts, "normal is the way to the next circuit");
+}
+
+#[test]
+fn detectors_incomplete() {
+    let text = change(LOOP, "name = \"P1\"", "toe", "fouled_in = [\"2T\"]\ndetectors = [\"P1T\"]\ntoe");
+    breaks(&text, Rule::DetectorsIncomplete, "point P1 is not detected by 2T");
+}
+
+#[test]
+fn approach_too_short() {
+    let short = change(LOOP, "name = \"W1\"", "300", "200");
+    let named = change(&short, "name = \"W-1\"", "entry", "approach = [\"W1\"]\nentry");
+    breaks(
+        &named,
+        Rule::ApproachTooShort,
+        "route W-1: the approach reaches 200 m back from the signal, where W2 is not in it",
+    );
+    let both = change(&short, "name = \"W2\"", "300", "20");
+    breaks(&both, Rule::ApproachTooShort, "the line is not described beyond joint a");
+}
+
+#[test]
+fn approach_apart() {
+    let text = change(LOOP, "name = \"W-1\"", "entry", "approach = [\"W1\", \"E1\"]\nentry");
+    breaks(&text, Rule::ApproachApart, "E1 is in the approach");
+}
+
+#[test]
+fn drive_under_throw() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "entry", "drive_ms = 6900\nentry"),
+        Rule::DriveUnderThrow,
+        "6900 ms, but point P",
+    );
+}
+
+#[test]
+fn release_under_throw() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "entry", "release_ms = 7000\nentry"),
+        Rule::ReleaseUnderThrow,
+        "more than 7000",
+    );
+}
+
+#[test]
+fn no_flank() {
+    let line =
+        "reverse_unprotected = \"trains in 2T obey its signal and are braked by ATC; no vehicle is parked there\"\n";
+    breaks(&change(LOOP, "name = \"P1\"", line, ""), Rule::NoFlank, "only signal 2W at stop keeps vehicles off it");
+    let line = "normal_unprotected = \"trains that arrive obey signal A and are braked by ATC\"\n";
+    breaks(&change(TERMINUS, "name = \"P4\"", line, ""), Rule::NoFlank, "point P1 is not held");
+    breaks(
+        &change(
+            LOOP,
+            "name = \"P1\"",
+            "trains in 1T obey its signal and are braked by ATC; no vehicle is parked there",
+            " ",
+        ),
+        Rule::NoFlank,
+        "lacks the reason",
+    );
+}
+
+#[test]
+fn overlap_too_short() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "overlap = [\"P2T\"]\n", ""),
+        Rule::OverlapTooShort,
+        "an overlap of 0 m, and the least one is 50 m",
+    );
+    breaks(&format!("{LOOP}\n[overlaps]\nleast_m = 61\n"), Rule::OverlapTooShort, "an overlap of 60 m");
+}
+
+#[test]
+fn fouling_undeclared() {
+    let text = format!("{LOOP}\n[[fouling]]\nbetween = [\"P1T\", \"E1\"]\n");
+    // E1 is in no path: nothing can be set together there.
+    assert!(Description::from_toml("x", &text).unwrap().compile().is_ok());
+    let text = format!("{JUNCTION}\n[[fouling]]\nbetween = [\"P1T\", \"P3T\"]\n");
+    breaks(&text, Rule::FoulingUndeclared, "routes A-B over P1T and B-A over P3T can be set together");
+}
+
+#[test]
+fn clear_under_shunt() {
+    breaks(&format!("{LOOP}\n[times]\nclear_ms = 1000\n"), Rule::ClearUnderShunt, "clear_ms must be more than 1000");
+}
+
+#[test]
+fn turn_under_telegram() {
+    breaks(&format!("{LOOP}\n[times]\nturn_ms = 1000\n"), Rule::TurnUnderTelegram, "turn_ms must be more than 1000");
+}
+
+#[test]
+fn segment_order() {
+    let text = change(LOOP, "name = \"West\"", "[\"W1\", \"W2\"]", "[\"W1\", \"E2\"]");
+    let text = change(&text, "name = \"East\"", "[\"E1\", \"E2\"]", "[\"E1\"]");
+    breaks(&text, Rule::SegmentOrder, "segment West: E2 does not adjoin W1");
+}
+
+#[test]
+fn beyond_apart() {
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "entry", "beyond = [\"P2T\", \"E2\"]\nentry"),
+        Rule::BeyondApart,
+        "E2 does not adjoin",
+    );
+}
+
+#[test]
+fn too_many() {
+    let text = Description::from_toml("station.toml", LOOP).unwrap().compile_to::<8, 1, 4, 2>().unwrap_err();
+    assert!(text.problems.iter().all(|problem| problem.rule == Rule::TooMany), "{text}");
+    assert!(text.to_string().contains("route W-1 has 2 circuits, and there is room for 1"), "{text}");
+}
+
+#[test]
+fn rules_of_the_plan_in_the_words_of_the_file() {
+    let plan = |text: &str, rule, says: &str| breaks(text, Rule::Plan(rule), says);
+    plan(
+        &change(LOOP, "name = \"W-1\"", "entry", "conflicts = [\"E-2\"]\nentry"),
+        Kernel::ConflictOneWay,
+        "routes W-1 and E-2",
+    );
+    plan(
+        &change(LOOP, "name = \"W-1\"", "entry", "conflicts = [\"W-1\"]\nentry"),
+        Kernel::ConflictsWithItself,
+        "route W-1",
+    );
+    plan(
+        &change(LOOP, "name = \"W-1\"", "entry", "continuing = [\"2-E\"]\nentry"),
+        Kernel::ContinuesElsewhere,
+        "routes W-1 and 2-E",
+    );
+    plan(
+        &change(LOOP, "name = \"W-1\"", "entry", "approach = [\"W1\", \"P1T\"]\nentry"),
+        Kernel::ApproachInPath,
+        "route W-1",
+    );
+    plan(&change(LOOP, "name = \"W-1\"", "entry", "beyond = [\"1T\"]\nentry"), Kernel::NothingBeyond, "route W-1");
+}
+
+#[test]
+fn what_derives_from_the_tracks() {
+    let compiled = Description::from_toml("loop", LOOP).unwrap().compile().unwrap();
+    let note = |about: &str, text: &str| {
+        assert!(compiled.derived.iter().any(|note| note.about == about && note.text.contains(text)), "{about}: {text}");
+    };
+    note("route W-1", "continued by 1-E");
+    note("route W-1", "beyond the end: P1T, P2T");
+    note("route W-1", "comes from segment West");
+    note("route 1-W", "goes out to segment West");
+    note("segment West", "throat: P1T");
+    note("point P1", "detectors");
+    let terminus = Description::from_toml("terminus", TERMINUS).unwrap().compile().unwrap();
+    let flank = terminus
+        .derived
+        .iter()
+        .any(|note| note.about == "route 3-D" && note.text == "point P4 normal as flank protection of point P3");
+    assert!(flank, "{:?}", terminus.derived);
+}
+
+#[test]
+fn distances_round_up_and_times_as_is_safe() {
+    let text = format!("{LOOP}\n[times]\ncycle_ms = 70\nclear_ms = 1001\n");
+    let compiled = Description::from_toml("loop", &text).unwrap().compile().unwrap();
+    let plan = &compiled.plan;
+    assert_eq!(plan.clear, 15, "1001 ms at 70 ms, up");
+    assert_eq!(plan.routes[0].drive.0, 142, "10 000 ms at 70 ms, down: it restricts");
+    assert_eq!(plan.routes[0].release.0, 858, "60 000 ms at 70 ms, up: it permits");
+    // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m.
+    assert_eq!(plan.braking[3].0, 98);
+}

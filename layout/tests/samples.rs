@@ -1,0 +1,198 @@
+//! The samples in `layouts/` break no rule; those in railML are made from those in TOML, and import to the same plan.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+use atc_layout::import::{only, railml, read_any};
+use atc_layout::{Description, Rule, draw, read};
+use support::railml::{Version, railml as written};
+use support::{East, seventy_seven, station};
+
+fn folder(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// Compares a file with what it should say. `ATC_WRITE=1` writes it instead.
+fn pinned(path: &str, text: &str) {
+    let path = folder(path);
+    if std::env::var_os("ATC_WRITE").is_some() {
+        std::fs::write(&path, text).unwrap();
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    assert!(
+        found == text,
+        "{} is not what the test makes: run it with ATC_WRITE=1 and look at the difference",
+        path.display()
+    );
+}
+
+fn description(station: atc_layout::form::Station) -> Description {
+    Description { station, ..Description::default() }
+}
+
+fn thirty() -> Description {
+    let mut made = station(8, East::OneBay);
+    "Station with 30 routes".clone_into(&mut made.name);
+    description(made)
+}
+
+const SAMPLES: [(&str, Version); 4] = [
+    ("passing-loop", Version::V31),
+    ("junction", Version::V32),
+    ("terminus", Version::V31),
+    ("station-30", Version::V32),
+];
+
+#[test]
+fn the_station_with_thirty_routes_is_made_by_rule() {
+    let head = "# A single line, eight tracks, thirty routes. Made by layout/tests/samples.rs.\n\n";
+    pinned("layouts/station-30.toml", &format!("{head}{}", thirty().to_toml()));
+}
+
+#[test]
+fn every_sample_breaks_no_rule() {
+    let mut seen = 0;
+    for entry in std::fs::read_dir(folder("layouts")).unwrap() {
+        let path = entry.unwrap().path();
+        let imported = read_any(&path).unwrap_or_else(|errors| panic!("{errors}"));
+        let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+        compiled.layout();
+        assert_eq!(compiled.plan.routes.iter().filter(|route| route.exists()).count(), compiled.names.routes.len());
+        assert!(!compiled.names.routes.is_empty(), "{}", path.display());
+        seen += 1;
+    }
+    assert_eq!(seen, 8, "four samples in two forms");
+}
+
+#[test]
+fn samples_in_railml_are_made_from_those_in_toml() {
+    for (name, version) in SAMPLES {
+        let native = read(folder(&format!("layouts/{name}.toml"))).unwrap();
+        pinned(&format!("layouts/{name}.railml.xml"), &written(&native.station, version));
+    }
+}
+
+/// The same circuits, points, paths and overlaps by name, whatever their order.
+#[test]
+fn a_sample_in_railml_imports_to_the_same_routes() {
+    for (name, version) in SAMPLES {
+        let native = read(folder(&format!("layouts/{name}.toml"))).unwrap();
+        let text = written(&native.station, version);
+        let imported = railml(name, &text).unwrap_or_else(|errors| panic!("{errors}"));
+        let guessed = imported.report.defaulted.iter().find(|line| line.starts_with("tvdSection"));
+        assert_eq!(guessed, None, "every section of {name} has the borders of a part of the tracks");
+        let (native, imported) =
+            (native.model().unwrap(), imported.description.model().unwrap_or_else(|e| panic!("{e}")));
+        assert_eq!(native.routes.len(), imported.routes.len(), "{name}");
+        for (one, other) in native.routes.iter().zip(&imported.routes) {
+            let say = |model: &atc_layout::model::Model, route: &atc_layout::model::Route| {
+                let circuits = |all: Vec<usize>| {
+                    all.iter().map(|circuit| model.circuits[*circuit].name.clone()).collect::<Vec<_>>()
+                };
+                let passed: Vec<_> = route
+                    .path
+                    .iter()
+                    .flat_map(|place| &place.passed)
+                    .map(|passed| (model.points[passed.point].name.clone(), passed.position))
+                    .collect();
+                (
+                    route.name.clone(),
+                    route.signal.clone(),
+                    circuits(vec![route.entry]),
+                    circuits(route.circuits().collect()),
+                    circuits(route.overlap.clone()),
+                    passed,
+                    route.release,
+                    route.stay,
+                )
+            };
+            assert_eq!(say(&native, one), say(&imported, other), "{name}");
+        }
+        let lengths = |model: &atc_layout::model::Model| {
+            model
+                .circuits
+                .iter()
+                .map(|circuit| (circuit.name.clone(), circuit.length))
+                .collect::<std::collections::BTreeMap<_, _>>()
+        };
+        assert_eq!(lengths(&native), lengths(&imported), "{name}");
+    }
+}
+
+#[test]
+fn a_layout_survives_being_written() {
+    for (name, _) in SAMPLES {
+        let native = read(folder(&format!("layouts/{name}.toml"))).unwrap();
+        let again = Description::from_toml(name, &native.to_toml()).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(native.station, again.station);
+        assert_eq!(native.compile().unwrap().plan, again.compile().unwrap().plan);
+    }
+}
+
+#[test]
+fn a_station_of_the_greatest_size_fits() {
+    let made = description(station(16, East::AllThrough));
+    let compiled = made.compile().unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(compiled.names.routes.len(), 64);
+}
+
+#[test]
+fn seventy_seven_routes_are_checked_and_then_refused_or_cut() {
+    let text = written(&seventy_seven(), Version::V31);
+    let imported = railml("77", &text).unwrap();
+    assert_eq!(imported.description.model().unwrap_or_else(|errors| panic!("{errors}")).routes.len(), 77);
+    let errors = imported.description.compile().unwrap_err();
+    assert!(errors.breaks(Rule::TooMany), "{errors}");
+    assert!(errors.to_string().contains("77 routes, and there is room for 64"), "{errors}");
+    let wanted: Vec<String> = ["W-1", "1-W", "E-1", "1-E"].map(str::to_owned).to_vec();
+    let part = only(&imported.description, &wanted).unwrap();
+    let compiled = part.compile().unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(compiled.names.routes, wanted);
+    assert!(only(&imported.description, &["nowhere".to_owned()]).unwrap_err().to_string().contains("no route nowhere"));
+}
+
+#[test]
+fn a_small_layout_is_the_same_file() {
+    let native = read(folder("layouts/passing-loop.toml")).unwrap();
+    let small = native.compile_to::<8, 8, 4, 2>().unwrap_or_else(|errors| panic!("{errors}"));
+    let full = native.compile().unwrap();
+    assert_eq!(small.plan.lengths, full.plan.lengths);
+    assert_eq!(
+        small.plan.routes.map(|route| (route.entry, route.approach, route.conflicts, route.beyond)).as_slice(),
+        &full.plan.routes.map(|route| (route.entry, route.approach, route.conflicts, route.beyond))[..8]
+    );
+    assert!(native.compile_to::<7, 8, 4, 2>().unwrap_err().breaks(Rule::TooMany));
+}
+
+#[test]
+fn the_schema_is_current() {
+    pinned("layout/layout.schema.json", &atc_layout::schema());
+}
+
+/// What the reader takes the schema takes, and what has an unknown key neither does.
+#[test]
+fn samples_keep_to_the_schema() {
+    let schema = jsonschema::validator_for(&serde_json::from_str(&atc_layout::schema()).unwrap()).unwrap();
+    let junction = std::fs::read_to_string(folder("layouts/junction.toml")).unwrap();
+    let with_points =
+        junction.replace("path = [\"P1T\"]", "path = [{ circuit = \"P1T\", points = { P1 = \"normal\" } }]");
+    let railml_as_toml = read_any(folder("layouts/terminus.railml.xml")).unwrap().description.to_toml();
+    for text in [&junction, &with_points, &thirty().to_toml(), &railml_as_toml] {
+        assert!(Description::from_toml("x", text).is_ok());
+        let value: serde_json::Value = toml::from_str(text).unwrap();
+        let wrong: Vec<String> = schema.iter_errors(&value).map(|error| error.to_string()).collect();
+        assert!(wrong.is_empty(), "{wrong:?}");
+    }
+    for (from, to) in [("points = {", "point = {"), ("length_m", "length"), ("\"normal\" } }", "\"left\" } }")] {
+        let text = with_points.replacen(from, to, 1);
+        assert!(Description::from_toml("x", &text).is_err(), "{to}");
+        assert!(!schema.is_valid(&toml::from_str(&text).unwrap()), "{to}");
+    }
+}
+
+#[test]
+fn the_track_plan_of_the_docs_is_current() {
+    let native = read(folder("layouts/station-30.toml")).unwrap();
+    pinned("docs/track-plan.svg", &draw::svg(&native.station, &native.model().unwrap()));
+}

@@ -1,0 +1,108 @@
+//! The control table and the drawing say what the layout says.
+
+use atc_layout::conflict::{Reason, reasons};
+use atc_layout::model::Model;
+use atc_layout::{Description, draw, table};
+
+fn description(text: &str) -> Description {
+    Description::from_toml("station.toml", text).unwrap()
+}
+
+const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
+const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
+
+fn between(model: &Model, one: &str, other: &str) -> Vec<Reason> {
+    let number = |name: &str| model.routes.iter().position(|route| route.name == name).unwrap();
+    let found = reasons(model, number(one), number(other));
+    assert_eq!(found, reasons(model, number(other), number(one)), "{one} and {other}");
+    found
+}
+
+#[test]
+fn conflicts_have_their_reasons() {
+    let model = description(LOOP).model().unwrap();
+    assert_eq!(between(&model, "W-1", "W-2"), [Reason::Circuit, Reason::Point, Reason::Overlap]);
+    assert_eq!(between(&model, "W-1", "1-W"), [Reason::Circuit, Reason::Direction]);
+    // The route out of track 1 goes on where W-1 ends: its path may run under that overlap.
+    assert_eq!(between(&model, "W-1", "1-E"), []);
+    assert_eq!(between(&model, "W-1", "2-E"), [Reason::Point, Reason::Overlap]);
+    assert_eq!(between(&model, "1-W", "2-E"), []);
+    let declared = LOOP.replace("name = \"1-W\"", "name = \"1-W\"\nconflicts = [\"2-E\"]");
+    let declared = declared.replace("name = \"2-E\"", "name = \"2-E\"\nconflicts = [\"1-W\"]");
+    assert_eq!(between(&description(&declared).model().unwrap(), "1-W", "2-E"), [Reason::Declared]);
+    assert_eq!(reasons(&model, 0, 0), []);
+}
+
+#[test]
+fn the_row_of_a_route() {
+    let csv = table::csv(&description(TERMINUS).model().unwrap());
+    let rows: Vec<&str> = csv.split("\r\n").collect();
+    assert_eq!(rows.len(), 8, "a head, six routes and the end");
+    assert!(rows.iter().take(7).all(|row| row.split(',').count() >= table::COLUMNS.len()), "{csv}");
+    let row = rows.iter().find(|row| row.starts_with("1-D,")).unwrap();
+    let says = [
+        "1-D,1,1T,P5T P4T P3T P2T,P2 P5,P3 P4,P1,,",
+        "out to Departures",
+        "P5T: clear after P4T entered; P4T: clear after P3T entered; P3T: clear after P2T entered; P2T: clear with D1 occupied",
+        "drive 10 s, release 60 s, stay 30 s",
+    ];
+    for says in says {
+        assert!(row.contains(says), "{says:?} is not in {row}");
+    }
+}
+
+#[test]
+fn a_cell_is_no_formula_and_no_markup() {
+    let text = LOOP.replace("\"W-1\"", "\"=W,<b>\"");
+    let description = description(&text);
+    let model = description.model().unwrap();
+    assert!(table::csv(&model).contains("\"'=W,<b>\""));
+    let page = table::html("A & B", &model, &draw::svg(&description.station, &model));
+    assert!(page.contains("=W,&lt;b&gt;") && !page.contains("<b>") && page.contains("A &amp; B"));
+    assert!(!page.contains("<script") && !page.contains("http://") | page.contains("http://www.w3.org/2000/svg"));
+}
+
+#[test]
+fn the_page_has_a_row_and_a_column_for_everything() {
+    let model = description(LOOP).model().unwrap();
+    let page = table::html("Loop", &model, "");
+    for id in ["routes", "points", "circuits", "conflicts", "derived"] {
+        assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
+    }
+    for (number, route) in model.routes.iter().enumerate() {
+        assert_eq!(page.matches(&format!("<th scope=\"row\">{}</th>", route.name)).count(), 4, "route {number}");
+    }
+}
+
+/// Every circuit, point, signal, segment and platform is named in the drawing, and nothing leaves the sheet.
+#[test]
+fn the_drawing_names_everything() {
+    for text in
+        [LOOP, TERMINUS, include_str!("../../layouts/junction.toml"), include_str!("../../layouts/station-30.toml")]
+    {
+        let description = description(text);
+        let model = description.model().unwrap();
+        let svg = draw::svg(&description.station, &model);
+        let document = roxmltree::Document::parse(&svg).unwrap();
+        let texts: Vec<&str> = document
+            .descendants()
+            .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+            .filter_map(|node| node.text())
+            .collect();
+        let circuits = model.circuits.iter().map(|circuit| &circuit.name);
+        let points = model.points.iter().map(|point| &point.name);
+        let signals = model.routes.iter().map(|route| &route.signal);
+        let segments = model.segments.iter().map(|segment| &segment.name);
+        let platforms = description.station.platforms.iter().map(|platform| &platform.name);
+        for name in circuits.chain(points).chain(signals).chain(segments).chain(platforms) {
+            assert!(texts.contains(&name.as_str()), "{name} is not in the drawing of {}", description.station.name);
+        }
+        let width: i32 = document.root_element().attribute("width").unwrap().parse().unwrap();
+        for line in document.descendants().filter_map(|node| node.attribute("points")) {
+            for corner in line.split(' ') {
+                let x: i32 = corner.split(',').next().unwrap().parse().unwrap();
+                assert!((0..width).contains(&x), "{corner}");
+            }
+        }
+    }
+}
