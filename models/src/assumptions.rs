@@ -150,4 +150,65 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         text: "The train is told of the kind of line in the cycle in which its nose passes the border.",
         without: "Missing telegrams are taken for normal, and the train runs on its code past the stopping point.",
     },
+    Assumption {
+        id: "loss-of-shunt-within-clear",
+        text: "No occupied circuit is reported clear for as many cycles in a row as it must be to count as clear.",
+        without: "The next train is let in to a train that has been lost.",
+    },
+    Assumption {
+        id: "approach-covers-braking",
+        text: "The approach of a route covers every circuit from which a train that has seen its proceed aspect, or has it in its telegram, cannot stop before \
+               the signal any more, and what it runs in the age of a telegram and in the longest time without being reported.",
+        without: "The route is released at once under such a train: a point moves under it, or it meets another.",
+    },
+    Assumption {
+        id: "release-covers-residual-running",
+        text: "A train that cannot stop any more has passed the signal before the release time is over.",
+        without: "The route is released before the train has come, and a point moves under it.",
+    },
+    Assumption {
+        id: "overlap-covers-sliding",
+        text: "A train that does not stop in time comes to a stand within the overlap, and before the stay time is over.",
+        without: "Two trains that slide meet beyond their signals, or a point in the overlap moves under one.",
+    },
+    Assumption {
+        id: "flank-complete",
+        text: "A route needs every point that keeps a sliding train off its path in the position that does so.",
+        without: "A train that slides past a signal runs into the side of another.",
+    },
+    Assumption {
+        id: "fouling-declared",
+        text: "Routes that foul each other without a circuit or a point in common are declared to conflict.",
+        without: "Both are held together, and their trains meet.",
+    },
+    Assumption {
+        id: "path-complete",
+        text: "The path of a route has every circuit that its train runs over, in order, as far as the next signal.",
+        without: "A train is let in where another one stands.",
+    },
+    Assumption {
+        id: "points-detect-truly",
+        text: "A point is reported in a position only while it is at rest there.",
+        without: "A train runs over a point that moves.",
+    },
+    Assumption {
+        id: "points-leave-while-driven",
+        text: "A point leaves its position only in a cycle after one in which it is driven: not later.",
+        without: "A route finds the point in position and shows proceed, and the point moves under its train.",
+    },
+    Assumption {
+        id: "trains-obey-signals",
+        text: "Trains obey the signals; on plain line, where there are none, they keep to their telegrams.",
+        without: "Trains meet in the station.",
+    },
+    Assumption {
+        id: "neighbour-turns-alike",
+        text: "The neighbouring station permits this one to send only while it does not send itself, and turns as this one does.",
+        without: "Both stations send into the line.",
+    },
+    Assumption {
+        id: "turn-outlasts-telegrams",
+        text: "The turn time is longer than the telegrams between the stations live.",
+        without: "An old permission is read after it was withdrawn, and both stations send.",
+    },
 ];

@@ -8,6 +8,7 @@ use crate::line::{COARSE, DEFAULT, EARLY, FINE, LATE, Line, SHORTEST};
 use atc_kernel::aspect::Acceptance;
 
 mod block;
+mod interlocking;
 mod permitted;
 mod reception;
 
@@ -19,6 +20,7 @@ pub fn catalogue() -> Vec<Entry> {
     entries.extend(bursts());
     entries.extend(block::entries());
     entries.extend(permitted::entries());
+    entries.extend(interlocking::entries());
     entries
 }
 

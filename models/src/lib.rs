@@ -12,6 +12,7 @@
 //! | [`bursts`] | how few bursts keep a stale aspect displayed for ever |
 //! | [`block`] | trains, tails, borders and faults of block counting |
 //! | [`permitted`] | the permitted speed: two kinds of line, lost and old telegrams, distances |
+//! | [`interlocking`] | stations with trains, points, dispatchers and staff; two stations and the line between them |
 //! | [`spin`] | the second opinion: models in Promela, searched by SPIN |
 //! | [`replay`] | what the models of aspect acceptance have in common, and their traces |
 //! | [`claimed`] | the machine as claimed by the patent, to compare with |
@@ -27,6 +28,7 @@ mod catalogue;
 mod check;
 pub mod claimed;
 pub mod comparison;
+pub mod interlocking;
 pub mod interruption;
 pub mod line;
 mod outcome;

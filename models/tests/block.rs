@@ -1,5 +1,7 @@
 //! Block counting: the cut sets twice, what single faults do, traces, and wrong machines that must turn a claim red.
 
+mod common;
+
 use atc_kernel::Machine;
 use atc_kernel::block::{
     Beyond as Exit, Block, Hold, Input, Line, LineInput, LineOutput, LineState, Output, Parts, SectionSet, State,
@@ -12,7 +14,8 @@ use atc_models::block::device::{Counting, Real};
 use atc_models::block::fault::{Faults, Kind};
 use atc_models::block::lines::{Lining, RealLine};
 use atc_models::block::single::{Beyond, Single};
-use atc_models::{About, Entry, Limits, Outcome, Subject, Trace, Verdict, catalogue, check};
+use atc_models::{Limits, Outcome, Subject, Trace, Verdict, catalogue, check};
+use common::outcome;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -183,18 +186,6 @@ impl Counting for Wrong {
             _ => (next, output),
         }
     }
-}
-
-fn outcome<S: Subject>(model: S) -> Outcome {
-    let about = About {
-        name: "wrong",
-        statement: String::new(),
-        requirements: &[],
-        environment: String::new(),
-        in_force: &[],
-        lifted: &[],
-    };
-    check(&Entry::new(about, model), 1)
 }
 
 #[track_caller]

@@ -1,5 +1,7 @@
 //! Every model of the catalogue: its expectations, its size, its names and its traces.
 
+mod unique_states;
+
 use atc_kernel::aspect::{Acceptance, AspectSet, State, Times, TimesMs, step};
 use atc_kernel::time::Millis;
 use atc_models::assumptions::ASSUMPTIONS;
@@ -15,108 +17,7 @@ use std::collections::{BTreeSet, HashSet};
 use std::hash::Hash;
 use std::sync::LazyLock;
 use std::time::Duration;
-
-/// Unique states of every model. A change here is a change of the kernel or of a model, and wants a reason.
-const UNIQUE_STATES: &[(&str, usize)] = &[
-    ("any-detections", 3_307),
-    ("any-detections-late", 1_159),
-    ("any-detections-early", 946),
-    ("any-detections-shortest", 27),
-    ("any-detections-fine", 90_072),
-    ("any-detections-three", 25_054),
-    ("any-detections-three-late", 33_537),
-    ("interruption", 58_464),
-    ("interruption-coarse", 123),
-    ("interruption-late", 86),
-    ("interruption-early", 83),
-    ("exposure", 11_017),
-    ("exposure-fine", 3_612),
-    ("exposure-late", 18_534),
-    ("exposure-three", 182_404),
-    ("exposure-spaced-bursts", 2_135),
-    ("exposure-spaced-bursts-fine", 27_771),
-    ("exposure-spaced-bursts-late", 135_144),
-    ("exposure-spaced-bursts-early", 54_879),
-    ("change-heard", 50),
-    ("change-interrupted", 3_683),
-    ("stale-bursts", 23_908),
-    ("stale-bursts-late", 121_548),
-    ("misread-short", 157),
-    ("misread-in-recovery", 2_162),
-    ("misread", 2_616),
-    ("burst-loops", 12_498),
-    ("burst-loops-conventional", 33_347),
-    ("burst-loops-late", 2_503),
-    ("burst-loops-early", 1_168),
-    ("burst-schedule", 541_890),
-    ("block-3x2", 101),
-    ("block-4x2", 132),
-    ("block-3x3", 255),
-    ("block-fault-3x2", 2_273),
-    ("block-fault-4x2", 3_271),
-    ("block-fault-3x3", 6_484),
-    ("block-fault-5x3", 16_129),
-    ("block-fault-long-trains", 4_166),
-    ("block-two-faults", 20_484),
-    ("block-two-faults-4x2", 33_610),
-    ("block-two-faults-3x3", 60_930),
-    ("block-no-hold", 6),
-    ("block-no-comparison", 2_329),
-    ("block-close-entries", 2_245),
-    ("block-close-entries-one-fault", 720),
-    ("block-dead-transmitter", 440),
-    ("block-split-train", 380),
-    ("block-reversing-over-entry", 2_863),
-    ("block-reversing-over-exit", 460),
-    ("block-power-loss", 2_273),
-    ("block-standing-silent", 420),
-    ("block-standing-loud", 436),
-    ("block-standing-silent-phantom", 1_485),
-    ("block-standing-loud-missed", 1_455),
-    ("border", 2_551),
-    ("border-fault", 211_404),
-    ("border-fault-heard-twice", 211_434),
-    ("border-check-out-first", 2_750),
-    ("border-fault-check-out-first", 189_568),
-    ("border-reset-while-crossing", 39_952),
-    ("border-check-out-first-on-not-counting", 12_083),
-    ("border-check-out-first-on-disagreement", 12_280),
-    ("border-unheard-phantom", 12_958),
-    ("border-unheard-on-disagreement", 2_779),
-    ("border-detected-late-missed", 12_506),
-    ("border-detected-early-missed", 10_026),
-    ("permitted-lines", 18_444),
-    ("permitted-lines-not-told", 40_275),
-    ("permitted-lines-conventional", 253),
-    ("permitted-loss", 18_269),
-    ("permitted-withdrawn", 101_454),
-    ("permitted-withdrawn-at-once", 68_790),
-    ("permitted-restriction", 2_498),
-    ("permitted-restriction-at-once", 2_202),
-    ("permitted-sub-late-gradient", 13_868),
-    ("permitted-sub-late-gradient-not-worst", 13_868),
-    ("permitted-sub-late-limit", 5_289),
-    ("permitted-sub-late-limit-not-lowest", 5_289),
-    ("permitted-border-no-margin", 2_805),
-    ("permitted-border-fix-of-any-cycle", 2_588),
-    ("permitted-border", 5_354),
-    ("permitted-border-delayed-no-margin", 6_115),
-    ("permitted-border-mixed", 2_684),
-    ("permitted-border-mixed-fix-ahead", 13_188),
-    ("permitted-border-limit", 1_224),
-    ("permitted-border-limit-at-once", 1_224),
-    ("permitted-odometer", 1_536),
-    ("permitted-odometer-short", 2_114),
-    ("permitted-position", 18_488),
-    ("permitted-frozen", 15_058),
-    ("permitted-frozen-at-once", 14_514),
-    ("permitted-alternating", 40_065),
-    ("permitted-alternating-life-alone", 34_059),
-    ("permitted-alternating-run-1", 50_519),
-    ("permitted-looping-run-2", 19_195),
-    ("permitted-wrap", 124_523),
-    ("permitted-wrap-at-once", 119_317),
-];
+use unique_states::UNIQUE_STATES;
 
 static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
     let checks = catalogue().into_iter().map(|entry| std::thread::spawn(move || check(&entry, 1)));
@@ -169,7 +70,7 @@ fn names_are_unique_and_assumptions_are_known() {
 }
 
 fn is_requirement(id: &str) -> bool {
-    ["ACC-", "BLK-", "PER-"].iter().any(|part| id.starts_with(part))
+    ["ACC-", "BLK-", "PER-", "ILK-"].iter().any(|part| id.starts_with(part))
 }
 
 #[test]

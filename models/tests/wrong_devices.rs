@@ -1,5 +1,7 @@
 //! Wrong devices in the place of the kernel's: each must turn the property red that is there to find it.
 
+mod common;
+
 use atc_kernel::Machine;
 use atc_kernel::aspect::{Acceptance, AspectSet, Display, Parts, State, Times, step};
 use atc_kernel::time::Ticks;
@@ -10,7 +12,8 @@ use atc_models::line::{COARSE, EARLY, LATE, Line};
 use atc_models::reception::claims::{Bound, Purpose};
 use atc_models::reception::{Environment, Ground, Longest, Reception};
 use atc_models::train::Device;
-use atc_models::{About, Entry, Outcome, Subject, Verdict, check};
+use atc_models::{Outcome, Verdict};
+use common::outcome;
 
 /// The kernel's machine with a defect.
 #[derive(Clone, Debug)]
@@ -104,18 +107,6 @@ impl<const DEFECT: u8, const N: usize> Device for Wrong<DEFECT, N> {
     fn credited(&self, state: &State<N>) -> AspectSet {
         AspectSet::from_bits(state.parts().credited)
     }
-}
-
-fn outcome<S: Subject>(model: S) -> Outcome {
-    let about = About {
-        name: "wrong",
-        statement: String::new(),
-        requirements: &[],
-        environment: String::new(),
-        in_force: &[],
-        lifted: &[],
-    };
-    check(&Entry::new(about, model), 1)
 }
 
 /// The outcome is complete, not ok, and `property` has `verdict`; a failure comes with a trace.

@@ -7,7 +7,7 @@ use std::hash::Hash;
 use std::time::Instant;
 
 /// Every reachable state, and the steps between them.
-pub(super) struct Graph<T, A> {
+pub(crate) struct Graph<T, A> {
     /// The states, in the order in which they were found.
     pub states: Vec<T>,
     /// How each was found first: the state before, and the step.
@@ -19,7 +19,7 @@ pub(super) struct Graph<T, A> {
 impl<T: Copy + Eq + Hash, A: Clone> Graph<T, A> {
     /// Searches from `initial`; stops early at a state that is a `goal`, which is then the last one. `None`: the limits were
     /// reached first.
-    pub(super) fn explore(
+    pub(crate) fn explore(
         initial: impl IntoIterator<Item = T>,
         limits: Limits,
         next: impl Fn(&T) -> Vec<(A, T)>,
@@ -63,7 +63,7 @@ impl<T: Copy + Eq + Hash, A: Clone> Graph<T, A> {
     }
 
     /// The shortest way to the state found last.
-    pub(super) fn path_to_last(&self) -> Vec<(T, Option<A>)> {
+    pub(crate) fn path_to_last(&self) -> Vec<(T, Option<A>)> {
         let mut path = Vec::new();
         let mut place = self.states.len().checked_sub(1).map(|last| (last, None));
         while let Some((number, step)) = place {
@@ -75,7 +75,7 @@ impl<T: Copy + Eq + Hash, A: Clone> Graph<T, A> {
     }
 
     /// For each state whether a state that is a `goal` can be reached from it.
-    pub(super) fn can_reach(&self, goal: impl Fn(&T) -> bool) -> Vec<bool> {
+    pub(crate) fn can_reach(&self, goal: impl Fn(&T) -> bool) -> Vec<bool> {
         let mut before = vec![Vec::new(); self.states.len()];
         for (number, after) in self.after.iter().enumerate() {
             for next in after {

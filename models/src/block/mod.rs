@@ -14,7 +14,7 @@ pub mod border;
 pub mod cut_sets;
 pub mod device;
 pub mod fault;
-mod graph;
+pub(crate) mod graph;
 pub mod lines;
 mod modes;
 pub mod single;

@@ -1,0 +1,30 @@
+//! Models of the interlocking: trains, points, dispatchers and staff on small stations, with the kernel's machine
+//! `atc_kernel::interlocking` against the ground truth.
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`ground`] | the tracks as they really are: circuits, points, signals; arithmetic of its own, none of the kernel's |
+//! | [`stations`] | a passing loop, a junction, a crossing, a terminus, and their layouts |
+//! | [`device`] | the machine in a model |
+//! | [`environment`] | what may happen |
+//! | [`train`] | how trains move |
+//! | [`yard`] | the model: trains, points, requests, and the kernel |
+//! | `state` | what it remembers |
+//! | `claims` | what is claimed of it |
+//! | `progress` | the states from which not every train can arrive any more |
+//! | `trace` | a path as a run of the kernel |
+//! | [`neighbours`] | two stations that turn the line between them |
+
+mod claims;
+pub mod device;
+pub mod environment;
+pub mod ground;
+pub mod neighbours;
+mod progress;
+mod state;
+pub mod stations;
+mod trace;
+pub mod train;
+pub mod yard;
+
+pub use claims::{Purpose, Sight};

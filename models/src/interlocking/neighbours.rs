@@ -1,0 +1,256 @@
+//! Two stations that turn the line between them, each with the kernel's device, and the telegrams between them.
+//!
+//! In every cycle each station sends whether it permits the other to send trains; a telegram arrives in any later cycle until its life is
+//! over, or never, and in any order. Each station commands either direction, or nothing. While a station has the direction away, it sends a
+//! train; the line is then occupied for both until the train has left it.
+
+use super::stations::circuits;
+use crate::check::{Claim, Subject};
+use crate::outcome::{Step, Trace};
+use atc_kernel::Machine;
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{
+    CircuitSet, Directions, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route, Segment, SegmentId,
+    SegmentSet, State as Kernel, Track, Travel,
+};
+use atc_kernel::time::Ticks;
+use serde_json::json;
+use std::collections::BTreeMap;
+
+/// The longest life of a telegram in a model.
+pub const LONGEST_LIFE: u8 = 4;
+
+type Small = Layout<1, 1, 0, 1>;
+
+/// What a neighbour does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Neighbour {
+    /// It keeps the same protocol: it is the kernel's device.
+    Alike,
+    /// It permits the other one to send whatever its own direction is.
+    PermitsAlways,
+}
+
+/// What a model is there to show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Never do both stations send.
+    Safe,
+    /// Both do, and each of these assumptions excludes it.
+    Hazard(&'static [&'static str]),
+}
+
+/// The model.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    /// The turn time of both stations, in cycles.
+    pub turn: u16,
+    /// For how many cycles after it was sent a telegram may still be read, up to [`LONGEST_LIFE`]; 0: only in the cycle after.
+    pub life: u8,
+    /// What the second station does.
+    pub neighbour: Neighbour,
+    /// What the model is there to show.
+    pub purpose: Purpose,
+}
+
+/// Two stations, what is on its way between them, and the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct State {
+    /// The directions of both stations.
+    pub directions: [Directions<1>; 2],
+    /// For each station the permissions that it has sent, the newest first: a bit for each cycle.
+    pub sent: [u8; 2],
+    /// Whether a train is on the line.
+    pub train: bool,
+    /// A train is on the line, and both stations send, or the other one did when it was sent.
+    pub against: bool,
+}
+
+/// One cycle: what each station is commanded, and which permission it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cycle {
+    /// The command at each station.
+    pub commands: [Option<Travel>; 2],
+    /// Whether each station reads the other's permission.
+    pub consent: [bool; 2],
+    /// Whether a train is on the line after it.
+    pub train: bool,
+}
+
+impl Pair {
+    fn layout(&self) -> Small {
+        let mut plan = Plan::EMPTY;
+        plan.routes = [Route::NONE];
+        plan.segments = [Segment { circuits: [circuits(1)], length: 1, throat: CircuitSet::EMPTY }];
+        plan.lengths[0] = Metres(100);
+        plan.braking[0] = Metres(0);
+        plan.clear = 1;
+        plan.turn = Ticks(self.turn);
+        Layout::new(plan).expect("a layout that keeps every rule")
+    }
+
+    fn input(cycle: Cycle, station: usize) -> Input {
+        let turn = |travel| Request::Turn(SegmentId::ZERO, travel);
+        Input {
+            occupied: circuits(u8::from(cycle.train)),
+            detected: Positions::NONE,
+            request: cycle.commands[station].map(turn),
+            orders: Orders::default(),
+            consent: SegmentSet::nth(0).only_if(cycle.consent[station]),
+        }
+    }
+
+    fn kernel(layout: &Small, directions: Directions<1>) -> Kernel<1, 1> {
+        let mut state = layout.initial();
+        state.track = Track::from_parts([1; MAX_CIRCUITS]);
+        state.works.blocked = CircuitSet::EMPTY;
+        state.directions = directions;
+        state
+    }
+
+    /// The state and the output before the model begins, after a cycle in which everything is clear and unblocked.
+    fn begin(layout: &Small) -> Kernel<1, 1> {
+        let orders = Orders { unblock: CircuitSet::ALL, ..Orders::default() };
+        let input = Input {
+            occupied: CircuitSet::EMPTY,
+            detected: Positions::NONE,
+            request: None,
+            orders,
+            consent: SegmentSet::EMPTY,
+        };
+        layout.cycle(layout.initial(), input).0
+    }
+
+    /// Whether a station has the direction away from it.
+    fn sends(directions: Directions<1>) -> bool {
+        !directions.away.is_empty()
+    }
+}
+
+impl Subject for Pair {
+    type State = State;
+    type Action = Cycle;
+
+    fn initial(&self) -> Vec<State> {
+        let directions = Self::begin(&self.layout()).directions;
+        vec![State { directions: [directions; 2], sent: [0; 2], train: false, against: false }]
+    }
+
+    fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
+        if state.against {
+            return;
+        }
+        let commands = [None, Some(Travel::Toward), Some(Travel::Away)];
+        let read =
+            |sender: usize| -> &'static [bool] { if state.sent[sender] == 0 { &[false] } else { &[false, true] } };
+        let trains: &[bool] = match (state.train, state.directions.into_iter().any(Self::sends)) {
+            (false, false) => &[false],
+            _ => &[false, true],
+        };
+        for first in commands {
+            for second in commands {
+                for by_first in read(1) {
+                    for by_second in read(0) {
+                        cycles.extend(trains.iter().map(|train| Cycle {
+                            commands: [first, second],
+                            consent: [*by_first, *by_second],
+                            train: *train,
+                        }));
+                    }
+                }
+            }
+        }
+    }
+
+    fn next(&self, state: &State, cycle: &Cycle) -> Option<State> {
+        let layout = self.layout();
+        let mut after = State { train: cycle.train, ..*state };
+        let living = u8::MAX >> (7 - self.life);
+        for station in 0..2 {
+            let before = Self::kernel(&layout, state.directions[station]);
+            let (next, output) = layout.cycle(before, Self::input(*cycle, station));
+            after.directions[station] = next.directions;
+            let always = station == 1 && self.neighbour == Neighbour::PermitsAlways;
+            let permits = always || !output.permits.is_empty();
+            after.sent[station] = (state.sent[station] << 1 | u8::from(permits)) & living;
+        }
+        after.against = after.directions.into_iter().all(Self::sends);
+        Some(after)
+    }
+
+    fn claims(&self) -> Vec<Claim<Self>> {
+        let mut claims = vec![
+            Claim::<Self>::always("valid", "both devices' states keep their invariant", |m, s| {
+                s.directions.iter().all(|directions| directions.is_valid(Ticks(m.turn)))
+            }),
+            Claim::<Self>::sometimes("first-sends", "the first station sends", |_, s| Self::sends(s.directions[0])),
+            Claim::<Self>::sometimes("train", "a train is on the line", |_, s| s.train),
+        ];
+        match self.purpose {
+            Purpose::Safe => {
+                claims.push(Claim::<Self>::always(
+                    "never-both-away",
+                    "never do both stations send into the line",
+                    |_, s| !s.against,
+                ));
+                claims.push(Claim::<Self>::sometimes("second-sends", "the second station sends", |_, s| {
+                    Self::sends(s.directions[1])
+                }));
+            }
+            Purpose::Hazard(excluded_by) => claims.push(Claim::<Self>::hazard(
+                "both-away",
+                "both stations send into the line",
+                excluded_by,
+                |_, s| s.against,
+            )),
+        }
+        claims
+    }
+
+    fn parameters(&self) -> String {
+        format!(
+            "two stations, one line of one circuit; turn time {} cycles, telegrams live for {} cycles",
+            self.turn, self.life
+        )
+    }
+
+    /// The run of the first station's kernel, from the cycle on in which it has been unblocked. The further words of a step: what the second one does.
+    fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
+        let layout = self.layout();
+        let mut state = Self::begin(&layout);
+        let mut steps = Vec::new();
+        let word = |directions: Directions<1>| {
+            if Self::sends(directions) {
+                "away"
+            } else if directions.toward.is_empty() {
+                "none"
+            } else {
+                "toward"
+            }
+        };
+        for (place, (_, cycle)) in path.iter().enumerate() {
+            let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
+            let (next, output) = layout.cycle(state, Self::input(*cycle, 0));
+            state = next;
+            let travel = |command: Option<Travel>| {
+                command
+                    .map(|travel| json!({"turn": "S0", "to": if travel == Travel::Toward { "toward" } else { "away" }}))
+            };
+            let occupied: &[&str] = if cycle.train { &["line"] } else { &[] };
+            let consent: &[&str] = if cycle.consent[0] { &["S0"] } else { &[] };
+            let permits: &[&str] = if output.permits.is_empty() { &[] } else { &["S0"] };
+            let words = BTreeMap::from([
+                ("direction".to_owned(), json!(word(after.directions[0]))),
+                ("neighbour_command".to_owned(), json!(travel(cycle.commands[1]))),
+                ("neighbour_consent".to_owned(), json!(cycle.consent[1])),
+                ("neighbour_direction".to_owned(), json!(word(after.directions[1]))),
+                ("hazard".to_owned(), json!(after.against)),
+            ]);
+            let input = json!({"occupied": occupied, "request": travel(cycle.commands[0]), "consent": consent});
+            let answer = output.answer.map(|answer| if answer.is_ok() { "accepted" } else { "refused" });
+            steps.push(Step { input, output: json!({"permits": permits, "answer": answer}), words });
+        }
+        let config = json!({"station": "line", "circuits": ["line"], "turn_cycles": self.turn, "clear_cycles": 1});
+        Trace { machine: "interlocking".to_owned(), config, steps, loop_start: None }
+    }
+}

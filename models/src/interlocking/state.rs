@@ -1,0 +1,135 @@
+//! What a model of a station remembers, and one cycle of it.
+
+use super::environment::TRAINS;
+use super::ground::Blade;
+use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circuits};
+use super::train::{Fate, Train};
+use atc_kernel::interlocking::{
+    self as kernel, CircuitSet, Directions, Input, Positions, RouteState, SpeedCode, Track, Works,
+};
+
+/// The machine's state, without what never changes in a model and without the number of the cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Kept {
+    /// Cycles for which each circuit has been reported clear.
+    pub clear_for: [u8; CIRCUITS],
+    /// The routes.
+    pub routes: [RouteState; ROUTES],
+    /// The segments.
+    pub directions: Directions<SEGMENTS>,
+    /// The blocked circuits: a mask.
+    pub blocked: u8,
+    /// The blocks that staff may rely on: a mask.
+    pub confirmed: u8,
+    /// The circuits that are restricted to [`RESTRICTED`]: a mask.
+    pub restricted: u8,
+}
+
+/// The speed code of a restriction.
+pub const RESTRICTED: SpeedCode = SpeedCode(1);
+
+/// A mask of the first circuits of a set.
+pub(super) const fn mask(set: CircuitSet) -> u8 {
+    set.bits().to_le_bytes()[0]
+}
+
+impl Kept {
+    /// Takes down what may change.
+    pub fn of(state: &kernel::State<ROUTES, SEGMENTS>) -> Self {
+        let all = state.track.clear_for();
+        let code = |circuit: usize| state.works.restrictions[circuit] <= RESTRICTED;
+        Self {
+            clear_for: std::array::from_fn(|circuit| all[circuit]),
+            routes: state.routes,
+            directions: state.directions,
+            blocked: mask(state.works.blocked),
+            confirmed: mask(state.works.confirmed),
+            restricted: (0..CIRCUITS).filter(|circuit| code(*circuit)).fold(0, |set, circuit| set | 1 << circuit),
+        }
+    }
+
+    /// The machine's state, in cycle 0.
+    pub fn kernel(&self, layout: &Small) -> kernel::State<ROUTES, SEGMENTS> {
+        let mut clear_for = [layout.plan().clear; kernel::MAX_CIRCUITS];
+        clear_for[..CIRCUITS].copy_from_slice(&self.clear_for);
+        let mut restrictions = [SpeedCode::MOST; kernel::MAX_CIRCUITS];
+        for (circuit, code) in restrictions.iter_mut().enumerate().take(CIRCUITS) {
+            if self.restricted >> circuit & 1 == 1 {
+                *code = RESTRICTED;
+            }
+        }
+        kernel::State {
+            track: Track::from_parts(clear_for),
+            routes: self.routes,
+            directions: self.directions,
+            works: Works { blocked: circuits(self.blocked), confirmed: circuits(self.confirmed), restrictions },
+            epoch: kernel::Epoch(0),
+        }
+    }
+}
+
+/// What the machine put out, as far as the environment acts on it in the next cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Shown {
+    /// The routes that show proceed: a mask.
+    pub proceed: u8,
+    /// The drives.
+    pub drives: Positions,
+    /// Those of the cycle before, if points may leave after the drive.
+    pub drives_before: Positions,
+    /// The segments that are permitted to the neighbours: a mask.
+    pub permits: u8,
+    /// For each segment the cycles since it was, as far as permissions live.
+    pub since_permit: [u8; SEGMENTS],
+    /// For each signal the cycles since it showed proceed, where trains keep to telegrams: one more than the residual running at most.
+    pub fallen: [u8; SIGNALS],
+}
+
+/// What has gone wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Harm {
+    /// Nothing.
+    None,
+    /// Two trains are in one circuit, or touch.
+    Collision,
+    /// A train ran over a point that did not lead there, or a point moves under it.
+    Derailment,
+    /// A train that keeps to its telegrams passed a signal at stop.
+    Overrun,
+    /// A signal shows proceed over a circuit with a train, or over a point that does not lie right.
+    Proceed,
+    /// A telegram lets a train run over a circuit with another train, or that is granted to another one, or over a point that does not lie right.
+    Authority,
+    /// A train is in a circuit whose block was confirmed to staff.
+    Staff,
+    /// A telegram has a higher speed code than a restriction.
+    Speed,
+}
+
+/// Trains, points, the machine, and what was seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct State {
+    /// The trains.
+    pub trains: [Train; TRAINS],
+    /// The points.
+    pub blades: [Blade; POINTS],
+    /// The machine.
+    pub kept: Kept,
+    /// What it put out.
+    pub shown: Shown,
+    /// What has gone wrong.
+    pub harm: Harm,
+}
+
+/// One logic cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cycle {
+    /// The trains after their moves.
+    pub trains: [Train; TRAINS],
+    /// What became of the worst of them.
+    pub fate: Fate,
+    /// The points after their moves.
+    pub blades: [Blade; POINTS],
+    /// What the machine reads.
+    pub input: Input,
+}

@@ -1,0 +1,166 @@
+//! The junction, the crossing, the terminus and the siding.
+
+use super::{alone, both, checked, circuits, edge, over, plan, positions, route, routes, segment, signal};
+use crate::interlocking::ground::{Edge, Ground, Heading, Signal, Station};
+use Heading::{Down, Up};
+use Position::{Normal, Reverse};
+use atc_kernel::interlocking::{Point, Position, Positions, Route};
+
+/// Circuits of the junction.
+pub mod fork {
+    /// Plain line, the main way in.
+    pub const M: u8 = 0;
+    /// Where both ways join, with point 0.
+    pub const JOIN: u8 = 1;
+    /// Plain line out.
+    pub const E: u8 = 2;
+    /// Plain line, the branch.
+    pub const B: u8 = 3;
+    /// The circuit of point 1, which catches what slides past the branch's signal.
+    pub const TRAP: u8 = 4;
+    /// The sand behind point 1.
+    pub const SAND: u8 = 5;
+}
+
+/// The main route of the junction.
+pub const MAIN: u8 = 0;
+/// The branch's route.
+pub const BRANCH: u8 = 1;
+
+/// A junction: a main way and a branch, each into the same line; the main route asks for the trap as its flank.
+pub fn junction() -> Station {
+    use fork::{B, E, JOIN, M, SAND, TRAP};
+    let ground = Ground {
+        circuits: &["M", "join", "E", "B", "trap", "sand"],
+        edges: vec![
+            over(M, JOIN, Up, 0, Normal),
+            edge(JOIN, E, Up),
+            edge(B, TRAP, Up),
+            Edge { over: [Some((1, Normal)), Some((0, Reverse))], ..edge(TRAP, JOIN, Up) },
+            over(TRAP, SAND, Up, 1, Reverse),
+        ],
+        signals: vec![signal(M, Up, 1 << MAIN), Signal { slide: 2, ..signal(B, Up, 1 << BRANCH) }],
+        points_in: [JOIN, TRAP],
+        fouls: Vec::new(),
+        line: 1 << M | 1 << B | 1 << E,
+        ends: vec![(E, Up)],
+        turning: 0,
+        catching: 1 << TRAP | 1 << SAND | 1 << JOIN,
+    };
+    let mut plan = plan(6);
+    let (main, branch) = (positions(1, 2), positions(0, 1));
+    plan.routes[usize::from(MAIN)] = Route { to: alone(0), ..route(M, &[(JOIN, main)], 1 << E) };
+    plan.routes[usize::from(BRANCH)] =
+        Route { to: alone(0), ..route(B, &[(TRAP, positions(2, 0)), (JOIN, branch)], 1 << E) };
+    plan.points = [Point { detectors: circuits(1 << JOIN) }, Point { detectors: circuits(1 << TRAP) }];
+    plan.segments[0] = segment(E, 1 << JOIN);
+    checked("junction", ground, &plan)
+}
+
+/// Circuits of the crossing.
+pub mod diamond {
+    /// Plain line to `OVER`.
+    pub const A: u8 = 0;
+    /// One track of the crossing.
+    pub const OVER: u8 = 1;
+    /// Plain line from `OVER`.
+    pub const X: u8 = 2;
+    /// Plain line to `UNDER`.
+    pub const B: u8 = 3;
+    /// The other track of the crossing.
+    pub const UNDER: u8 = 4;
+    /// Plain line from `UNDER`.
+    pub const Y: u8 = 5;
+}
+
+/// Two lines that cross on the level, each with a circuit of its own over the crossing.
+pub fn crossing() -> Station {
+    use diamond::{A, B, OVER, UNDER, X, Y};
+    let ground = Ground {
+        circuits: &["A", "over", "X", "B", "under", "Y"],
+        edges: vec![edge(A, OVER, Up), edge(OVER, X, Up), edge(B, UNDER, Up), edge(UNDER, Y, Up)],
+        signals: vec![signal(A, Up, 1), signal(B, Up, 2)],
+        points_in: [OVER, UNDER],
+        fouls: vec![(OVER, UNDER)],
+        line: 1 << A | 1 << B | 1 << X | 1 << Y,
+        ends: vec![(X, Up), (Y, Up)],
+        turning: 0,
+        catching: 0,
+    };
+    let mut plan = plan(6);
+    plan.routes[0] = Route { to: alone(0), conflicts: routes(2), ..route(A, &[(OVER, Positions::NONE)], 1 << X) };
+    plan.routes[1] = Route { to: alone(1), conflicts: routes(1), ..route(B, &[(UNDER, Positions::NONE)], 1 << Y) };
+    plan.segments = [segment(X, 1 << OVER), segment(Y, 1 << UNDER)];
+    checked("crossing", ground, &plan)
+}
+
+/// Circuits of the terminus.
+pub mod end {
+    /// Plain line.
+    pub const L: u8 = 0;
+    /// The throat, with point 0.
+    pub const THROAT: u8 = 1;
+    /// The first platform.
+    pub const ONE: u8 = 2;
+    /// The second platform.
+    pub const TWO: u8 = 3;
+}
+
+/// A terminus: one line, two platforms. Routes 0 and 1 lead into platforms one and two, routes 2 and 3 out of them.
+pub fn terminus() -> Station {
+    use end::{L, ONE, THROAT, TWO};
+    let edges = [edge(L, THROAT, Up), over(THROAT, ONE, Up, 0, Normal), over(THROAT, TWO, Up, 0, Reverse)];
+    let ground = Ground {
+        circuits: &["L", "throat", "one", "two"],
+        edges: both(&edges),
+        signals: vec![signal(L, Up, 0b11), signal(ONE, Down, 0b100), signal(TWO, Down, 0b1000)],
+        points_in: [THROAT, THROAT],
+        fouls: Vec::new(),
+        line: 1 << L,
+        ends: vec![(L, Down)],
+        turning: 1 << ONE | 1 << TWO,
+        catching: 0,
+    };
+    let mut plan = plan(4);
+    for (number, platform, way) in [(0, ONE, positions(1, 0)), (1, TWO, positions(0, 1))] {
+        let path = [(THROAT, way), (platform, Positions::NONE)];
+        plan.routes[number] = Route { from: alone(0), ..route(L, &path, 1 << THROAT) };
+        plan.routes[number + 2] = Route { to: alone(0), ..route(platform, &[(THROAT, way)], 1 << L) };
+    }
+    plan.points[0] = Point { detectors: circuits(1 << THROAT) };
+    plan.segments[0] = segment(L, 1 << THROAT);
+    checked("terminus", ground, &plan)
+}
+
+/// Circuits of the siding.
+pub mod rest {
+    /// Plain line.
+    pub const L: u8 = 0;
+    /// The way in.
+    pub const THROAT: u8 = 1;
+    /// The first half.
+    pub const FIRST: u8 = 2;
+    /// The second half, where trains end.
+    pub const SECOND: u8 = 3;
+}
+
+/// A siding of two circuits, with one route of three places into it and no point.
+pub fn siding() -> Station {
+    use rest::{FIRST, L, SECOND, THROAT};
+    let ground = Ground {
+        circuits: &["L", "throat", "first", "second"],
+        edges: vec![edge(L, THROAT, Up), edge(THROAT, FIRST, Up), edge(FIRST, SECOND, Up)],
+        signals: vec![signal(L, Up, 1)],
+        points_in: [THROAT, THROAT],
+        fouls: Vec::new(),
+        line: 1 << L,
+        ends: vec![(SECOND, Up)],
+        turning: 0,
+        catching: 0,
+    };
+    let mut plan = plan(4);
+    let path = [THROAT, FIRST, SECOND].map(|circuit| (circuit, Positions::NONE));
+    plan.routes[0] = Route { from: alone(0), ..route(L, &path, 1 << FIRST) };
+    plan.segments[0] = segment(L, 1 << THROAT);
+    checked("siding", ground, &plan)
+}
