@@ -1,5 +1,7 @@
 //! `oracle`: the kernel as a reference, on the command line.
 
+mod layout;
+
 use std::fmt;
 use std::fs;
 use std::io::{self, Read as _, Write as _};
@@ -28,6 +30,9 @@ enum Command {
     /// Makes the train control signal as a WAV file, or reads one
     #[command(subcommand)]
     Signal(SignalCommand),
+    /// Checks, imports, tabulates or draws the layout of a station
+    #[command(subcommand)]
+    Layout(layout::LayoutCommand),
     /// Prints the JSON Schema of protocol 1
     Schema,
 }
@@ -93,6 +98,7 @@ enum Failure {
     Serve(io::Error),
     Config(PathBuf, String),
     Signal(String),
+    Layout(atc_layout::Errors),
 }
 
 impl fmt::Display for Failure {
@@ -104,6 +110,7 @@ impl fmt::Display for Failure {
             Self::Serve(error) => write!(f, "the session broke off: {error}"),
             Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
             Self::Signal(reason) => f.write_str(reason),
+            Self::Layout(errors) => write!(f, "{errors}"),
         }
     }
 }
@@ -113,10 +120,16 @@ fn main() -> ExitCode {
         Command::Serve => atc_oracle::serve(io::stdin().lock(), io::stdout().lock()).map_err(Failure::Serve),
         Command::Chart(args) => draw(&args),
         Command::Signal(command) => signal(&command),
+        Command::Layout(command) => layout(command),
         Command::Schema => print(&atc_oracle::schema::text()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        // Each line of these begins with its file and place, as an editor wants it.
+        Err(Failure::Layout(errors)) => {
+            eprintln!("{errors}");
+            ExitCode::FAILURE
+        }
         Err(failure) => {
             eprintln!("oracle: {failure}");
             ExitCode::FAILURE
@@ -168,6 +181,16 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
         // Only a configuration that was named can be wrong.
         SignalError::Config(reason) => Err(Failure::Config(path.unwrap_or(Path::new("-")).to_owned(), reason)),
     })
+}
+
+fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {
+    let done = layout::run(command).map_err(Failure::Layout)?;
+    match &done.output {
+        Some(path) => write(path, &done.text)?,
+        None => print(&done.text)?,
+    }
+    eprint!("{}", done.remarks);
+    Ok(())
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

@@ -8,6 +8,8 @@ use atc_oracle::telegrams::{MainTelegram, SubTelegram};
 use atc_oracle::{Kmh, Metres};
 use serde_json::json;
 
+use crate::session;
+
 /// Which train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Train {
@@ -130,7 +132,7 @@ pub fn drive(train: Train) -> Vec<Moment> {
             analog_km_h: Some(section.code),
             main,
             sub,
-            to_exit_m: (main.is_some() || digital && place < 5).then_some(Metres(exit - at)),
+            to_exit_m: (digital && place < 5).then_some(Metres(exit - at)),
             moved_m: Metres(at - before.0),
             speed_km_h: Some(Kmh(i32::try_from(speed * 36 / 1000).expect("a speed"))),
         };
@@ -153,16 +155,16 @@ fn drive_at(speed: i64, permitted: i64) -> i64 {
     if speed > aim { (speed - change).max(aim.min(speed)).max(0) } else { (speed + change).min(aim) }
 }
 
-/// The case of a drive, as request lines.
+/// A drive as request lines: the start, and the steps.
 ///
 /// # Panics
 /// Never: all of it is plain data.
+pub fn case(train: Train) -> (String, String) {
+    let steps = drive(train).into_iter().map(|moment| serde_json::to_string(&moment.step).expect("plain data"));
+    session::case("permitted-speed", &json!({"cycle_ms": CYCLE_MS}), steps)
+}
+
+/// The same from the start to the stop.
 pub fn lines(train: Train) -> String {
-    let config = json!({"cycle_ms": CYCLE_MS});
-    let start = json!({"start": {"protocol": 1, "machine": "permitted-speed", "config": config}});
-    let steps = drive(train).into_iter().map(|moment| {
-        let step = serde_json::to_string(&moment.step).expect("plain data");
-        format!("{{\"step\":{step}}}\n")
-    });
-    std::iter::once(format!("{start}\n")).chain(steps).chain(["{\"stop\":{}}\n".to_owned()]).collect()
+    session::whole(&case(train))
 }

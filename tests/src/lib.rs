@@ -1,11 +1,17 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
-//! is checked against, and the input of the benchmarks.
+//! is checked against, sessions and drawn charts, trains under way, and the input of the benchmarks.
 
 pub mod approach;
 pub mod block_chart;
+pub mod busy_station;
 pub mod device;
+pub mod drawing;
 pub mod ground;
+pub mod passing_loop;
 pub mod reception;
+pub mod session;
+pub mod sketch;
+pub mod station_chart;
 pub mod timing_chart;
 pub mod traffic;
 pub mod workload;

@@ -4,8 +4,6 @@ use atc_kernel::Machine as _;
 use atc_kernel::permitted::{self, Heard, Permission, Permitted};
 use atc_kernel::position::{self, Interval, Measured, Position};
 use atc_kernel::telegram::{Deframer, FRAME_BITS, Reception, Telegram, encode};
-use atc_oracle::machine::permitted::Step;
-use serde_json::json;
 
 use crate::{approach, ground};
 
@@ -83,12 +81,6 @@ pub fn run_deframer(count: u64) -> u64 {
 }
 
 /// The permitted speed's input as lines of the protocol: the start, and one period of steps.
-///
-/// # Panics
-/// Never: all of it is plain data.
 pub fn lines() -> (String, String) {
-    let config = json!({"cycle_ms": ground::CYCLE_MS});
-    let start = json!({"start": {"protocol": 1, "machine": "permitted-speed", "config": config}});
-    let line = |step: Step| format!("{{\"step\":{}}}\n", serde_json::to_string(&step).expect("plain data"));
-    (format!("{start}\n"), ground::drive(ground::Train::New).into_iter().map(|moment| line(moment.step)).collect())
+    ground::case(ground::Train::New)
 }

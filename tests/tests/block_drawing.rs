@@ -2,25 +2,21 @@
 
 use atc_oracle::chart::{self, View};
 use atc_oracle::trace::{Replies, Trace};
+use atc_tests::drawing::{self, titles};
+use atc_tests::session;
 
 const FIGURE_8: &str = include_str!("../../oracle/examples/figure-8.jsonl");
 const EXAMPLES: &str = include_str!("../../oracle/examples/block-count.jsonl");
 
 fn draw(trace: &str, replies: Replies) -> String {
-    chart::svg(&Trace::parse(trace).expect("a trace"), replies, &View::default()).expect("a chart")
-}
-
-/// The bars of a chart, by what their titles say: text, from, to.
-fn bars(svg: &str) -> Vec<String> {
-    let titles = svg.split("<title>").skip(2).filter_map(|rest| rest.split("</title>").next());
-    titles.map(|title| title.replace('\n', "")).collect()
+    drawing::draw(trace, replies, None)
 }
 
 #[test]
-fn figure_8_in_bars() {
+fn figure_8_in_titles() {
     let svg = draw(FIGURE_8, Replies::MustAgree);
     assert_eq!(
-        bars(&svg),
+        titles(&svg),
         [
             "0 verified: accepted: 1000 to 2000 ms",
             "unverified: 0 to 2000 ms",
@@ -56,7 +52,7 @@ fn figure_8_in_bars() {
 /// Two cases: a missed detection, holds and pending check-outs; and faults with refused resets.
 #[test]
 fn the_other_rows_are_drawn_where_they_are_needed() {
-    let bars = bars(&draw(EXAMPLES, Replies::MustAgree));
+    let bars = titles(&draw(EXAMPLES, Replies::MustAgree));
     for bar in [
         "differ 3000 ms: 22000 to 25000 ms",
         "all 3000 ms: 22000 to 25000 ms",
@@ -80,10 +76,7 @@ fn the_other_rows_are_drawn_where_they_are_needed() {
 /// Wrong replies: refused, or drawn in red where they are, each with what the record says.
 #[test]
 fn a_difference_is_refused_or_drawn() {
-    let mut replies = Vec::new();
-    atc_oracle::serve(FIGURE_8.as_bytes(), &mut replies).expect("memory can be read and written");
-    let replies = String::from_utf8(replies).expect("UTF-8");
-    let mut lines: Vec<String> = replies.lines().map(str::to_owned).collect();
+    let mut lines = session::replies(FIGURE_8.as_bytes());
     // Replies 1 to 48 are those of cycles 0 to 47; the train is in section 0 from cycle 3 on.
     assert!(lines[5].contains(r#""occupied":[0]"#), "{}", lines[5]);
     lines[5] = lines[5].replace("[0]", "[1]");
@@ -97,7 +90,7 @@ fn a_difference_is_refused_or_drawn() {
     assert_eq!(error.line, FIGURE_8.lines().count() + 6);
     let svg = draw(&trace, Replies::AsRecorded);
     assert!(svg.contains("THE RECORD DIFFERS FROM THE KERNEL, first at 5000 ms."));
-    let bars = bars(&svg);
+    let bars = titles(&svg);
     assert_eq!(
         bars[bars.len() - 5..],
         [

@@ -5,20 +5,14 @@ use std::sync::LazyLock;
 
 use atc_kernel::block::{Block, Hold, Input, SectionSet, State, TrainCount, step};
 use atc_oracle::machine::block::{Config, Output};
+use atc_tests::session::{self, assert_malformed, converse};
 use atc_tests::{block_chart, device};
 use jsonschema::Validator;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
-/// The replies to these lines.
-fn converse(lines: &[&str]) -> Vec<String> {
-    let mut output = Vec::new();
-    atc_oracle::serve(lines.join("\n").as_bytes(), &mut output).expect("memory can be read and written");
-    String::from_utf8(output).expect("UTF-8").lines().map(str::to_owned).collect()
-}
-
 fn start(config: &str) -> String {
-    format!(r#"{{"start":{{"protocol":1,"machine":"block-count","config":{config}}}}}"#)
+    session::start("block-count", config)
 }
 
 /// A step with everything off and silent but what is said.
@@ -130,10 +124,10 @@ fn every_malformed_start() {
         ("[3,3,0]", "expected an object, found [3,3,0]"),
     ];
     for (config, fragment) in cases {
-        check_malformed(&converse(&[&start(config)])[0], 1, config, fragment);
+        assert_malformed(&converse(&[&start(config)])[0], 1, config, fragment);
     }
     // And each says what would be right.
-    check_malformed(&converse(&[&start("{}")])[0], 1, "{}", &format!("a config of block-count is {CONFIG}"));
+    assert_malformed(&converse(&[&start("{}")])[0], 1, "{}", &format!("a config of block-count is {CONFIG}"));
 }
 
 /// A line in a case, and what its reason must say. None of them changes anything: the outputs after it are as before.
@@ -179,17 +173,9 @@ fn every_malformed_step() {
     let undisturbed = converse(&[&start, &reset, enter, enter, &quiet("")]);
     for (line, fragment) in cases {
         let replies = converse(&[&start, &reset, enter, &line, enter, &quiet("")]);
-        check_malformed(&replies[3], 4, &line, fragment);
+        assert_malformed(&replies[3], 4, &line, fragment);
         assert_eq!([&replies[..3], &replies[4..]].concat(), undisturbed, "{line}");
     }
-}
-
-fn check_malformed(reply: &str, number: u64, line: &str, fragment: &str) {
-    let reply: Value = serde_json::from_str(reply).expect(reply);
-    let reason = reply["malformed"]["reason"].as_str().unwrap_or_else(|| panic!("{line} was answered by {reply}"));
-    assert!(reason.contains(fragment), "{line} was answered by {reason:?}, without {fragment:?}");
-    assert!(reason.starts_with(&format!("line {number}")), "{reason}");
-    assert_eq!(reply["malformed"]["line"].as_u64(), Some(number));
 }
 
 /// The output of another implementation: in its order, without the field that is not asked for, and not with a wrong one.

@@ -2,6 +2,8 @@
 
 use atc_oracle::chart::{self, View};
 use atc_oracle::trace::{Replies, Trace};
+use atc_tests::drawing::{self, titles};
+use atc_tests::session;
 
 const FIGURE_3: &str = include_str!("../../oracle/examples/figure-3.jsonl");
 const FIGURE_6: &str = include_str!("../../oracle/examples/figure-6.jsonl");
@@ -9,21 +11,15 @@ const FIGURE_7: &str = include_str!("../../oracle/examples/figure-7.jsonl");
 const SUPERVISION: &str = include_str!("../../oracle/examples/supervision.jsonl");
 
 fn draw(trace: &str) -> String {
-    chart::svg(&Trace::parse(trace).expect("a trace"), Replies::MustAgree, &View::default()).expect("a chart")
-}
-
-/// The bars of a chart, by what their titles say: text, from, to.
-fn bars(svg: &str) -> Vec<String> {
-    let titles = svg.split("<title>").skip(2).filter_map(|rest| rest.split("</title>").next());
-    titles.map(|title| title.replace('\n', "").replace("&lt;", "<").replace("&gt;", ">")).collect()
+    drawing::draw(trace, Replies::MustAgree, None)
 }
 
 fn assert_bars(svg: &str, expected: &[&str]) {
-    assert_eq!(bars(svg), expected);
+    assert_eq!(titles(svg), expected);
 }
 
 #[test]
-fn figure_3_in_bars() {
+fn figure_3_in_titles() {
     assert_bars(
         &draw(FIGURE_3),
         &[
@@ -38,7 +34,7 @@ fn figure_3_in_bars() {
 }
 
 #[test]
-fn figure_6_in_bars() {
+fn figure_6_in_titles() {
     assert_bars(
         &draw(FIGURE_6),
         &[
@@ -61,7 +57,7 @@ fn figure_6_in_bars() {
 fn figure_7_in_two_panels() {
     let svg = draw(FIGURE_7);
     assert!(svg.contains("case 1") && svg.contains("case 2"));
-    let bars = bars(&svg);
+    let bars = titles(&svg);
     assert!(bars.contains(&"T3: 550 ms of 800: 1000 to 1550 ms".to_owned()), "{bars:?}");
     assert!(bars.contains(&"T3 400 ms: 1000 to 1400 ms".to_owned()), "{bars:?}");
     assert!(bars.contains(&"no display: 1400 to 1550 ms".to_owned()), "{bars:?}");
@@ -86,8 +82,8 @@ fn a_recovery_time_of_one_cycle_is_drawn() {
 }
 
 #[test]
-fn supervision_in_bars() {
-    let bars = bars(&draw(SUPERVISION));
+fn supervision_in_titles() {
+    let bars = titles(&draw(SUPERVISION));
     assert_eq!(bars[..3], ["emergency: 0 to 1 cycles", "release: 1 to 5 cycles", "service: 5 to 8 cycles"]);
 }
 
@@ -107,18 +103,15 @@ fn a_chart_is_safe_to_embed() {
 /// One wrong reply: refused, or drawn in red where it is, and only there.
 #[test]
 fn a_difference_is_refused_or_drawn() {
-    let mut replies = Vec::new();
-    atc_oracle::serve(FIGURE_3.as_bytes(), &mut replies).expect("memory can be read and written");
-    let replies = String::from_utf8(replies).expect("UTF-8");
-    let mut lines: Vec<&str> = replies.lines().collect();
+    let mut lines = session::replies(FIGURE_3.as_bytes());
     assert_eq!(lines[10], r#"{"output":{"display_km_h":45}}"#);
-    lines[10] = r#"{"output":{"display_km_h":null,"note":"more may be said"}}"#;
+    lines[10] = r#"{"output":{"display_km_h":null,"note":"more may be said"}}"#.to_owned();
     let trace = Trace::parse(&format!("{FIGURE_3}{}", lines.join("\n"))).expect("a trace");
     let error = chart::svg(&trace, Replies::MustAgree, &View::default()).expect_err("a difference");
     assert_eq!(error.line, FIGURE_3.lines().count() + 11);
     let svg = chart::svg(&trace, Replies::AsRecorded, &View::default()).expect("a chart");
     assert!(svg.contains("THE RECORD DIFFERS FROM THE KERNEL, first at 500 ms."));
-    let recorded: Vec<_> = bars(&svg).into_iter().rev().take(4).collect();
+    let recorded: Vec<_> = titles(&svg).into_iter().rev().take(4).collect();
     assert_eq!(
         recorded,
         ["45 km/h: 550 to 1850 ms", "no display: 500 to 550 ms", "45 km/h: 300 to 500 ms", "no display: 0 to 300 ms"]

@@ -41,6 +41,7 @@ Commands:
   serve   Answers JSON lines (protocol 1) from standard input on standard output
   chart   Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
   signal  Makes the train control signal as a WAV file, or reads one
+  layout  Checks, imports, tabulates or draws the layout of a station
   schema  Prints the JSON Schema of protocol 1
   help    Print this message or the help of the given subcommand(s)
 

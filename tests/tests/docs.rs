@@ -45,3 +45,9 @@ fn the_picture_of_the_frames_is_current() {
     let title = "Frames of a main and a sub telegram, and a stream with both";
     check("oracle/examples/telegram-codec.jsonl", title, None, "docs/telegram-frames.svg");
 }
+
+#[test]
+fn the_picture_of_the_interlocking_is_current() {
+    let title = "A train through a passing loop";
+    check("oracle/examples/interlocking.jsonl", title, None, "docs/interlocking.svg");
+}

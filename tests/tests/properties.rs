@@ -11,6 +11,7 @@ use atc_kernel::time::{MAX_TICKS, Millis};
 use atc_oracle::Kmh;
 use atc_oracle::machine::aspect::Config;
 use atc_tests::device;
+use atc_tests::session::replies;
 use jsonschema::Validator;
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -22,13 +23,6 @@ fn part(name: &str) -> Validator {
     let mut schema = atc_oracle::schema::schema();
     schema["anyOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
     jsonschema::validator_for(&schema).expect("a schema")
-}
-
-fn replies(input: &[u8]) -> Vec<String> {
-    let mut output = Vec::new();
-    atc_oracle::serve(input, &mut output).expect("memory can be read and written");
-    assert!(output.is_empty() || output.ends_with(b"\n"));
-    String::from_utf8(output).expect("UTF-8").lines().map(str::to_owned).collect()
 }
 
 /// Whatever comes in: one reply for each line, valid by the schema; and what was understood is valid by it as well.

@@ -1,17 +1,7 @@
 //! Protocol 1, line by line: every form that is right, and every way to be wrong with the reason that is given.
 
+use atc_tests::session::{assert_malformed, converse, replies};
 use serde_json::Value;
-
-/// The replies to these lines.
-fn converse(lines: &[&str]) -> Vec<String> {
-    reply_bytes(lines.join("\n").as_bytes())
-}
-
-fn reply_bytes(input: &[u8]) -> Vec<String> {
-    let mut output = Vec::new();
-    atc_oracle::serve(input, &mut output).expect("memory can be read and written");
-    String::from_utf8(output).expect("UTF-8").lines().map(str::to_owned).collect()
-}
 
 const ASPECT: &str = r#"{"start":{"protocol":1,"machine":"aspect-acceptance","config":{"cycle_ms":10,"aspects_km_h":[25,44.9,65,90],"operate_ms":20,"recovery_ms":20,"mask_ms":20,"interruption_ms":30,"shortened_operate_ms":10}}}"#;
 const SUPERVISION: &str =
@@ -223,15 +213,6 @@ fn check_malformed(start: &str, step: &str, cases: &[(&str, &str)]) {
     }
 }
 
-fn assert_malformed(reply: &str, number: u64, line: &str, fragment: &str) {
-    let reply: Value = serde_json::from_str(reply).expect(reply);
-    let malformed = &reply["malformed"];
-    let reason = malformed["reason"].as_str().unwrap_or_else(|| panic!("{line} was answered by {reply}"));
-    assert!(reason.contains(fragment), "{line} was answered by {reason:?}, without {fragment:?}");
-    assert!(reason.starts_with(&format!("line {number}")), "{line} was answered by {reason:?}, without its number");
-    assert_eq!(malformed["line"].as_u64(), Some(number));
-}
-
 /// A start that breaks a rule, and what its reason must say. No case is open after it, and the next start is taken.
 #[test]
 fn every_broken_rule_is_named_with_its_numbers() {
@@ -285,7 +266,7 @@ fn every_broken_rule_is_named_with_its_numbers() {
 
 #[test]
 fn bytes_that_are_not_text_are_malformed() {
-    let replies = reply_bytes(b"{\"stop\":\xff{}}\n\x00\n\xed\xa0\x80\n");
+    let replies = replies(b"{\"stop\":\xff{}}\n\x00\n\xed\xa0\x80\n");
     assert_eq!(replies.len(), 3);
     assert_malformed(&replies[0], 1, "invalid UTF-8", "column 9: this is not UTF-8");
     assert_malformed(&replies[1], 2, "a zero byte", "expected value");
@@ -325,8 +306,8 @@ fn deep_nesting_is_an_answer_and_not_a_crash() {
 
 #[test]
 fn the_last_line_needs_no_newline_and_an_empty_input_has_no_reply() {
-    assert_eq!(reply_bytes(b"").len(), 0);
-    assert_eq!(reply_bytes(b"\n").len(), 1);
-    assert_eq!(reply_bytes(b"{\"stop\":{}}").len(), 1);
-    assert_eq!(reply_bytes(b"{\"stop\":{}}\n").len(), 1);
+    assert_eq!(replies(b"").len(), 0);
+    assert_eq!(replies(b"\n").len(), 1);
+    assert_eq!(replies(b"{\"stop\":{}}").len(), 1);
+    assert_eq!(replies(b"{\"stop\":{}}\n").len(), 1);
 }

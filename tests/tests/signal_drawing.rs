@@ -2,22 +2,13 @@
 
 use atc_oracle::chart::{self, Part, View};
 use atc_oracle::trace::{Replies, Trace};
+use atc_tests::drawing::{draw, titles};
+use atc_tests::session;
 
 const CODEC: &str = include_str!("../../oracle/examples/telegram-codec.jsonl");
 const GROUND: &str = include_str!("../../oracle/examples/speed-pattern.jsonl");
 const POSITION: &str = include_str!("../../oracle/examples/train-position.jsonl");
 const PATTERN: &str = include_str!("../../oracle/examples/braking-pattern.jsonl");
-
-fn draw(trace: &str, replies: Replies, only: Option<Part>) -> String {
-    let view = View { only, ..View::default() };
-    chart::svg(&Trace::parse(trace).expect("a trace"), replies, &view).expect("a chart")
-}
-
-/// The titles of what is drawn: text, place.
-fn titles(svg: &str) -> Vec<String> {
-    let titles = svg.split("<title>").skip(2).filter_map(|rest| rest.split("</title>").next());
-    titles.map(|title| title.replace('\n', "")).collect()
-}
 
 #[test]
 fn the_fields_of_the_frames() {
@@ -108,10 +99,7 @@ fn a_difference_is_refused_or_drawn() {
         (POSITION, 3, "[", "[1", "first at 3 cycles", Some("s1")),
     ];
     for (requests, reply, right, wrong, told, signal) in cases {
-        let mut replies = Vec::new();
-        atc_oracle::serve(requests.as_bytes(), &mut replies).expect("memory can be read and written");
-        let replies = String::from_utf8(replies).expect("UTF-8");
-        let mut lines: Vec<String> = replies.lines().map(str::to_owned).collect();
+        let mut lines = session::replies(requests.as_bytes());
         let changed = lines[reply].replacen(right, wrong, 1);
         assert_ne!(lines[reply], changed);
         lines[reply] = changed;

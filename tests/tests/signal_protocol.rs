@@ -4,35 +4,10 @@
 use std::sync::LazyLock;
 
 use atc_oracle::machine::{permitted, position, telegram};
+use atc_tests::session::{FRAME, MAIN, SUB, converse, position_config, replies, start, step};
 use atc_tests::{approach, device, ground};
 use jsonschema::Validator;
 use serde_json::Value;
-
-/// The replies to these lines.
-fn converse(lines: &[&str]) -> Vec<String> {
-    let mut output = Vec::new();
-    atc_oracle::serve(lines.join("\n").as_bytes(), &mut output).expect("memory can be read and written");
-    String::from_utf8(output).expect("UTF-8").lines().map(str::to_owned).collect()
-}
-
-fn start(machine: &str, config: &str) -> String {
-    format!(r#"{{"start":{{"protocol":1,"machine":"{machine}","config":{config}}}}}"#)
-}
-
-fn step(body: &str) -> String {
-    format!(r#"{{"step":{body}}}"#)
-}
-
-const MAIN: &str = r#"{"section":7,"counter":1,"beyond_exit_m":400,"speed_rank":4}"#;
-const SUB: &str =
-    r#"{"section":7,"counter":1,"length_m":250,"gradient_permille":-12,"curve_rank":6,"restriction_rank":7}"#;
-const FRAME: &str =
-    "0111111111111110010011010000000010000000000000001110000000010100100000111100000000001000000100110111101110";
-const TABLE: &str = r#"{"spacing_m":25.6,"lowest_db":[0,0.5,1,1.5,2,2.5,3,3.5,4,4.5,5,5.5,6,6.5,7,7.5,8],"highest_db":[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]}"#;
-
-fn position_config(more: &str) -> String {
-    format!(r#"{{"table":{TABLE},"tolerance_db":0.1,"floor_db":-60{more}}}"#)
-}
 
 #[test]
 fn a_session_with_the_codec() {
@@ -208,10 +183,10 @@ fn long_sessions_through_the_process() {
     let pattern = include_str!("../../oracle/examples/braking-pattern.jsonl");
     let both = format!("{}{}", ground::lines(ground::Train::New), ground::lines(ground::Train::Conventional));
     for requests in [codec, pattern, &both, &approach::lines()] {
-        let replies = device::converse(device::oracle(), requests.as_bytes().to_vec()).expect("a session");
-        assert_eq!(replies, converse(&requests.lines().collect::<Vec<_>>()));
-        assert_eq!(replies.len(), requests.lines().count());
-        for line in requests.lines().chain(replies.iter().map(String::as_str)) {
+        let said = device::converse(device::oracle(), requests.as_bytes().to_vec()).expect("a session");
+        assert_eq!(said, replies(requests.as_bytes()));
+        assert_eq!(said.len(), requests.lines().count());
+        for line in requests.lines().chain(said.iter().map(String::as_str)) {
             assert!(!line.starts_with("{\"malformed\"") && !line.starts_with("{\"rejected\""), "{line}");
             let value: Value = serde_json::from_str(line).expect("JSON");
             assert!(SCHEMA.is_valid(&value), "{line}");

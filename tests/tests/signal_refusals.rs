@@ -1,33 +1,8 @@
 //! Machines `telegram-codec`, `braking-pattern`, `permitted-speed` and `train-position` of protocol 1: every way to be wrong, with the
 //! reason that is given, and that nothing is disturbed by it.
 
+use atc_tests::session::{FRAME, MAIN, SUB, TABLE, assert_malformed, converse, position_config, start, step};
 use serde_json::{Value, json};
-
-/// The replies to these lines.
-fn converse(lines: &[&str]) -> Vec<String> {
-    let mut output = Vec::new();
-    atc_oracle::serve(lines.join("\n").as_bytes(), &mut output).expect("memory can be read and written");
-    String::from_utf8(output).expect("UTF-8").lines().map(str::to_owned).collect()
-}
-
-fn start(machine: &str, config: &str) -> String {
-    format!(r#"{{"start":{{"protocol":1,"machine":"{machine}","config":{config}}}}}"#)
-}
-
-fn step(body: &str) -> String {
-    format!(r#"{{"step":{body}}}"#)
-}
-
-const MAIN: &str = r#"{"section":7,"counter":1,"beyond_exit_m":400,"speed_rank":4}"#;
-const SUB: &str =
-    r#"{"section":7,"counter":1,"length_m":250,"gradient_permille":-12,"curve_rank":6,"restriction_rank":7}"#;
-const FRAME: &str =
-    "0111111111111110010011010000000010000000000000001110000000010100100000111100000000001000000100110111101110";
-const TABLE: &str = r#"{"spacing_m":25.6,"lowest_db":[0,0.5,1,1.5,2,2.5,3,3.5,4,4.5,5,5.5,6,6.5,7,7.5,8],"highest_db":[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]}"#;
-
-fn position_config(more: &str) -> String {
-    format!(r#"{{"table":{TABLE},"tolerance_db":0.1,"floor_db":-60{more}}}"#)
-}
 
 /// A start that breaks a rule, and what its reason must say. No case is open after it.
 #[test]
@@ -131,9 +106,9 @@ fn every_malformed_start() {
         (position(&position_config("").replace("25.6", "\"25.6\"")), "expected a number of metres, found"),
     ];
     for (line, fragment) in cases {
-        check_malformed(&converse(&[&line])[0], 1, &line, fragment);
+        assert_malformed(&converse(&[&line])[0], 1, &line, fragment);
     }
-    check_malformed(
+    assert_malformed(
         &converse(&[&position("{}")])[0],
         1,
         "{}",
@@ -237,15 +212,7 @@ fn undisturbed(start: &str, before: &str, after: &str, cases: &[(String, &str)])
     for (body, fragment) in cases {
         let line = step(body);
         let replies = converse(&[start, before, &line, after]);
-        check_malformed(&replies[2], 3, &line, fragment);
+        assert_malformed(&replies[2], 3, &line, fragment);
         assert_eq!([&replies[..2], &replies[3..]].concat(), expected, "{line}");
     }
-}
-
-fn check_malformed(reply: &str, number: u64, line: &str, fragment: &str) {
-    let reply: Value = serde_json::from_str(reply).expect(reply);
-    let reason = reply["malformed"]["reason"].as_str().unwrap_or_else(|| panic!("{line} was answered by {reply}"));
-    assert!(reason.contains(fragment), "{line} was answered by {reason:?}, without {fragment:?}");
-    assert!(reason.starts_with(&format!("line {number}")), "{reason}");
-    assert_eq!(reply["malformed"]["line"].as_u64(), Some(number));
 }

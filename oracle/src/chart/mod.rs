@@ -9,6 +9,7 @@ pub mod block;
 mod draw;
 pub mod figure;
 mod ink;
+pub mod interlocking;
 pub mod pattern;
 pub mod permitted;
 pub mod position;
@@ -18,6 +19,7 @@ pub mod telegram;
 mod value;
 mod wave;
 
+use crate::decimal::Metres;
 use crate::trace::{Replies, Trace, TraceError};
 
 /// The chart of one case.
@@ -286,4 +288,16 @@ pub(crate) fn spans<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<(u
 /// The changes of a series of values, as `(at, value)`.
 pub(crate) fn changes<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<(u64, T)> {
     spans(values).into_iter().map(|(from, _, value)| (from, value)).collect()
+}
+
+/// What stands while the cycles run: `first` before the first output, then each from the end of its cycle on.
+pub(crate) fn standing<T>(first: T, outputs: impl ExactSizeIterator<Item = T>) -> impl Iterator<Item = T> {
+    let length = outputs.len();
+    std::iter::once(first).chain(outputs).take(length)
+}
+
+/// A length as it is drawn.
+#[expect(clippy::cast_precision_loss, reason = "a length of 2^53 mm is not drawn")]
+pub(crate) fn metres(length: Metres) -> f64 {
+    length.0 as f64 / 1000.0
 }

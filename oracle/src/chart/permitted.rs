@@ -5,31 +5,15 @@ use atc_kernel::telegram::Route;
 
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
+use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
 use crate::decimal::Metres;
 use crate::kmh::Kmh;
 use crate::machine::permitted::{Basis, Config, LineKind, Output, Permitting, RememberedSub};
 use crate::machine::{Cycle, Machine};
 use crate::names::Named as _;
 
-#[expect(clippy::cast_precision_loss, reason = "a length of 2^53 mm is not drawn")]
-fn metres(length: Metres) -> f64 {
-    length.0 as f64 / 1000.0
-}
-
 fn km_h(speed: Kmh) -> f64 {
     f64::from(speed.0) / 10.0
-}
-
-/// What stands while the cycles run: `first` before the first output, then each from the end of its cycle on.
-fn standing<T: Clone + PartialEq>(first: T, outputs: impl ExactSizeIterator<Item = T>) -> Vec<(u64, u64, T)> {
-    let length = outputs.len();
-    spans(std::iter::once(first).chain(outputs).take(length))
-}
-
-/// The same as changes.
-fn stands<T: Clone + PartialEq>(first: T, outputs: impl ExactSizeIterator<Item = T>) -> Vec<(u64, T)> {
-    standing(first, outputs).into_iter().map(|(from, _, value)| (from, value)).collect()
 }
 
 /// Whether the main and the sub telegram of each cycle were used: then what is remembered is younger after it, or of another
@@ -97,13 +81,13 @@ fn lanes(cycles: &[Cycle<Permitting>]) -> Vec<Lane> {
     let curve = |points: Vec<(u64, Option<f64>)>, tone, scale| Mark::Curve { points, tone, scale };
     let read =
         |speed: fn(&Cycle<Permitting>) -> Option<Kmh>| changes(cycles.iter().map(|cycle| speed(cycle).map(km_h)));
-    let permitted = stands(None, outputs().map(|output| output.speed_km_h.map(km_h)));
+    let permitted = changes(standing(None, outputs().map(|output| output.speed_km_h.map(km_h))));
     let mut speeds =
         vec![curve(permitted, Tone::Limit, scale), curve(read(|cycle| cycle.step.analog_km_h), Tone::Code, scale)];
     if cycles.iter().any(|cycle| cycle.step.speed_km_h.is_some()) {
         speeds.push(curve(read(|cycle| cycle.step.speed_km_h), Tone::Signal, scale));
     }
-    let bases = standing(Basis::Nothing, outputs().map(|output| output.basis)).into_iter();
+    let bases = spans(standing(Basis::Nothing, outputs().map(|output| output.basis))).into_iter();
     let bases = bases.map(|(from, to, basis)| {
         let (tone, text, short) = match basis {
             Basis::Nothing => (Tone::Emergency, "nothing", "–"),
@@ -116,7 +100,7 @@ fn lanes(cycles: &[Cycle<Permitting>]) -> Vec<Lane> {
     });
     let lane = |label: &str, first, height, marks| Lane { label: label.to_owned(), first, height, marks };
     let mut lanes = vec![lane("speed, km/h", true, 150, speeds), lane("rests on", false, 26, bases.collect())];
-    let line = standing(LineKind::Digital, outputs().map(|output| line(output).unwrap_or(LineKind::Digital)));
+    let line = spans(standing(LineKind::Digital, outputs().map(|output| line(output).unwrap_or(LineKind::Digital))));
     if line.iter().any(|span| span.2 == LineKind::Analog) {
         let bars = line.into_iter().map(|(from, to, line)| {
             let tone = if line == LineKind::Digital { Tone::Signal } else { Tone::Blank };
@@ -146,7 +130,12 @@ fn lanes(cycles: &[Cycle<Permitting>]) -> Vec<Lane> {
     let farthest = outputs().filter_map(to_stop).fold(0.0, f64::max);
     if farthest > 0.0 {
         let scale = Scale { bottom: 0.0, top: farthest * 1.1 };
-        lanes.push(lane("to stop, m", true, 90, vec![curve(stands(None, outputs().map(to_stop)), Tone::Limit, scale)]));
+        lanes.push(lane(
+            "to stop, m",
+            true,
+            90,
+            vec![curve(changes(standing(None, outputs().map(to_stop))), Tone::Limit, scale)],
+        ));
     }
     lanes
 }
@@ -230,11 +219,17 @@ fn signals(cycles: &[Cycle<Permitting>]) -> Vec<Signal> {
         Signal { name: "main_used".to_owned(), values: Values::Wire(changes(used.iter().map(|used| used.0))) },
         wire("sub", |cycle| cycle.step.sub.is_some()),
         Signal { name: "sub_used".to_owned(), values: Values::Wire(changes(used.iter().map(|used| used.1))) },
-        real("permitted_km_h", stands(None, outputs().map(|output| output.speed_km_h.map(km_h)))),
-        real("to_stop_m", stands(None, outputs().map(|output| output.state.as_ref()?.to_stop_m.map(metres)))),
+        real("permitted_km_h", changes(standing(None, outputs().map(|output| output.speed_km_h.map(km_h))))),
+        real(
+            "to_stop_m",
+            changes(standing(None, outputs().map(|output| output.state.as_ref()?.to_stop_m.map(metres)))),
+        ),
         Signal {
             name: "basis".to_owned(),
-            values: Values::State(stands("nothing".to_owned(), outputs().map(|output| output.basis.name().to_owned()))),
+            values: Values::State(changes(standing(
+                "nothing".to_owned(),
+                outputs().map(|output| output.basis.name().to_owned()),
+            ))),
         },
     ];
     if cycles.iter().any(|cycle| cycle.step.speed_km_h.is_some()) {

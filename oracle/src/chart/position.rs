@@ -1,18 +1,13 @@
 //! The timing chart of the train's position: the interval as a band, the truth if it is given, its width, and the levels.
 
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
+use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
 use crate::decimal::{Decibels, Metres};
 use crate::machine::position::{Config, Output, Positioned};
 use crate::machine::{Cycle, Machine};
 
 /// An interval in metres.
 type Ends = Option<(f64, f64)>;
-
-#[expect(clippy::cast_precision_loss, reason = "a length of 2^53 mm is not drawn")]
-fn metres(length: Metres) -> f64 {
-    length.0 as f64 / 1000.0
-}
 
 #[expect(clippy::cast_precision_loss, reason = "levels have 16 bits")]
 fn decibels(level: Decibels) -> f64 {
@@ -21,12 +16,6 @@ fn decibels(level: Decibels) -> f64 {
 
 fn ends(output: Output) -> Ends {
     output.interval_m.map(|[nearest, farthest]| (metres(nearest), metres(farthest)))
-}
-
-/// What stands while the cycles run: nothing before the first output, then each from the end of its cycle on.
-fn standing<T: Clone + PartialEq>(values: impl ExactSizeIterator<Item = Option<T>>) -> Vec<(u64, Option<T>)> {
-    let length = values.len();
-    changes(std::iter::once(None).chain(values).take(length))
 }
 
 /// Lays out a case.
@@ -90,12 +79,14 @@ fn lanes(
 ) -> Vec<Lane> {
     let farthest = intervals.iter().flatten().map(|ends| ends.1).chain(truths.iter().flatten().copied());
     let scale = Scale { bottom: 0.0, top: farthest.fold(10.0, f64::max) * 1.05 };
-    let mut place = vec![Mark::Band { points: standing(intervals.iter().copied()), tone: Tone::Detected, scale }];
+    let mut place =
+        vec![Mark::Band { points: changes(standing(None, intervals.iter().copied())), tone: Tone::Detected, scale }];
     if truths.iter().any(Option::is_some) {
-        place.push(Mark::Curve { points: standing(truths.iter().copied()), tone: Tone::Signal, scale });
+        place.push(Mark::Curve { points: changes(standing(None, truths.iter().copied())), tone: Tone::Signal, scale });
     }
     let width = Scale { bottom: 0.0, top: widths.iter().flatten().copied().fold(5.0, f64::max) * 1.1 };
-    let width = Mark::Curve { points: standing(widths.iter().copied()), tone: Tone::Limit, scale: width };
+    let width =
+        Mark::Curve { points: changes(standing(None, widths.iter().copied())), tone: Tone::Limit, scale: width };
     let levels = [|cycle: &Cycle<Positioned>| cycle.step.first_db, |cycle: &Cycle<Positioned>| cycle.step.second_db];
     let heard = levels.iter().flat_map(|level| cycles.iter().filter_map(level)).map(decibels);
     let (least, most) = heard.fold((f64::MAX, f64::MIN), |(least, most), level| (least.min(level), most.max(level)));
@@ -105,7 +96,7 @@ fn lanes(
         let points = changes(cycles.iter().map(level)).into_iter().map(|(at, level)| (at, level.map(decibels)));
         Mark::Curve { points: points.collect(), tone, scale }
     });
-    let unknown = spans(std::iter::once(true).chain(intervals.iter().map(Option::is_none)).take(intervals.len()));
+    let unknown = spans(standing(true, intervals.iter().map(Option::is_none)));
     let unknown = unknown.into_iter().filter(|span| span.2).map(|(from, to, _)| Mark::Bar {
         from,
         to,
@@ -130,11 +121,11 @@ fn signals(cycles: &[Cycle<Positioned>], intervals: &[Ends], truths: &[Option<f6
     let mut all = vec![
         level("first_db", |cycle| cycle.step.first_db),
         level("second_db", |cycle| cycle.step.second_db),
-        real("nearest_m", standing(intervals.iter().map(|ends| ends.map(|ends| ends.0)))),
-        real("farthest_m", standing(intervals.iter().map(|ends| ends.map(|ends| ends.1)))),
+        real("nearest_m", changes(standing(None, intervals.iter().map(|ends| ends.map(|ends| ends.0))))),
+        real("farthest_m", changes(standing(None, intervals.iter().map(|ends| ends.map(|ends| ends.1))))),
     ];
     if truths.iter().any(Option::is_some) {
-        all.push(real("truth_m", standing(truths.iter().copied())));
+        all.push(real("truth_m", changes(standing(None, truths.iter().copied()))));
     }
     all
 }

@@ -2,7 +2,7 @@
 
 use atc_kernel::telegram::{FRAME_BITS, Frame, Route, Telegram, decode};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, spans};
+use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
 use crate::machine::telegram::{Codec, Config, Found, Output, Step};
 use crate::machine::{Cycle, Machine};
 use crate::names::Named as _;
@@ -84,7 +84,7 @@ fn frame(text: &str) -> Frame {
 }
 
 /// The telegrams found in a stream whose first bit in this step is number `first`.
-fn found(stream: &str, before: &str, first: u64, telegrams: &[Found]) -> Vec<Mark> {
+fn found(stream: &str, first: u64, telegrams: &[Found]) -> Vec<Mark> {
     let mut marks = Vec::new();
     for telegram in telegrams {
         let end = telegram.last_bit + 1 - first;
@@ -97,15 +97,15 @@ fn found(stream: &str, before: &str, first: u64, telegrams: &[Found]) -> Vec<Mar
                 stream.chars().skip(usize::try_from(end - LENGTH).unwrap_or(0)).take(FRAME_BITS as usize).collect();
             marks.extend(fields(frame(&whole), end - LENGTH));
         } else {
-            let begun = if before.is_empty() { "" } else { ", begun in an earlier step" };
-            marks.push(field(0, end, Tone::Recovery, &[format!("{name}{begun}"), name, "end".to_owned()]));
+            let whole = format!("{name}, begun in an earlier step");
+            marks.push(field(0, end, Tone::Recovery, &[whole, name, "end".to_owned()]));
         }
     }
     marks
 }
 
-/// What is shown of a step. `heard` is what the deframer heard before it.
-fn shown(place: usize, step: &Step, output: &Output, heard: &mut String) -> Shown {
+/// What is shown of a step. `heard` is how many bit times the deframer heard before it.
+fn shown(place: usize, step: &Step, output: &Output, heard: &mut u64) -> Shown {
     let (heading, bits, fields, error) = match (step, output) {
         (Step::Encode(_), Output::Frame { frame: text }) => {
             ("encode".to_owned(), text.clone(), fields(frame(text), 0), false)
@@ -115,9 +115,8 @@ fn shown(place: usize, step: &Step, output: &Output, heard: &mut String) -> Show
         }
         (Step::Decode(text), _) => ("decode".to_owned(), text.clone(), fields(frame(text), 0), false),
         (Step::Bits(text), Output::Telegrams { telegrams }) => {
-            let first = heard.chars().count() as u64;
-            let marks = found(text, heard, first, telegrams);
-            heard.push_str(text);
+            let marks = found(text, *heard, telegrams);
+            *heard += text.chars().count() as u64;
             (format!("bits: {} found", telegrams.len()), text.clone(), marks, false)
         }
         (Step::Encode(_) | Step::Bits(_), _) => (String::new(), String::new(), Vec::new(), false),
@@ -127,7 +126,7 @@ fn shown(place: usize, step: &Step, output: &Output, heard: &mut String) -> Show
 
 /// Lays out a case.
 pub(crate) fn scene(_: Config, cycles: &[Cycle<Codec>]) -> Scene {
-    let mut heard = String::new();
+    let mut heard = 0;
     let shown: Vec<_> =
         cycles.iter().enumerate().map(|(place, cycle)| shown(place, &cycle.step, &cycle.output, &mut heard)).collect();
     let longest = shown.iter().take(MOST).map(|shown| shown.bits.chars().count()).max().unwrap_or(0).max(1);
@@ -199,10 +198,9 @@ fn signals(shown: &[Shown]) -> Vec<Signal> {
             steps.push(shown.heading.replace([' ', ':'], "_"));
         }
     }
-    let changes = |values: Vec<bool>| super::changes(values);
     vec![
         Signal { name: "bit".to_owned(), values: Values::Wire(changes(level)) },
         Signal { name: "nothing".to_owned(), values: Values::Wire(changes(silent)) },
-        Signal { name: "step".to_owned(), values: Values::State(super::changes(steps)) },
+        Signal { name: "step".to_owned(), values: Values::State(changes(steps)) },
     ]
 }

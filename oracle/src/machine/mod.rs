@@ -2,6 +2,7 @@
 
 pub mod aspect;
 pub mod block;
+pub mod interlocking;
 pub mod pattern;
 pub mod permitted;
 pub mod position;
@@ -124,6 +125,7 @@ pub const KINDS: &[Kind] = &[
     kind::<pattern::Braking>(),
     kind::<permitted::Permitting>(),
     kind::<position::Positioned>(),
+    kind::<interlocking::Interlocked>(),
 ];
 
 /// The machine of that name.

@@ -29,7 +29,7 @@ pub struct Config {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Recording {
-    /// Its length in seconds, more than 0 and at most 3600.
+    /// Its length in seconds, 0.001 to 3600.
     pub duration_s: f64,
     /// How samples are written.
     pub samples: Samples,
@@ -71,7 +71,7 @@ pub struct Signal {
 pub struct LineParams {
     /// The speeds to which the ranks in telegrams refer, strictly rising, in km/h and whole tenths.
     pub speeds_km_h: Vec<f64>,
-    /// By how much a measured code frequency may be off.
+    /// By how much a measured code frequency may be off, in whole millihertz.
     pub tolerance_hz: f64,
     /// The pairs of code frequencies that name a speed.
     pub codes: Vec<Pair>,
@@ -127,9 +127,10 @@ pub struct Code {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChannelParams {
-    /// By how much everything is weaker at the receiver, 0 dB or more.
+    /// By how much everything is weaker at the receiver, 0 to 200 dB.
     pub attenuation_db: f64,
-    /// White noise: the energy of a bit of the main carrier over the noise's density; absent: no noise.
+    /// White noise: the energy of a bit of the main carrier over the noise's density, -20 to 100 dB; absent: no
+    /// noise.
     pub eb_n0_db: Option<f64>,
     /// The seed of the noise: the same seed, the same noise.
     pub seed: u64,
@@ -141,9 +142,9 @@ pub struct ChannelParams {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gap {
-    /// When it begins.
+    /// When it begins, 0 to 3600 s.
     pub start_s: f64,
-    /// How long it lasts.
+    /// How long it lasts, 0 to 3600 s.
     pub length_s: f64,
 }
 

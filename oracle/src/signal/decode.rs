@@ -57,7 +57,7 @@ pub fn decode(config: &Config, path: &Path, mut output: impl Write) -> Result<()
     let mut lines: Vec<Timed> = Vec::new();
     let (mut mains, mut subs, mut codes) = (0, 0, [None; 2]);
     // No speed at the beginning is nothing to tell.
-    let mut speed = Some(None);
+    let mut speed = None;
     for block in recording.samples.chunks(BLOCK) {
         receiver.process(block, |event| {
             let said = match event.heard {
@@ -75,9 +75,9 @@ pub fn decode(config: &Config, path: &Path, mut output: impl Write) -> Result<()
                     codes[place] = reading.millihertz.map(Millihertz);
                     None
                 }
-                Heard::Speed(now) if speed == Some(now) => None,
+                Heard::Speed(now) if speed == now => None,
                 Heard::Speed(now) => {
-                    speed = Some(now);
+                    speed = now;
                     let [main_hz, sub_hz] = codes.map(|code| code.map(|code| f64::from(code.0) / 1000.0));
                     Some(Said::Code { main_hz, sub_hz, speed_km_h: now.map(|now| Kmh(now.0.into())) })
                 }

@@ -3,7 +3,7 @@
 
 use std::process::ExitCode;
 
-use atc_tests::{reception, traffic, workload};
+use atc_tests::{busy_station, reception, traffic, workload};
 
 fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args().skip(1).collect();
@@ -14,9 +14,15 @@ fn main() -> ExitCode {
         (Some("permitted"), Some(count)) => println!("{count} steps, at last {:?}", reception::run_permitted(count)),
         (Some("position"), Some(count)) => println!("{count} steps, at last {:?}", reception::run_position(count)),
         (Some("deframer"), Some(count)) => println!("{count} steps, {} telegrams", reception::run_deframer(count)),
+        (Some("interlocking"), Some(count)) => {
+            println!("{count} cycles, at last {:?}", busy_station::run(&busy_station::traffic(), count));
+        }
+        (Some("interlocking-full"), Some(count)) => {
+            println!("{count} cycles, at last {:?}", busy_station::run(&busy_station::full(), count));
+        }
         _ => {
             eprintln!(
-                "kernel-steps: expected `aspect`, `block`, `permitted`, `position` or `deframer`, and a number of steps"
+                "kernel-steps: expected `aspect`, `block`, `permitted`, `position`, `deframer`, `interlocking` or `interlocking-full`, and a number of steps"
             );
             return ExitCode::FAILURE;
         }

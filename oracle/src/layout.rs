@@ -1,0 +1,147 @@
+//! `oracle layout`: a station's layout is checked, imported, tabulated and drawn.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use atc_layout::import::{Imported, only, read_any};
+use atc_layout::{Description, Errors, draw, table};
+use clap::{Args, Subcommand, ValueEnum};
+
+/// What is to be done with a layout.
+#[derive(Subcommand)]
+pub enum LayoutCommand {
+    /// Checks every rule; prints what is broken, with its place in the file and what would be right
+    Check {
+        #[command(flatten)]
+        layout: LayoutFile,
+        /// Prints also what was derived, with its value
+        #[arg(long)]
+        derived: bool,
+    },
+    /// Writes a railML 3 file or an OSRD infrastructure as a layout in TOML; the report goes to standard error
+    Import {
+        #[command(flatten)]
+        layout: LayoutFile,
+        /// Where the layout goes [default: standard output]
+        #[arg(short, long, value_name = "FILE.toml")]
+        output: Option<PathBuf>,
+    },
+    /// Writes the control table
+    Table {
+        #[command(flatten)]
+        layout: LayoutFile,
+        /// HTML to be printed and signed, or values for a spreadsheet
+        #[arg(long, value_enum, default_value_t = Form::Html)]
+        form: Form,
+        /// Where the table goes [default: standard output]
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Draws the track plan (SVG)
+    Draw {
+        #[command(flatten)]
+        layout: LayoutFile,
+        /// Where the drawing goes [default: standard output]
+        #[arg(short, long, value_name = "FILE.svg")]
+        output: Option<PathBuf>,
+    },
+    /// Prints the JSON Schema of the layout form
+    Schema,
+}
+
+/// A layout in any form.
+#[derive(Args)]
+pub struct LayoutFile {
+    /// The layout: .toml, railML 3 (.xml, .railml) or an OSRD infrastructure (.json)
+    file: PathBuf,
+    /// Takes these routes alone, and what they need
+    #[arg(long, value_name = "ROUTE", value_delimiter = ',')]
+    only: Vec<String>,
+}
+
+/// A form of the control table.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Form {
+    Html,
+    Csv,
+}
+
+/// What a command has to say: text for a file or standard output, and remarks for standard error.
+pub struct Done {
+    /// The text.
+    pub text: String,
+    /// Where it goes; none for standard output.
+    pub output: Option<PathBuf>,
+    /// Remarks.
+    pub remarks: String,
+}
+
+/// Does what the command says. Nothing is written here.
+pub fn run(command: LayoutCommand) -> Result<Done, Errors> {
+    let (text, output, remarks) = match command {
+        LayoutCommand::Check { layout, derived } => (check(&layout, derived)?, None, String::new()),
+        LayoutCommand::Import { layout, output } => {
+            let Imported { description, report } = open(&layout)?;
+            let remarks = format!("{report}{}", broken_rules(&description));
+            (description.to_toml(), output, remarks)
+        }
+        LayoutCommand::Table { layout, form, output } => {
+            let Imported { description, .. } = open(&layout)?;
+            let model = description.model()?;
+            let text = match form {
+                Form::Html => table::html(&description.station.name, &model, &draw::svg(&description.station, &model)),
+                Form::Csv => table::csv(&model),
+            };
+            (text, output, String::new())
+        }
+        LayoutCommand::Draw { layout, output } => {
+            let Imported { description, .. } = open(&layout)?;
+            (draw::svg(&description.station, &description.tracks()?), output, String::new())
+        }
+        LayoutCommand::Schema => (atc_layout::schema(), None, String::new()),
+    };
+    Ok(Done { text, output, remarks })
+}
+
+fn open(layout: &LayoutFile) -> Result<Imported, Errors> {
+    let mut imported = read_any(Path::new(&layout.file))?;
+    if !layout.only.is_empty() {
+        imported.description = only(&imported.description, &layout.only)?;
+    }
+    Ok(imported)
+}
+
+fn check(layout: &LayoutFile, derived: bool) -> Result<String, Errors> {
+    let Imported { description, report } = open(layout)?;
+    let compiled = description.compile()?;
+    let names = &compiled.names;
+    let mut text = format!(
+        "{}: no broken rule; {} routes, {} points, {} circuits, {} segments\n",
+        layout.file.display(),
+        names.routes.len(),
+        names.points.len(),
+        names.circuits.len(),
+        names.segments.len()
+    );
+    let assumed = report.defaulted.len();
+    if assumed > 0 {
+        let _ = writeln!(text, "{assumed} values were assumed on import and are to be confirmed:");
+        for line in &report.defaulted {
+            let _ = writeln!(text, "  {line}");
+        }
+    }
+    if derived {
+        for note in &compiled.derived {
+            let _ = writeln!(text, "{}: {}", note.about, note.text);
+        }
+    }
+    Ok(text)
+}
+
+/// The rules that an imported layout still breaks: a remark, for the import itself was done.
+fn broken_rules(description: &Description) -> String {
+    match description.compile() {
+        Ok(_) => "the layout breaks no rule\n".to_owned(),
+        Err(errors) => format!("the layout breaks {} rules:\n{errors}\n", errors.problems.len()),
+    }
+}

@@ -1,0 +1,260 @@
+//! `interlocking`: [`atc_kernel::interlocking`] behind the protocol, on a layout of names.
+
+mod because;
+mod config;
+mod forms;
+mod words;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use atc_kernel::interlocking::{
+    self as kernel, CircuitId, CircuitSet, Epoch, PointId, PointSet, Position, Positions, RouteId, SegmentId,
+    SegmentSet, SpeedCode, Station,
+};
+use atc_layout::Names;
+
+pub use config::Config;
+pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
+pub use words::{Phase, Reason, Side, Travel};
+
+use super::{Cycle, Machine};
+use crate::chart::{self, Scene};
+use crate::kmh::shorten;
+
+/// The state of the kernel's machine, with room for every station.
+pub type State = kernel::State<64, 8>;
+
+/// The machine with its state.
+#[derive(Clone, Debug)]
+pub struct Interlocked {
+    layout: Box<Station>,
+    names: Names,
+    speeds_kmh: [u16; kernel::MAX_CODES],
+    cycle_ms: u32,
+    state: Box<State>,
+}
+
+/// Where the name stands in the list.
+fn place(names: &[String], name: &str, field: &str, kind: &str) -> Result<u8, String> {
+    const MOST: usize = 12;
+    let found = names.iter().position(|other| other == name).and_then(|place| u8::try_from(place).ok());
+    found.ok_or_else(|| {
+        let listed = names.iter().take(MOST).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = if names.len() > MOST { ", …" } else { "" };
+        let there = if names.is_empty() { "none".to_owned() } else { format!("{listed}{more}") };
+        format!("{field} names {kind} {:?}; the {kind}s of this layout are {there}", shorten(name))
+    })
+}
+
+/// The places of a list of names, each at most once.
+fn places(names: &[String], list: &[String], field: &str, kind: &str) -> Result<Vec<u8>, String> {
+    let mut found = Vec::with_capacity(list.len());
+    for name in list {
+        let place = place(names, name, field, kind)?;
+        if found.contains(&place) {
+            return Err(format!("{field} names {kind} {:?} a second time; each {kind} is named once", shorten(name)));
+        }
+        found.push(place);
+    }
+    Ok(found)
+}
+
+/// The names of those numbers that are in the set.
+fn named(names: &[String], is_in: impl Fn(usize) -> bool) -> BTreeSet<String> {
+    names.iter().enumerate().filter(|(number, _)| is_in(*number)).map(|(_, name)| name.clone()).collect()
+}
+
+impl Interlocked {
+    /// The layout.
+    pub fn layout(&self) -> &Station {
+        &self.layout
+    }
+
+    /// The names of its numbers.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// The kernel's state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The length of a logic cycle in ms.
+    pub fn cycle_ms(&self) -> u32 {
+        self.cycle_ms
+    }
+
+    fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
+        let places = places(&self.names.circuits, list, field, "circuit")?;
+        Ok(places.into_iter().fold(CircuitSet::EMPTY, |set, place| set.or(CircuitSet::nth(place.into()))))
+    }
+
+    fn circuits_of(&self, set: CircuitSet) -> BTreeSet<String> {
+        named(&self.names.circuits, |number| set.meets(CircuitSet::nth(number)))
+    }
+
+    fn points_of(&self, set: PointSet) -> BTreeSet<String> {
+        named(&self.names.points, |number| set.meets(PointSet::nth(number)))
+    }
+
+    fn segments_of(&self, set: SegmentSet) -> BTreeSet<String> {
+        named(&self.names.segments, |number| set.meets(SegmentSet::nth(number)))
+    }
+
+    /// A step in the kernel's form.
+    ///
+    /// # Errors
+    /// If it names what the layout does not have, or one thing twice, or restricts to different speeds.
+    pub fn input(&self, step: &Step) -> Result<kernel::Input, String> {
+        let mut detected = Positions::NONE;
+        for (name, side) in &step.detected.0 {
+            let point = PointId::new(place(&self.names.points, name, "detected", "point")?);
+            if let (Some(point), Some(Side(position))) = (point, side) {
+                detected = detected.or(Positions::of(point, *position));
+            }
+        }
+        let segments = places(&self.names.segments, &step.consent, "consent", "segment")?;
+        Ok(kernel::Input {
+            occupied: self.circuits(&step.occupied, "occupied")?,
+            detected,
+            request: step.request.as_ref().map(|request| self.request(request)).transpose()?,
+            orders: self.orders(&step.orders)?,
+            consent: segments.into_iter().fold(SegmentSet::EMPTY, |set, place| set.or(SegmentSet::nth(place.into()))),
+        })
+    }
+
+    fn request(&self, request: &Request) -> Result<kernel::Request, String> {
+        let route = |name: &str, field: &str| {
+            let number = place(&self.names.routes, name, field, "route")?;
+            RouteId::new(number).ok_or_else(|| format!("route {number} has no place"))
+        };
+        Ok(match request {
+            Request::Set { set } => kernel::Request::Set(route(set, "set")?),
+            Request::Withdraw { withdraw } => kernel::Request::Withdraw(route(withdraw, "withdraw")?),
+            Request::Drive { drive, to } => {
+                let number = place(&self.names.points, drive, "drive", "point")?;
+                kernel::Request::Drive(
+                    PointId::new(number).ok_or_else(|| format!("point {number} has no place"))?,
+                    to.0,
+                )
+            }
+            Request::Turn { turn, to } => {
+                let number = place(&self.names.segments, turn, "turn", "segment")?;
+                kernel::Request::Turn(
+                    SegmentId::new(number).ok_or_else(|| format!("segment {number} has no place"))?,
+                    to.0,
+                )
+            }
+        })
+    }
+
+    fn orders(&self, orders: &Orders) -> Result<kernel::Orders, String> {
+        let restricted: Vec<String> = orders.restrict.0.keys().cloned().collect();
+        let mut speeds = orders.restrict.0.values();
+        let first = speeds.next().copied().unwrap_or(0);
+        if let Some(other) = speeds.find(|speed| **speed != first) {
+            return Err(format!(
+                "restrict has {first} and {other} km/h; the circuits of one cycle are restricted to one speed"
+            ));
+        }
+        Ok(kernel::Orders {
+            block: self.circuits(&orders.block, "block")?,
+            unblock: self.circuits(&orders.unblock, "unblock")?,
+            restrict: self.circuits(&restricted, "restrict")?,
+            speed: self.code(first),
+            lift: self.circuits(&orders.lift, "lift")?,
+        })
+    }
+
+    /// The highest code whose speed is not above this one.
+    fn code(&self, speed_kmh: u16) -> SpeedCode {
+        let speeds = self.speeds_kmh.iter().skip(1);
+        let slower = speeds.take_while(|speed| **speed > 0 && **speed <= speed_kmh).count();
+        SpeedCode(u8::try_from(slower).unwrap_or(0))
+    }
+
+    /// The speed of a code; of one that the layout does not have, that of the next lower one.
+    fn speed(&self, code: SpeedCode) -> u16 {
+        self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
+    }
+
+    /// The circuits that count as occupied, from the shared table of this cycle.
+    pub(crate) fn occupied(table: &kernel::Table<64>, epoch: Epoch) -> CircuitSet {
+        table.read(epoch).map_or(CircuitSet::ALL, |contents| contents.occupied)
+    }
+
+    fn output(&self, input: kernel::Input, output: &kernel::Output<64>, all_telegrams: bool) -> Output {
+        let movements = self.layout.telegrams(&output.table, self.state.epoch);
+        let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
+        let telegrams = self.names.circuits.iter().zip(movements);
+        let telegrams = telegrams.filter(|(_, movement)| movement.open || all_telegrams).map(|(name, movement)| {
+            let telegram =
+                Telegram { stop: circuit(movement.stop), speed_km_h: self.speed(movement.speed), open: movement.open };
+            (name.clone(), telegram)
+        });
+        let held = self.names.routes.iter().zip(&self.state.routes).filter(|(_, route)| route.is_held());
+        let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
+            let point = PointSet::nth(number);
+            let side = |position| Some((name.clone(), Side(position)));
+            match (output.drives.normal.meets(point), output.drives.reverse.meets(point)) {
+                (true, _) => side(Position::Normal),
+                (false, true) => side(Position::Reverse),
+                (false, false) => None,
+            }
+        });
+        let answer = output.answer.map(|answer| match answer {
+            Ok(()) => Answer::Accepted(Accepted::Accepted),
+            Err(refusal) => {
+                let occupied = Self::occupied(&output.table, self.state.epoch);
+                Answer::Refused(Refused { refused: Reason(refusal), because: self.because(input, occupied, refusal) })
+            }
+        });
+        Output {
+            routes: held.map(|(name, route)| (name.clone(), Phase(route.phase))).collect(),
+            proceed: named(&self.names.routes, |number| output.proceed.meets(kernel::RouteSet::nth(number))),
+            drives: drives.collect(),
+            telegrams: telegrams.collect::<BTreeMap<_, _>>(),
+            permits: self.segments_of(output.permits),
+            confirmed: self.circuits_of(output.confirmed),
+            answer,
+        }
+    }
+}
+
+impl Machine for Interlocked {
+    const NAME: &'static str = "interlocking";
+    const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"request":{"set":"W-1"},"orders":{"unblock":["1T"]},"consent":["West"]}"#;
+    const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}"#;
+
+    type Config = Config;
+    type Step = Step;
+    type Output = Output;
+
+    fn open(config: &Config) -> Result<Self, String> {
+        let compiled = config.compile()?;
+        Ok(Self {
+            layout: compiled.layout(),
+            speeds_kmh: compiled.model.values.speeds_kmh,
+            cycle_ms: compiled.model.values.cycle_ms,
+            names: compiled.names,
+            state: Box::new(State::INITIAL),
+        })
+    }
+
+    fn step(&mut self, step: &Step) -> Result<Output, String> {
+        let input = self.input(step)?;
+        let (state, output) = self.layout.cycle(*self.state, input);
+        *self.state = state;
+        Ok(self.output(input, &output, step.all_telegrams))
+    }
+
+    fn cycles(&self) -> Vec<(&'static str, u16)> {
+        let plan = self.layout.plan();
+        vec![("clear", plan.clear.into()), ("turn", plan.turn.0)]
+    }
+
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        chart::interlocking::scene(config, cycles)
+    }
+}

@@ -1,0 +1,94 @@
+//! What trains are told: the grants of routes and plain line, linked up to the stop circuit.
+
+use atc_kernel::interlocking::Travel;
+use atc_tests::sketch::{Need, Sketch};
+
+use super::{Leave, Place, Set, Stage, Telegram, Witness};
+
+/// How many routes or segments a train learns ahead.
+const LINKS: usize = 4;
+
+impl Witness {
+    pub(super) fn telegrams(&self, sketch: &Sketch, occupied: &Set, proceed: &Set, firm: &[Need]) -> Vec<Telegram> {
+        let mut leaves = Vec::new();
+        for route in 0..self.routes.len() {
+            leaves.extend(self.by_route(sketch, route, occupied, proceed, firm));
+        }
+        for segment in 0..self.stretches.len() {
+            leaves.extend(self.by_line(sketch, segment, occupied));
+        }
+        leaves.retain(|leave| !leave.circuits.is_empty());
+        (0..64)
+            .map(|circuit| {
+                let stop = Telegram { stop: circuit, open: false, speed: 0, hold: Set::new() };
+                if occupied.contains(&circuit) { self.linked(sketch, circuit, &leaves).unwrap_or(stop) } else { stop }
+            })
+            .collect()
+    }
+
+    /// A route with proceed is given to the train at its entry; one in use to the train on its last occupied circuit, if it has been
+    /// entered in order as far as there and the points under it are right, as far as points are right and nothing is blocked.
+    fn by_route(&self, sketch: &Sketch, route: usize, occupied: &Set, proceed: &Set, firm: &[Need]) -> Option<Leave> {
+        let (held, way) = (&self.routes[route], &sketch.routes[route]);
+        if proceed.contains(&route) {
+            return Some(Leave { train: way.entry, circuits: way.circuits(), whole: true, speed: way.speed });
+        }
+        if held.stage != Stage::InUse {
+            return None;
+        }
+        let kept: Vec<_> = held.kept(way).collect();
+        let front = kept.iter().rposition(|(circuit, _)| occupied.contains(circuit))?;
+        let entered = held.places[way.path.len() - kept.len() + front] == Place::Entered;
+        let right = |needs: &[Need]| needs.iter().all(|need| firm.contains(need));
+        if !entered || !right(&kept[front].1) {
+            return None;
+        }
+        let ahead = &kept[front + 1..];
+        let sound = ahead.iter().take_while(|(circuit, needs)| !self.blocked.contains(circuit) && right(needs));
+        let circuits: Vec<_> = sound.map(|(circuit, _)| *circuit).collect();
+        Some(Leave { train: kept[front].0, whole: circuits.len() == ahead.len(), circuits, speed: way.speed })
+    }
+
+    /// On plain line every train is given the free circuits ahead of it; outwards also one that stands in the throat.
+    fn by_line(&self, sketch: &Sketch, segment: usize, occupied: &Set) -> Vec<Leave> {
+        let line = &sketch.segments[segment];
+        let order: Vec<usize> = match self.stretches[segment].travel {
+            None => return Vec::new(),
+            Some(Travel::Toward) => line.circuits.iter().rev().copied().collect(),
+            Some(Travel::Away) => line.throat.iter().chain(&line.circuits).copied().collect(),
+        };
+        let mut leaves = Vec::new();
+        for (place, train) in order.iter().enumerate() {
+            let ahead = &order[place + 1..];
+            let free = ahead.iter().take_while(|it| !occupied.contains(it) && !self.blocked.contains(it));
+            let circuits: Vec<_> = free.copied().collect();
+            leaves.push(Leave { train: *train, whole: circuits.len() == ahead.len(), circuits, speed: 7 });
+        }
+        leaves
+    }
+
+    /// The telegram of a train in `circuit`, if it may leave it.
+    fn linked(&self, sketch: &Sketch, circuit: usize, leaves: &[Leave]) -> Option<Telegram> {
+        let (mut here, mut speed, mut granted) = (circuit, 7, Vec::new());
+        for _ in 0..LINKS {
+            let mut mine = leaves.iter().filter(|leave| leave.train == here);
+            // What might be meant for two is for nobody.
+            let (Some(leave), None) = (mine.next(), mine.next()) else { break };
+            granted.extend(&leave.circuits);
+            speed = speed.min(leave.speed);
+            here = *leave.circuits.last()?;
+            if !leave.whole {
+                break;
+            }
+        }
+        let hold: Set = granted.into_iter().collect();
+        if hold.is_empty() {
+            return None;
+        }
+        let limit = hold.iter().chain([&circuit]).map(|it| self.limits[*it]).min().unwrap_or(0);
+        let distance: u32 = hold.iter().map(|it| u32::from(sketch.lengths[*it])).sum();
+        let stops = sketch.braking.iter().rposition(|it| *it != u16::MAX && u32::from(*it) <= distance).unwrap_or(0);
+        let speed = speed.min(limit).min(u8::try_from(stops).unwrap_or(0));
+        Some(Telegram { stop: here, open: true, speed, hold })
+    }
+}

@@ -1,0 +1,116 @@
+//! Every reason to refuse a request.
+
+use atc_kernel::interlocking::{Refusal, Travel};
+use atc_tests::sketch::{Need, Sketch};
+
+use super::{Ask, Set, Stage, Witness, common, meets, oppose};
+
+impl Witness {
+    pub(super) fn refuse(
+        &self,
+        sketch: &Sketch,
+        ask: Ask,
+        occupied: &Set,
+        seen: &[Need],
+        consent: &Set,
+    ) -> Vec<Refusal> {
+        let known = match ask {
+            Ask::Set(route) | Ask::Withdraw(route) => route < self.routes.len(),
+            Ask::Drive(point, _) => point < sketch.points.len(),
+            Ask::Turn(segment, _) => segment < self.stretches.len(),
+        };
+        if !known {
+            return vec![Refusal::Unknown];
+        }
+        match ask {
+            Ask::Set(route) => self.refuse_set(sketch, route, occupied, seen),
+            Ask::Withdraw(route) => listed(&[(!self.routes[route].is_held(), Refusal::NotHeld)]),
+            Ask::Drive(point, _) => self.refuse_drive(sketch, point, occupied),
+            Ask::Turn(segment, travel) => self.refuse_turn(sketch, segment, travel, occupied, consent),
+        }
+    }
+
+    fn refuse_set(&self, sketch: &Sketch, asked: usize, occupied: &Set, seen: &[Need]) -> Vec<Refusal> {
+        if self.routes[asked].is_held() {
+            return vec![Refusal::AlreadyHeld];
+        }
+        let way = &sketch.routes[asked];
+        let (path, overlap, needs) = (way.circuits(), &way.overlap.0, way.needs());
+        let mut reasons = Vec::new();
+        for (number, (held, other)) in self.routes.iter().zip(&sketch.routes).enumerate().filter(|it| it.1.0.is_held())
+        {
+            let (its_path, its_overlap) = (held.path(other), held.overlap(other));
+            let i_continue = other.continuing.contains(&asked);
+            let it_continues = way.continuing.contains(&number);
+            reasons.extend(listed(&[
+                (way.conflicts.contains(&number), Refusal::Conflict),
+                (common(&path, &its_path) || common(&path, its_overlap) && !i_continue, Refusal::PathHeld),
+                (common(overlap, its_overlap) || common(overlap, &its_path) && !it_continues, Refusal::OverlapHeld),
+                (oppose(&needs, &held.needs(other)), Refusal::PointLocked),
+            ]));
+        }
+        let has = |segment: Option<usize>, travel| segment.is_none_or(|it| self.stretches[it].travel == Some(travel));
+        let stuck = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], occupied);
+        reasons.extend(listed(&[
+            (meets(&path, occupied) || meets(overlap, occupied), Refusal::Occupied),
+            (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),
+            (way.to.is_some_and(|segment| self.closed(sketch, segment)), Refusal::Blocked),
+            (!has(way.from, Travel::Toward) || !has(way.to, Travel::Away), Refusal::Direction),
+            (needs.iter().any(stuck), Refusal::PointUnderTrain),
+        ]));
+        reasons
+    }
+
+    fn refuse_drive(&self, sketch: &Sketch, point: usize, occupied: &Set) -> Vec<Refusal> {
+        let detectors = &sketch.points[point];
+        let routes = || self.routes.iter().zip(&sketch.routes);
+        let locked = routes().any(|(held, way)| held.needs(way).iter().any(|need| need.0 == point));
+        let held = routes().any(|(held, way)| common(detectors, &held.circuits(way)));
+        listed(&[
+            (locked, Refusal::PointLocked),
+            (held, Refusal::PathHeld),
+            (meets(detectors, occupied), Refusal::PointUnderTrain),
+            (meets(detectors, &self.blocked), Refusal::Blocked),
+        ])
+    }
+
+    fn refuse_turn(
+        &self,
+        sketch: &Sketch,
+        segment: usize,
+        travel: Travel,
+        occupied: &Set,
+        consent: &Set,
+    ) -> Vec<Refusal> {
+        let stretch = self.stretches[segment];
+        if travel == Travel::Away && stretch.travel == Some(Travel::Away) {
+            return Vec::new();
+        }
+        let needs_other = self.routes.iter().zip(&sketch.routes).any(|(held, way)| match travel {
+            Travel::Toward => way.to == Some(segment) && held.is_held(),
+            Travel::Away => way.from == Some(segment) && held.is_held() && held.places[0] != super::Place::Released,
+        });
+        let line = &sketch.segments[segment];
+        let taken = meets(&line.circuits, occupied) || line.throat.is_some_and(|throat| occupied.contains(&throat));
+        // A train on the line goes by the direction away if that is what the segment has; otherwise it is let in.
+        let loses = travel == Travel::Away || stretch.travel == Some(Travel::Away);
+        let in_the_way = needs_other || taken && loses;
+        let early = stretch.withdrawn < sketch.turn || stretch.travel == Some(Travel::Toward);
+        let blocked = self.closed(sketch, segment);
+        match travel {
+            Travel::Toward => listed(&[(in_the_way, Refusal::Direction), (blocked, Refusal::Blocked)]),
+            Travel::Away if in_the_way => vec![Refusal::Direction],
+            Travel::Away => listed(&[(early || blocked || !consent.contains(&segment), Refusal::Waiting)]),
+        }
+    }
+
+    /// How many routes are past their reservation, for those who count what a session reaches.
+    pub fn locked(&self) -> usize {
+        self.routes.iter().filter(|held| !matches!(held.stage, Stage::Idle | Stage::Provisional(_))).count()
+    }
+}
+
+/// The reasons that apply.
+fn listed(reasons: &[(bool, Refusal)]) -> Vec<Refusal> {
+    reasons.iter().filter(|reason| reason.0).map(|reason| reason.1).collect()
+}
