@@ -42,29 +42,12 @@ fn faults(text: &str) -> String {
 
 pub fn evidence(id: &str, verdict: Verdict) -> Evidence {
     let (kind, name) = id.split_once(':').expect("an id");
+    let kinds = [Kind::Harness, Kind::Model, Kind::Mutant, Kind::Measured, Kind::Test];
+    let kind = kinds.into_iter().find(|known| known.word() == kind).expect("a kind");
     Evidence {
-        id: id.to_owned(),
-        kind: match kind {
-            "harness" => Kind::Harness,
-            "model" => Kind::Model,
-            "mutant" => Kind::Mutant,
-            "measured" => Kind::Measured,
-            _ => Kind::Test,
-        },
-        title: name.to_owned(),
-        statement: String::new(),
-        at: None,
-        verdict,
         detail: "4 aspects".to_owned(),
-        reason: None,
         requirements: vec!["ACC-1".to_owned()],
-        assumptions: vec![],
-        claims: vec![],
-        covers: vec![],
-        engines: vec![],
-        killed_by: vec![],
-        seconds: 0.0,
-        counterexample: None,
+        ..Evidence::bare(kind, name, verdict)
     }
 }
 

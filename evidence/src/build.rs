@@ -2,7 +2,8 @@
 
 use crate::argument;
 use crate::case::{
-    Case, Condition, Engine, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Status, Technique, Tool,
+    Case, Condition, Engine, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Station, Status, Technique,
+    Tool,
 };
 use crate::hazard;
 use crate::inputs::proofs::Campaigned;
@@ -12,6 +13,7 @@ use crate::inputs::{faults, measured, models, mutants, proofs, second};
 use crate::open;
 use crate::plan::Plan;
 use crate::srac;
+use crate::station;
 use crate::trace;
 use crate::verdict::{Verdict, list};
 use atc_models::Outcome;
@@ -78,13 +80,15 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     let mut case = Case {
         schema: SCHEMA,
         title: "Train control kernel: aspect acceptance, speed supervision, two channels, block counting, telegrams and codes, \
-                permitted speed, train position"
+                permitted speed, train position, interlocking and its ATC"
             .to_owned(),
         conclusions: argument::conclusions(&nodes, &evidence, &conditions),
         status: Status::default(),
         open_items: Vec::new(),
         requirements: trace::table(&plan.requirements, &plan.citations, &plan.mentions, &evidence),
         line: plan.line.case(&evidence),
+        needed_rules: station::needed::table(&plan.mutants, &evidence),
+        station: plan.station.as_ref().map(|station| station.case(&evidence, &conditions)),
         techniques: techniques(plan, &evidence, &engines),
         tools: tools(plan, &results.provenance),
         provenance: results.provenance,
@@ -99,6 +103,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
         second_opinions,
         measurements,
     };
+    case.conclusions.extend(case.station.as_ref().map(station::conclusion));
     case.open_items = open::items(plan, &case);
     case.status = status(&case, required);
     case
@@ -182,14 +187,22 @@ pub fn status(case: &Case, required: Required) -> Status {
         _ => one.verdict.is_result(),
     };
     let missing: Vec<_> = case.evidence.iter().filter(|one| !has_result(one)).map(|one| one.id.clone()).collect();
+    let broken = || case.station.iter().flat_map(Station::broken);
     let mut reasons: Vec<String> = Vec::new();
     for one in case.evidence.iter().filter(|one| one.verdict.is_defect()) {
-        reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.reason.as_deref().unwrap_or("no reason given")));
+        reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.why()));
     }
     for one in case.open_items.iter().filter(|one| one.severity == Severity::Stop) {
-        if !case.evidence.iter().any(|evidence| evidence.title == one.about) && !one.about.contains(' ') {
+        // Those of the station follow below, each once.
+        let of_station = broken().any(|rule| one.text.ends_with(&format!("[{}]", rule.rule)));
+        let of_evidence = case.evidence.iter().any(|evidence| evidence.title == one.about);
+        if !of_station && !of_evidence && !one.about.contains(' ') {
             reasons.push(format!("{}: {}", one.about, one.text));
         }
+    }
+    for rule in broken() {
+        let all = rule.broken.iter().map(|one| format!("{}: {} [{}]", one.at, one.what, rule.rule));
+        reasons.extend(all);
     }
     if required == Required::Proved {
         let mut weak: BTreeMap<(Verdict, &str), Vec<String>> = BTreeMap::new();

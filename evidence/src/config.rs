@@ -217,12 +217,7 @@ impl Checked {
     fn derived(&self) -> Vec<Derived> {
         let (new, old) = (self.times, self.times.conventional());
         let span = |ticks: u16| format!("{} ms ({ticks} cycles)", self.ms(ticks));
-        let row = |name: &str, value: String, formula: &str, source: &str| Derived {
-            name: name.to_owned(),
-            value,
-            formula: formula.to_owned(),
-            source: source.to_owned(),
-        };
+        let row = Derived::row;
         let gain = new.tolerated_interruption().0 - old.tolerated_interruption().0;
         let mut rows = vec![
             row(
@@ -361,4 +356,4 @@ fn kmh(speed: KmhTenths) -> String {
 
 #[cfg(test)]
 #[path = "config_tests.rs"]
-mod tests;
+pub(crate) mod tests;

@@ -7,12 +7,16 @@ fn refused(from: &str, to: &str) -> String {
     parse("my-line.toml", &EXAMPLE.replacen(from, to, 1)).expect_err("refused").to_string()
 }
 
+/// A figure that follows from a line's parameters, by the beginning of its name.
+pub fn value(text: &str, name: &str) -> String {
+    let line = parse("l.toml", text).expect("good").case(&[]);
+    line.derived.iter().find(|one| one.name.starts_with(name)).map(|one| one.value.clone()).unwrap_or_default()
+}
+
 #[test]
 fn the_example_has_the_known_figures() {
     let line = parse("my-line.toml", EXAMPLE).expect("good").case(&[]);
-    let value = |name: &str| {
-        line.derived.iter().find(|one| one.name.starts_with(name)).map(|one| one.value.clone()).unwrap_or_default()
-    };
+    let value = |name: &str| value(EXAMPLE, name);
     assert_eq!(value("Longest interruption"), "700 ms (70 cycles)");
     assert_eq!(value("The same, conventional"), "500 ms (50 cycles)");
     assert_eq!(value("Total silence"), "800 ms (80 cycles)");

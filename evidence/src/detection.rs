@@ -184,12 +184,7 @@ impl Detection {
 
     /// What follows.
     pub fn derived(&self) -> Vec<Derived> {
-        let row = |name: &str, value: String, formula: &str, source: &str| Derived {
-            name: name.to_owned(),
-            value,
-            formula: formula.to_owned(),
-            source: source.to_owned(),
-        };
+        let row = Derived::row;
         let ticks = self.blocks.first().map_or(0, |(block, _)| block.pass().0);
         vec![
             row(

@@ -1,5 +1,6 @@
 //! The example's blocks, and every rule on blocks and lines broken on purpose.
 
+use crate::config::tests::value;
 use crate::config::{EXAMPLE, parse};
 
 const COMMON: &str = "[detection]\nlongest_train_m = 100\npass_ms = 10000\n";
@@ -22,11 +23,6 @@ fn refused(common: &str, blocks: &[(u8, &str)]) -> (String, String) {
     let line = text.lines().nth(numbers.next().unwrap_or(0).saturating_sub(1)).unwrap_or_default();
     let from = line.get(numbers.next().unwrap_or(1).saturating_sub(1)..).unwrap_or_default().to_owned();
     (from, rule.to_owned())
-}
-
-fn value(text: &str, name: &str) -> String {
-    let line = parse("l.toml", text).expect("good").case(&[]);
-    line.derived.iter().find(|one| one.name.starts_with(name)).map(|one| one.value.clone()).unwrap_or_default()
 }
 
 #[test]

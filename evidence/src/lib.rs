@@ -31,6 +31,7 @@ pub mod prover;
 pub mod sarif;
 pub mod srac;
 pub mod stale;
+pub mod station;
 pub mod tables;
 pub mod terminal;
 pub mod trace;

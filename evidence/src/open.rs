@@ -1,8 +1,10 @@
 //! Open items: everything that is not as it should be. They stand above every summary.
 
-use crate::case::{Case, Evidence, Kind, OpenItem, Severity};
+use crate::case::{Case, Evidence, Kind, OpenItem, Severity, Station};
+use crate::inputs::measured;
 use crate::inputs::requirements::mismatch;
 use crate::plan::Plan;
+use crate::station::needed;
 use crate::trace::own_kills;
 use crate::verdict::{Verdict, list};
 use std::collections::BTreeMap;
@@ -52,6 +54,13 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
     for check in case.line.checks.iter().filter(|check| check.contains("NO")) {
         items.push(item(Severity::Stop, &case.line.name, check.clone()));
     }
+    for one in case.station.iter().flat_map(Station::broken) {
+        for found in &one.broken {
+            let right = if found.right.is_empty() { String::new() } else { format!("; {}", found.right) };
+            items.push(item(Severity::Stop, &found.at, format!("{}{right} [{}]", found.what, one.rule)));
+        }
+    }
+    items.extend(needed::open(&case.needed_rules));
     for condition in case.conditions.iter().filter(|condition| condition.used_by.is_empty()) {
         let text = format!("The assumption \"{}\" is listed and used nowhere.", condition.id);
         items.push(item(Severity::Note, &condition.number, text));
@@ -88,6 +97,11 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
         let text = "The oracle cannot replay and draw its trace: see the caption.".to_owned();
         items.push(item(Severity::Open, &model.id, text));
     }
+    let source = &case.measurements.source;
+    if !source.is_empty() && source != measured::HERE {
+        let text = format!("The figures were {source}: nothing says that they are of these sources.");
+        items.push(item(Severity::Open, measured::ENGINE, text));
+    }
     grouped(items)
 }
 
@@ -116,7 +130,7 @@ fn item(severity: Severity, about: &str, text: String) -> OpenItem {
 fn results(evidence: &[Evidence], items: &mut Vec<OpenItem>) {
     let mut groups: BTreeMap<(Verdict, Kind, String), Vec<String>> = BTreeMap::new();
     for one in evidence.iter().filter(|one| !one.verdict.holds()) {
-        let reason = one.reason.clone().unwrap_or_else(|| "no reason given".to_owned());
+        let reason = one.why().to_owned();
         groups.entry((one.verdict, one.kind, reason)).or_default().push(one.title.clone());
     }
     for ((verdict, kind, reason), names) in groups {

@@ -12,6 +12,8 @@ use std::{fs, io};
 pub const MARKER: &str = "incomplete";
 /// The hashes of the files of a case, in the form of `sha256sum`.
 pub const SUMS: &str = "SHA256SUMS";
+/// The short case of the station.
+pub const STATION: &str = "station.html";
 
 /// A case's folder while its run goes on.
 #[derive(Debug)]
@@ -119,6 +121,16 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
     }
     for plot in &case.measurements.plots {
         files.push((format!("plots/{}.svg", plot.name), format!("{}\n", plot.svg)));
+    }
+    if let Some(station) = &case.station {
+        files.push((STATION.to_owned(), html::station_page(case, station)));
+        files.push(("station/layout.toml".to_owned(), station.layout.clone()));
+        if !station.drawing.is_empty() {
+            files.push(("station/track-plan.svg".to_owned(), station.drawing.clone()));
+        }
+        if !station.table_page.is_empty() {
+            files.push(("station/control-table.html".to_owned(), station.table_page.clone()));
+        }
     }
     for set in &case.cut_sets {
         files.push((format!("traces/{}.jsonl", set.number), set.chart.trace.clone()));

@@ -226,12 +226,7 @@ impl Signal {
 
     /// What follows.
     pub fn derived(&self) -> Vec<Derived> {
-        let row = |name: &str, value: String, formula: &str, source: &str| Derived {
-            name: name.to_owned(),
-            value,
-            formula: formula.to_owned(),
-            source: source.to_owned(),
-        };
+        let row = Derived::row;
         let settings = self.permitted.settings();
         let worst = pattern(settings.brake.on(settings.worst), Metres(100));
         vec![

@@ -1,5 +1,6 @@
 //! The example's telegrams and sections, and every rule on them broken on purpose.
 
+use crate::config::tests::value;
 use crate::config::{EXAMPLE, parse};
 
 /// The example with one place of its part on telegrams changed; place in the file and message.
@@ -27,9 +28,7 @@ fn notes(from: &str, to: &str) -> String {
 #[test]
 fn the_example_has_the_known_figures() {
     let line = parse("l.toml", EXAMPLE).expect("good").case(&[]);
-    let value = |name: &str| {
-        line.derived.iter().find(|one| one.name.starts_with(name)).map(|one| one.value.clone()).unwrap_or_default()
-    };
+    let value = |name: &str| value(EXAMPLE, name);
     assert_eq!(value("Telegrams that may be lost"), "1");
     assert_eq!(value("A digital line without telegrams"), "5010 ms");
     // 530 + 5010 + 1500 ms; at 90 km/h that is 176 m.

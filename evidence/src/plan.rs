@@ -10,6 +10,7 @@ use crate::hazard;
 use crate::inputs::requirements::{self, Citation, Requirement};
 use crate::inputs::{measured, models, mutants, proofs};
 use crate::srac;
+use crate::station;
 use crate::trace;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -38,6 +39,8 @@ pub struct Plan {
     pub uses: BTreeMap<String, BTreeSet<String>>,
     /// The line.
     pub line: Checked,
+    /// The station, if one was given.
+    pub station: Option<station::Checked>,
     /// Numbers that could be raised in the ratchet.
     pub raise: Vec<String>,
 }
@@ -46,7 +49,11 @@ pub struct Plan {
 ///
 /// # Errors
 /// All faults of the first stage that has any.
-pub fn plan(root: &Path, line: Checked, mutants: Vec<mutants::Catalogue>) -> Result<Plan, Vec<Fault>> {
+pub fn plan(
+    root: &Path,
+    (line, station): (Checked, Option<station::Checked>),
+    mutants: Vec<mutants::Catalogue>,
+) -> Result<Plan, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];
     let data = Data::read(root).map_err(one)?;
     let requirements = requirements::specification(root).map_err(one)?;
@@ -60,7 +67,7 @@ pub fn plan(root: &Path, line: Checked, mutants: Vec<mutants::Catalogue>) -> Res
     }
     let uses = srac::uses(&data.assumptions, &harnesses, &models, &data.argument);
     let raise = ratchet(data.ratchet, &count(&harnesses, &models, &mutants, &requirements))?;
-    let plan = Plan { data, harnesses, models, mutants, requirements, citations, mentions, uses, line, raise };
+    let plan = Plan { data, harnesses, models, mutants, requirements, citations, mentions, uses, line, station, raise };
     plan.check()?;
     Ok(plan)
 }

@@ -122,7 +122,7 @@ impl Calibration {
     }
 
     fn reach(&self) -> f64 {
-        (0..SPANS).fold(0.0, |reach, _| reach + self.span())
+        f64::from(u16::try_from(SPANS).unwrap_or(0)) * self.span()
     }
 
     /// The interval at a knot for a difference in the middle of the curves there, without an odometer: its width.
@@ -141,12 +141,7 @@ impl Calibration {
 
     /// What follows.
     pub fn derived(&self) -> Vec<Derived> {
-        let row = |name: &str, value: String, formula: &str, source: &str| Derived {
-            name: name.to_owned(),
-            value,
-            formula: formula.to_owned(),
-            source: source.to_owned(),
-        };
+        let row = Derived::row;
         let rising = (0..SPANS).filter(|span| self.rises(*span)).count();
         let knots = [SPANS / 4, SPANS / 2, 3 * SPANS / 4];
         let widths = knots.map(|knot| {

@@ -1,5 +1,6 @@
 //! The example's attenuation table, and every rule on it broken on purpose.
 
+use crate::config::tests::value;
 use crate::config::{EXAMPLE, parse};
 
 fn changed(from: &str, to: &str) -> String {
@@ -21,9 +22,7 @@ fn refused(from: &str, to: &str) -> (String, String) {
 #[test]
 fn the_example_has_the_known_figures() {
     let line = parse("l.toml", EXAMPLE).expect("good").case(&[]);
-    let value = |name: &str| {
-        line.derived.iter().find(|one| one.name.starts_with(name)).map(|one| one.value.clone()).unwrap_or_default()
-    };
+    let value = |name: &str| value(EXAMPLE, name);
     assert_eq!(value("The attenuation table reaches"), "3276.8 m");
     assert_eq!(value("Spans in which both"), "16 of 16");
     // What two levels that are 0.1 dB off say at the wet limit, and at the dry one.

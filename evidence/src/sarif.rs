@@ -179,8 +179,7 @@ fn of_severity(severity: Severity) -> (&'static str, &'static str, Level) {
 }
 
 fn evidence(one: &Evidence) -> Finding {
-    let reason = one.reason.as_deref().unwrap_or("no reason given");
-    let mut text = format!("{} is {}: {}.", one.title, one.verdict, reason.trim_end_matches('.'));
+    let mut text = format!("{} is {}: {}.", one.title, one.verdict, one.why().trim_end_matches('.'));
     if !one.statement.is_empty() {
         text = format!("{text} It is about: {}", one.statement);
     }
@@ -198,10 +197,8 @@ fn item(case: &Case, one: &OpenItem) -> Finding {
 
 /// Whether the item says no more than the results of the evidence that it groups.
 fn groups(case: &Case, item: &OpenItem) -> bool {
-    case.evidence.iter().filter(|one| !one.verdict.holds()).any(|one| {
-        let reason = one.reason.as_deref().unwrap_or("no reason given");
-        item.text.starts_with(&format!("{}: {reason}", one.verdict))
-    })
+    let mut bad = case.evidence.iter().filter(|one| !one.verdict.holds());
+    bad.any(|one| item.text.starts_with(&format!("{}: {}", one.verdict, one.why())))
 }
 
 fn finding<'a>(

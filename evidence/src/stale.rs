@@ -13,7 +13,7 @@ fn touches(folder: &str, kind: Kind) -> bool {
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
         "waveform" => matches!(kind, Kind::Measured | Kind::Test),
-        "oracle" | "tests" | "evidence" => kind == Kind::Test,
+        "oracle" | "tests" | "evidence" | "layout" => kind == Kind::Test,
         _ => false,
     }
 }
@@ -83,7 +83,14 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     for (id, theorem) in &mut case.line.theorems {
         *theorem = verdict(id).unwrap_or(Verdict::NotRun);
     }
+    for (id, theorem) in case.station.iter_mut().flat_map(|station| &mut station.theorems) {
+        *theorem = verdict(id).unwrap_or(Verdict::NotRun);
+    }
+    for rule in &mut case.needed_rules {
+        rule.verdict = worst(&rule.mutants);
+    }
     case.conclusions = conclusions(&case.argument, &case.evidence, &case.conditions);
+    case.conclusions.extend(case.station.as_ref().map(crate::station::conclusion));
     case.open_items = crate::open::grouped(std::mem::take(&mut case.open_items));
     let required = if case.status.required.is_some() { Required::Proved } else { Required::NoDefect };
     case.status = status(case, required);

@@ -74,6 +74,43 @@ fn a_measurement_without_figures_ends_the_run_badly() {
     assert_eq!(both.status.code(), Some(2));
 }
 
+#[test]
+fn a_station_has_a_case_of_its_own_and_a_broken_rule_ends_it_badly() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("case");
+    let layout = root().join("layouts/passing-loop.toml");
+    let run = bare(&out, &["--layout", layout.to_str().expect("a path")]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run));
+    let page = std::fs::read_to_string(out.join("station.html")).expect("written");
+    assert!(page.contains("Not to be signed: every rule is kept, but") && page.contains("<svg"));
+    assert!(!page.contains("is proved for all") && !page.contains("To be confirmed and signed"), "nothing was run");
+    for file in ["station/track-plan.svg", "station/control-table.html", "station/layout.toml"] {
+        assert!(out.join(file).exists(), "{file}");
+        assert!(std::fs::read_to_string(out.join("SHA256SUMS")).expect("written").contains(file), "{file}");
+    }
+    let schema: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("case.schema.json")).expect("written")).expect("JSON");
+    assert!(jsonschema::validator_for(&schema).expect("a schema").is_valid(&json(&out)));
+
+    // A name with a space must not hide it.
+    let bad = folder.path().join("a bad station.toml");
+    let good = std::fs::read_to_string(&layout).expect("there");
+    std::fs::write(&bad, format!("{good}\n[times]\nclear_ms = 1000\n")).expect("written");
+    let run = bare(&out, &["--layout", bad.to_str().expect("a path")]);
+    assert_eq!(run.status.code(), Some(1), "{}", text(&run));
+    assert!(text(&run).contains("clear_ms must be more than 1000"), "{}", text(&run));
+    let reasons = json(&out)["status"]["reasons"].to_string();
+    assert_eq!(reasons.matches("[clear-under-shunt]").count(), 1, "{reasons}");
+    assert_eq!(json(&out)["station"]["theorems"], serde_json::json!([]));
+    let page = std::fs::read_to_string(out.join("station.html")).expect("written");
+    assert!(page.contains("Not to be signed: the layout is refused") && page.contains("No theorem holds for it"));
+
+    let missing = bare(&folder.path().join("other"), &["--layout", "nowhere.toml"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(text(&missing).contains("nowhere.toml: cannot be read"), "{}", text(&missing));
+    assert!(!folder.path().join("other").exists(), "nothing half-written");
+}
+
 /// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.
 fn line(result: &serde_json::Value) -> Option<String> {
     let place = &result["locations"][0]["physicalLocation"];

@@ -75,7 +75,7 @@ pub struct LineSection {
 }
 
 /// A figure that follows from the parameters.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Derived {
     /// What it is.
@@ -86,4 +86,11 @@ pub struct Derived {
     pub formula: String,
     /// The theorem that says so.
     pub source: String,
+}
+
+impl Derived {
+    /// A row of the table.
+    pub(crate) fn row(name: &str, value: String, formula: &str, source: &str) -> Self {
+        Self { name: name.to_owned(), value, formula: formula.to_owned(), source: source.to_owned() }
+    }
 }

@@ -1,28 +1,32 @@
 //! The safety case as data. Everything that is rendered is rendered from this, and this is what `case.json` holds.
 
+mod evidence;
 mod faults;
 mod line;
 mod measured;
 mod register;
+mod station;
 
 use crate::verdict::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+pub use evidence::{Claim, Cover, EngineResult, Evidence, Kind};
 pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
 pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
 pub use measured::{Figure, Measurements, Plot};
 pub use register::{Condition, Hazard, Requirement, Technique, Tool};
+pub use station::{Asked, Check, Confirm, DataCheck, Finding, NeededRule, Origin, Station, StationCondition};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 4.
+    /// The version of this shape: 5.
     pub schema: u32,
     /// What the case is about.
     pub title: String,
@@ -62,6 +66,10 @@ pub struct Case {
     pub tools: Vec<Tool>,
     /// The specific application: one line's parameters.
     pub line: Line,
+    /// The rules of layouts that theorems rest on.
+    pub needed_rules: Vec<NeededRule>,
+    /// The specific application on the ground: one station's layout.
+    pub station: Option<Station>,
 }
 
 /// What the results belong to.
@@ -142,111 +150,6 @@ pub struct OpenItem {
     pub about: String,
     /// What is open.
     pub text: String,
-}
-
-/// What kind of evidence.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    /// A theorem's harness.
-    Harness,
-    /// A state-space model.
-    Model,
-    /// A named wrong kernel: `tested` means killed.
-    Mutant,
-    /// A target that measured figures must meet.
-    Measured,
-    /// A suite of tests.
-    Test,
-}
-
-impl Kind {
-    /// The word before the colon of an id.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Harness => "harness",
-            Self::Model => "model",
-            Self::Mutant => "mutant",
-            Self::Measured => "measured",
-            Self::Test => "test",
-        }
-    }
-}
-
-/// One piece of evidence.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Evidence {
-    /// `harness:…`, `model:…`, `mutant:…`, `measured:…` or `test:…`.
-    pub id: String,
-    /// What kind it is.
-    pub kind: Kind,
-    /// A short title: the theorem's name, the model's, the mutant's, the suite's.
-    pub title: String,
-    /// What it shows, in plain English.
-    pub statement: String,
-    /// Where it stands, from the checkout: a harness's `file:line`, or that of the text which a wrong kernel changes.
-    pub at: Option<String>,
-    /// What it amounts to.
-    pub verdict: Verdict,
-    /// Bound, states and parameters, or numbers: what belongs with the verdict.
-    pub detail: String,
-    /// Why the verdict is not better.
-    pub reason: Option<String>,
-    /// Requirement ids.
-    pub requirements: Vec<String>,
-    /// Assumption ids.
-    pub assumptions: Vec<String>,
-    /// Claims (harness) or properties (model), each with its own verdict.
-    pub claims: Vec<Claim>,
-    /// Cover points.
-    pub covers: Vec<Cover>,
-    /// What each engine says of it.
-    pub engines: Vec<EngineResult>,
-    /// For a mutant: the harnesses that reject it, with the claims that turn red.
-    pub killed_by: Vec<String>,
-    /// Seconds of the engine that the verdict comes from.
-    pub seconds: f64,
-    /// The arbitrary values of a counterexample, in the order in which the harness draws them.
-    pub counterexample: Option<Vec<u16>>,
-}
-
-/// A claim or a model's property.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    /// Its name.
-    pub name: String,
-    /// What it says.
-    pub text: String,
-    /// Its own verdict.
-    pub verdict: Verdict,
-}
-
-/// A cover point.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Cover {
-    /// Its name.
-    pub name: String,
-    /// What is reached.
-    pub text: String,
-    /// Whether it was; nothing while no prover has run.
-    pub hit: Option<bool>,
-}
-
-/// One engine's word on one harness.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EngineResult {
-    /// `cbmc`, `kani`, `creusot`, `native`; for a model `spin`.
-    pub engine: String,
-    /// What it says.
-    pub verdict: Verdict,
-    /// Why, or how to run it.
-    pub note: String,
-    /// Seconds.
-    pub seconds: f64,
 }
 
 /// An engine and how far it went.

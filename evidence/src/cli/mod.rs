@@ -60,6 +60,9 @@ pub struct Run {
     /// A line's parameters (TOML); without this, the example of the patent.
     #[arg(long)]
     config: Option<PathBuf>,
+    /// A station's layout (TOML, railML 3 or OSRD): its data checks, control table and track plan become part of the case.
+    #[arg(long)]
+    layout: Option<PathBuf>,
     /// Where to write the case; without this, target/safety-case in the checkout.
     #[arg(long)]
     out: Option<PathBuf>,

@@ -11,6 +11,7 @@ use crate::output::Folder;
 use crate::plan::{Plan, plan};
 use crate::prover;
 use crate::stale;
+use crate::station;
 use crate::terminal;
 use atc_models::{Limits, Outcome};
 use atc_prover::report::{Campaign, SCHEMA};
@@ -31,7 +32,8 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         None => config::parse("evidence/examples/my-line.toml", config::EXAMPLE),
     }
     .map_err(one)?;
-    let plan = plan(&root, line, mutants::catalogue(&root).map_err(one)?)?;
+    let station = options.layout.as_deref().map(station::read).transpose()?;
+    let plan = plan(&root, (line, station), mutants::catalogue(&root).map_err(one)?)?;
     let sources = prover::sources(&root).map_err(one)?;
     let imported =
         options.import.iter().map(|path| import(path, &sources)).collect::<Result<Vec<_>, _>>().map_err(one)?;

@@ -2,7 +2,7 @@
 
 use super::{badge, seconds};
 use crate::case::{Case, Evidence, Figure, Kind};
-use crate::inputs::measured::shown;
+use crate::inputs::measured::{HERE, shown};
 use crate::verdict::Verdict;
 use maud::{Markup, PreEscaped, html};
 
@@ -21,7 +21,8 @@ pub fn render(case: &Case) -> Markup {
         } @else {
             dl.facts {
                 dt { "Run" } dd { (measured.source) @if measured.seconds > 0.0 { ", in " (seconds(measured.seconds)) }
-                    ", of the sources that this document is bound to" }
+                    @if measured.source == HERE { ", of the sources that this document is bound to" }
+                    @else { "; nothing says of which sources" } }
                 @for (name, value) in &measured.conditions { dt { (name) } dd { (value) } }
             }
             table {

@@ -7,11 +7,13 @@ mod measured;
 mod page_one;
 mod registers;
 mod report;
+mod station;
 mod theorems;
 
 use crate::case::Case;
 use crate::verdict::Verdict;
 pub use page_one::headline;
+pub use station::page as station_page;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -38,6 +40,7 @@ pub fn document(case: &Case) -> String {
                 (theorems::render(case))
                 (registers::render(case))
                 (measured::render(case))
+                (station::render(case))
                 (report::ending(case))
             }
         }
@@ -65,6 +68,7 @@ fn contents() -> Markup {
         ("tools", "4.12 Tools", true),
         ("line", "4.13 Specific application", true),
         ("measured", "4.14 Signal and position, measured", true),
+        ("layouts", "4.15 Layouts of stations", true),
         ("related", "5 Related safety cases", false),
         ("conclusion", "6 Conclusion", false),
         ("provenance", "7 Provenance", false),

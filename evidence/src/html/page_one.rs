@@ -52,7 +52,9 @@ pub fn render(case: &Case) -> Markup {
     html! {
         header {
             h1 { "Safety case" }
-            p.soft { (case.title) ". Line: " (case.line.name) "." br;
+            p.soft { (case.title) ". Line: " (case.line.name) "."
+                @if let Some(station) = &case.station { " Station: " a href="#layouts" { (station.name) } "." }
+                br;
                 "Commit " code { (commit) }
                 @if provenance.dirty == Some(true) { " with changes" }
                 " · sources " code { (provenance.sources_sha256.get(..12).unwrap_or("unknown")) }

@@ -21,14 +21,17 @@ pub fn definition(case: &Case) -> Markup {
                 sections to the sections that are reported occupied; blocks chained to a line, with holds for the tails of trains." }
             li { strong { "Telegrams, codes, permitted speed" } " (JP4845985B2), on board: from bits to telegrams with their check and counter, from \
                 code frequencies to speeds, and from both, the odometer and the distance to the exit to the one speed that is permitted." }
+            li { strong { "Interlocking and ATC" } " (JP4290933B2), on the ground: in one cycle from the occupied circuits, the detected points and one \
+                request to signals, point drives, and a telegram for each circuit; for every layout that its validator accepts." }
             li { strong { "Train position" } " (JP4045174B2), on board: from the levels of two signals to an interval that contains the train, or unknown." }
         }
         p { "Boundary: inputs are sets of detected aspects and speeds, received bits, code frequencies and levels, the odometer, check levels, \
-             detections and resets, once a logic cycle; outputs are the display, the brake command, the permitted speed, the position and the \
-             occupied sections. Receiver, antenna, brake, checks and detectors, hardware and operating system are outside; what is needed of them is in the "
+             detections and resets, track circuits, points and requests, once a logic cycle; outputs are the display, the brake command, the permitted speed, the position, the \
+             occupied sections, signals, point drives and telegrams of the ATC. Receiver, antenna, brake, checks and detectors, hardware and operating system are outside; what is needed of them is in the "
              a href="#conditions" { "application conditions" } "." }
         p { "The requirements are the " (case.requirements.len()) " sentences with MUST in " code { "spec/" } ", listed under "
-            a href="#traceability" { "traceability" } ". The specific application of this document is " a href="#line" { (case.line.name) } "." }
+            a href="#traceability" { "traceability" } ". The specific application of this document is " a href="#line" { (case.line.name) }
+            @if let Some(station) = &case.station { ", and on the ground the station " a href="#layouts" { (station.name) } } "." }
     }
 }
 

@@ -1,32 +1,17 @@
 //! The headline, and that nothing reassuring stands above what is open.
 
-use super::{document, headline};
+use super::{document, headline, station_page};
 use crate::case::{
-    Case, Chart, Conclusion, CutSet, Derived, Evidence, Excluded, FailureMode, Kind, Line, Measurements, OpenItem,
-    Provenance, SCHEMA, SecondOpinion, Severity, Status,
+    Asked, Case, Chart, Check, Conclusion, CutSet, DataCheck, Derived, Evidence, Excluded, FailureMode, Figure, Kind,
+    Line, Measurements, OpenItem, Provenance, SCHEMA, SecondOpinion, Severity, Station, Status,
 };
+use crate::inputs::measured::HERE;
 use crate::verdict::Verdict;
 
 pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
     let text = String::new;
-    let evidence = Evidence {
-        id: "harness:t".to_owned(),
-        kind: Kind::Harness,
-        title: "t".to_owned(),
-        statement: "a < b & c".to_owned(),
-        at: None,
-        verdict,
-        detail: text(),
-        reason: None,
-        requirements: vec![],
-        assumptions: vec![],
-        claims: vec![],
-        covers: vec![],
-        engines: vec![],
-        killed_by: vec![],
-        seconds: 1.0,
-        counterexample: None,
-    };
+    let evidence =
+        Evidence { statement: "a < b & c".to_owned(), seconds: 1.0, ..Evidence::bare(Kind::Harness, "t", verdict) };
     let missing = if verdict.is_result() { vec![] } else { vec![evidence.id.clone()] };
     let about = "ACC-1".to_owned();
     let item = |severity| OpenItem { severity, about: about.clone(), text: "Something is open.".to_owned() };
@@ -67,6 +52,8 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
             theorems: vec![],
             checks: vec![],
         },
+        needed_rules: vec![],
+        station: None,
     }
 }
 
@@ -154,4 +141,60 @@ fn a_second_opinion_that_differs_is_seen() {
     case.second_opinions = vec![opinion(Verdict::ModelChecked)];
     let page = document(&case);
     assert!(page.contains("agrees") && page.contains("6.5.2") && !page.contains("<strong>differs</strong>"));
+}
+
+#[test]
+fn figures_that_were_read_are_not_said_to_be_of_these_sources() {
+    for (source, here) in [(HERE, true), ("read from elsewhere", false)] {
+        let mut case = case(Verdict::Tested, None);
+        let figure = Figure { unit: "dB".to_owned(), value: Some(0.5), ..Figure::default() };
+        case.measurements =
+            Measurements { source: source.to_owned(), figures: vec![figure], ..Measurements::default() };
+        let page = document(&case);
+        assert_eq!(page.contains("of the sources that this document is bound to"), here, "{source}");
+        assert_eq!(page.contains("nothing says of which sources"), !here, "{source}");
+    }
+}
+
+#[test]
+fn a_station_is_to_be_signed_only_with_every_rule_kept_and_every_theorem_shown() {
+    let rule = |check| DataCheck {
+        rule: "no-flank".to_owned(),
+        text: "t".to_owned(),
+        asked: Asked::Engineering,
+        scope: "1 route".to_owned(),
+        check,
+        broken: vec![],
+    };
+    let page = |check, verdict| {
+        let station = Station {
+            name: "A <b> & C".to_owned(),
+            source: "s.toml".to_owned(),
+            sha256: "00".to_owned(),
+            parameters: vec![],
+            checks: vec![rule(check)],
+            confirm: vec![],
+            conditions: vec![],
+            theorems: vec![("harness:t".to_owned(), verdict)],
+            drawing: String::new(),
+            columns: vec![],
+            table: vec![],
+            table_page: String::new(),
+            layout: String::new(),
+        };
+        station_page(&case(verdict, None), &station)
+    };
+    let invites = |page: &str| page.contains("To be confirmed and signed.");
+    let forbids = |page: &str| page.contains("Not to be signed: ") && page.contains(">not to be signed</span>");
+    let good = page(Check::Kept, Verdict::ProvedBounded);
+    assert!(invites(&good) && !forbids(&good));
+    assert!(!page(Check::Kept, Verdict::Proved).contains("A <b>"));
+    for verdict in Verdict::ALL.into_iter().filter(|verdict| !verdict.holds()) {
+        let page = page(Check::Kept, verdict);
+        assert!(!invites(&page) && forbids(&page), "{verdict}");
+    }
+    for check in [Check::Broken, Check::NotChecked] {
+        let page = page(check, Verdict::Proved);
+        assert!(!invites(&page) && forbids(&page), "{check:?}");
+    }
 }

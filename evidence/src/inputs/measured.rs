@@ -8,6 +8,7 @@ mod figures;
 pub use bench::Bench;
 pub use figures::shown;
 
+use super::cargo;
 use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
 use crate::verdict::Verdict;
 use std::fs::{self, File};
@@ -19,6 +20,9 @@ use std::time::{Duration, Instant};
 pub const ENGINE: &str = "waveform";
 const WHAT: &str = "generator, channel, receivers and the track as a line, in floating point, outside the kernel";
 const COMMAND: &str = "cargo run --release -p atc-waveform --bin waveform -- bench --quick --out FOLDER";
+
+/// The source of a run that was started here, on these sources.
+pub const HERE: &str = "run here";
 
 /// A target that figures must meet.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +76,7 @@ pub struct Ran {
     pub bench: Bench,
     /// Its plots: name and drawing.
     pub plots: Vec<(String, String)>,
-    /// `run here`, or the folder.
+    /// [`HERE`], or the folder.
     pub source: String,
     /// Seconds; 0 if it is not known.
     pub seconds: f64,
@@ -80,13 +84,13 @@ pub struct Ran {
 
 /// Builds the package at `root`, runs it with its results in `folder`, for at most `limit`, and reads them.
 pub fn run(root: &Path, folder: &Path, limit: Duration) -> Run {
-    let cargo = || {
-        let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-        command.current_dir(root).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let quiet = || {
+        let mut command = cargo::command(root);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
         command
     };
     let package = ["--release", "--quiet", "--package", "atc-waveform", "--bin", "waveform"];
-    match cargo().arg("build").args(package).status() {
+    match quiet().arg("build").args(package).status() {
         Err(error) => return Run::NotRun(format!("cargo cannot be started: {error}")),
         Ok(status) if !status.success() => {
             return Run::NotRun("atc-waveform cannot be built here: see `cargo build -p atc-waveform`".to_owned());
@@ -98,7 +102,7 @@ pub fn run(root: &Path, folder: &Path, limit: Duration) -> Run {
     }
     let log = folder.join("bench.log");
     let start = Instant::now();
-    let mut command = cargo();
+    let mut command = quiet();
     command.arg("run").args(package).args(["--", "bench", "--quick", "--out"]).arg(folder);
     if let Ok(file) = File::create(&log) {
         if let Ok(second) = file.try_clone() {
@@ -113,7 +117,7 @@ pub fn run(root: &Path, folder: &Path, limit: Duration) -> Run {
             let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
             Run::Failed(format!("the measurement ended with an error: {last}"))
         }
-        Ok(_) => match read(folder, "run here") {
+        Ok(_) => match read(folder, HERE) {
             Run::Ran(ran) => Run::Ran(Box::new(Ran { seconds: start.elapsed().as_secs_f64(), ..*ran })),
             other => other,
         },
@@ -244,22 +248,10 @@ fn judge(target: &Target, figures: &[Figure], bench: &Bench) -> (Verdict, String
 
 fn one(target: &Target, verdict: Verdict, detail: String, reason: Option<String>) -> Evidence {
     Evidence {
-        id: id(target.name),
-        kind: Kind::Measured,
-        title: target.name.to_owned(),
         statement: target.statement.to_owned(),
-        at: None,
-        verdict,
         detail,
         reason,
-        requirements: Vec::new(),
-        assumptions: Vec::new(),
-        claims: Vec::new(),
-        covers: Vec::new(),
-        engines: Vec::new(),
-        killed_by: Vec::new(),
-        seconds: 0.0,
-        counterexample: None,
+        ..Evidence::bare(Kind::Measured, target.name, verdict)
     }
 }
 

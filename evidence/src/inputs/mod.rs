@@ -1,5 +1,6 @@
 //! What the case is made of, read and judged piece by piece.
 
+pub mod cargo;
 pub mod faults;
 pub mod measured;
 pub mod models;

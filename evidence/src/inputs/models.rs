@@ -176,22 +176,11 @@ fn claimed_display(step: &Step) -> Option<&Value> {
 
 fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
     Evidence {
-        id: id(&model.name),
-        kind: Kind::Model,
-        title: model.name.clone(),
         statement: model.statement.clone(),
-        at: None,
-        verdict,
-        detail: String::new(),
         reason: Some(reason.to_owned()).filter(|reason| !reason.is_empty()),
         requirements: model.requirements.clone(),
         assumptions: model.assumptions.clone(),
-        claims: Vec::new(),
-        covers: Vec::new(),
-        engines: Vec::new(),
-        killed_by: Vec::new(),
-        seconds: 0.0,
-        counterexample: None,
+        ..Evidence::bare(Kind::Model, &model.name, verdict)
     }
 }
 

@@ -15,8 +15,10 @@ pub struct Catalogue {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The text that it changes: `kernel/src/….rs:12`.
+    /// The place of the text that it changes: `kernel/src/….rs:12`.
     pub at: Option<String>,
+    /// That text.
+    pub find: String,
 }
 
 /// The wrong kernels of `proofs/mutants.toml`, in its order.
@@ -34,6 +36,7 @@ pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
             what: mutant.what,
             requirements: mutant.requirements,
             at: line.map(|line| format!("{file}:{line}")),
+            find: mutant.find,
         })
     };
     all.into_iter().map(one).collect()
@@ -57,12 +60,8 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
             let result = mine.first();
             let killers = result.map(|result| result.killed_by.as_slice()).unwrap_or_default();
             Evidence {
-                id: format!("mutant:{}", mutant.name),
-                kind: Kind::Mutant,
-                title: mutant.name.clone(),
                 statement: mutant.what.clone(),
                 at: mutant.at.clone(),
-                verdict,
                 detail: match verdict {
                     Verdict::Tested => "killed".to_owned(),
                     Verdict::Failed => "survived".to_owned(),
@@ -70,10 +69,6 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
                 },
                 reason,
                 requirements: mutant.requirements.clone(),
-                assumptions: Vec::new(),
-                claims: Vec::new(),
-                covers: Vec::new(),
-                engines: Vec::new(),
                 killed_by: killers
                     .iter()
                     .map(|killer| match killer.claims.len() {
@@ -82,7 +77,7 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
                     })
                     .collect(),
                 seconds: result.map_or(0.0, |result| result.seconds),
-                counterexample: None,
+                ..Evidence::bare(Kind::Mutant, &mutant.name, verdict)
             }
         })
         .collect()
@@ -113,7 +108,8 @@ mod tests {
     use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
-        let catalogue = Catalogue { name: "m".to_owned(), what: "w".to_owned(), requirements: vec![], at: None };
+        let (name, what) = ("m".to_owned(), "w".to_owned());
+        let catalogue = Catalogue { name, what, requirements: vec![], at: None, find: String::new() };
         let killer = Kill { harness: "t".to_owned(), claims: vec![], counterexample: None };
         let result = MutantResult {
             name: "m".to_owned(),

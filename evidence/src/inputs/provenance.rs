@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The folders whose contents are evidence or produce it, each with its own hash.
-pub const FOLDERS: &[&str] = &["kernel", "proofs", "models", "oracle", "waveform", "tests", "spec", "evidence"];
+pub const FOLDERS: &[&str] =
+    &["kernel", "layout", "proofs", "models", "oracle", "waveform", "tests", "spec", "evidence"];
 
 /// The SHA-256 of the contents of a folder, file names and sizes included; build output and hidden files excluded.
 ///

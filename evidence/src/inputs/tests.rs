@@ -3,12 +3,12 @@
 //! What cargo prints is the only stable interface without nightly. So the reading is strict: a binary that was started
 //! and has no closing line was killed, and a run in which no test ran is an error, not a success.
 
+use super::cargo;
 use crate::case::{Evidence, Kind};
 use crate::verdict::Verdict;
 use std::fs::File;
 use std::io;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// One test binary's closing line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,11 +47,8 @@ pub enum Run {
 /// Cargo cannot be started, or the log cannot be written.
 pub fn run(root: &Path, log: &Path) -> io::Result<Run> {
     let file = File::create(log)?;
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
+    let status = cargo::command(root)
         .args(["test", "--workspace", "--no-fail-fast", "--color=never"])
-        .current_dir(root)
-        .stdin(Stdio::null())
         // One file for both streams: the binaries' names are on one, their results on the other, in turn.
         .stdout(file.try_clone()?)
         .stderr(file)
@@ -163,24 +160,8 @@ fn numbers(passed: u64, failed: u64, ignored: u64, filtered: u64) -> String {
 
 /// The evidence of one suite.
 pub fn one(name: &str, verdict: Verdict, detail: String, reason: Option<String>) -> Evidence {
-    Evidence {
-        id: format!("test:{name}"),
-        kind: Kind::Test,
-        title: if name == "all" { "All tests of the workspace".to_owned() } else { name.to_owned() },
-        statement: String::new(),
-        at: None,
-        verdict,
-        detail,
-        reason,
-        requirements: Vec::new(),
-        assumptions: Vec::new(),
-        claims: Vec::new(),
-        covers: Vec::new(),
-        engines: Vec::new(),
-        killed_by: Vec::new(),
-        seconds: 0.0,
-        counterexample: None,
-    }
+    let title = if name == "all" { "All tests of the workspace" } else { name };
+    Evidence { title: title.to_owned(), detail, reason, ..Evidence::bare(Kind::Test, name, verdict) }
 }
 
 #[cfg(test)]

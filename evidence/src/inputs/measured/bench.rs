@@ -182,7 +182,7 @@ pub struct Moment {
 }
 
 impl Run {
-    /// Whether the cycles themselves have as many intervals without the train as it says: none.
+    /// Whether the train is outside its interval in some cycle.
     fn misses(&self) -> bool {
         let outside = |one: &Moment| one.interval.is_some_and(|(near, far)| one.truth < near || one.truth > far);
         self.points.iter().any(outside)

@@ -17,7 +17,7 @@ const OUTSIDE: &str = "Position outside the limits of its table";
 const MOST_LOSS_DB: f64 = 1.0;
 /// The tolerance of a level in the measured positions, in decibels.
 const TOLERANCE_DB: f64 = 0.1;
-/// Where one error in a million bits makes no difference.
+/// How far a rate may be from its errors over its bits: by less than one error in a million bits.
 pub(super) const AN_ERROR_RATE: f64 = 1e-7;
 
 /// A part of a whole.
@@ -76,16 +76,7 @@ fn raised(exponent: f64) -> String {
 }
 
 fn figure(group: &str, name: String, value: Option<f64>, unit: &str, of: String) -> Figure {
-    Figure {
-        group: group.to_owned(),
-        name,
-        value,
-        unit: unit.to_owned(),
-        of,
-        theory: None,
-        at_most: None,
-        evidence: None,
-    }
+    Figure { group: group.to_owned(), name, value, unit: unit.to_owned(), of, ..Figure::default() }
 }
 
 fn aimed(figure: Figure, at_most: f64, target: &str) -> Figure {

@@ -1,0 +1,139 @@
+//! A station's parameters, and everything that somebody must confirm.
+
+use super::place;
+use crate::case::{Confirm, Derived, Origin};
+use atc_layout::form::Station;
+use atc_layout::import::Imported;
+use atc_layout::model::{Model, Route};
+use atc_layout::{At, Description};
+use std::ops::Range;
+
+/// Name, value, how it was made of what the file says, and where that stands.
+pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
+    let Station { times, braking, overlaps, longest_train_m, .. } = &description.station;
+    let at = |span: &Range<usize>| at(description, span);
+    let row =
+        |name: &str, value: String, formula: &str, span: &Range<usize>| Derived::row(name, value, formula, &at(span));
+    let cycle = model.values.cycle_ms;
+    let kept = |name: &str, time: &At<u32>, ticks: u32, way: &str| {
+        let value = format!("{} ms ({ticks} cycles)", ticks * cycle);
+        row(name, value, &format!("{} ms, rounded {way}", time.value), &time.span)
+    };
+    let of_routes = |name: &str, time: &At<u32>, ticks: fn(&Route) -> u16, way: &str| {
+        let all = model.routes.iter().map(|route| u32::from(ticks(route)) * cycle);
+        let value = match (all.clone().min(), all.max()) {
+            (Some(least), Some(most)) if least == most => format!("{least} ms"),
+            (Some(least), Some(most)) => format!("{least} to {most} ms, by route"),
+            _ => "no route".to_owned(),
+        };
+        row(name, value, &format!("{} ms where a route names none; rounded {way}", time.value), &time.span)
+    };
+    let mut rows = vec![
+        row("Logic cycle", format!("{cycle} ms"), "", &times.cycle_ms.span),
+        kept("A circuit counts as clear after", &times.clear_ms, model.values.clear.into(), "up"),
+        row("Longest loss of shunt", format!("{} ms", times.shunt_loss_ms), "", &times.shunt_loss_ms.span),
+        of_routes("Drive time", &times.drive_ms, |route| route.drive.0, "down"),
+        row("Longest stroke of a point", format!("{} ms", longest_stroke(model)), "", &times.throw_ms.span),
+        of_routes("Release time", &times.release_ms, |route| route.release.0, "up"),
+        of_routes("Stay time", &times.stay_ms, |route| route.stay.0, "up"),
+        kept("Turn time of plain line", &times.turn_ms, model.values.turn.0.into(), "up"),
+        row("Oldest telegram", format!("{} ms", times.telegram_age_ms), "", &times.telegram_age_ms.span),
+        row(
+            "Brake on the level",
+            format!("{} mm/s²", braking.deceleration_mm_s2),
+            "every train has at least this",
+            &braking.deceleration_mm_s2.span,
+        ),
+        row("Least overlap", format!("{} m", overlaps.least_m), "", &overlaps.least_m.span),
+    ];
+    if let Some(length) = longest_train_m {
+        rows.push(row("Longest train", format!("{length} m"), "", &length.span));
+    }
+    let codes = model.values.speeds_kmh.iter().zip(&model.values.braking).enumerate().skip(1);
+    for (code, (speed, distance)) in codes.filter(|(_, (speed, _))| **speed > 0) {
+        let value = format!("{speed} km/h, stops within {} m", distance.0);
+        rows.push(row(
+            &format!("Speed code {code}"),
+            value,
+            "braking pattern, worst gradient",
+            &braking.speeds_kmh.span,
+        ));
+    }
+    rows
+}
+
+fn longest_stroke(model: &Model) -> u32 {
+    model.points.iter().map(|point| point.throw_ms).max().unwrap_or(0)
+}
+
+/// Where a value stands: file, line and column, or `default`.
+fn at(description: &Description, span: &Range<usize>) -> String {
+    match description.source.place(span) {
+        Some(at) => place(&description.source.name, Some(at)),
+        None => "default, or assumed on import".to_owned(),
+    }
+}
+
+/// What the file gives a reason for, what stands by default or was assumed on import, and what follows from the tracks.
+pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
+    let Imported { description, report } = imported;
+    let station = &description.station;
+    let one = |origin, about: &str, text: String, at: String| Confirm { origin, about: about.to_owned(), text, at };
+    let mut all = Vec::new();
+    for point in &station.points {
+        for (leg, reason) in [("normal", &point.normal_unprotected), ("reverse", &point.reverse_unprotected)] {
+            if let Some(reason) = reason {
+                let about = format!("point {}, {leg} leg", point.name);
+                let text = format!("no flank protection: {reason}");
+                all.push(one(Origin::Reason, &about, text, at(description, &reason.span)));
+            }
+        }
+    }
+    for route in &station.routes {
+        if let Some(reason) = &route.short_overlap {
+            let about = format!("route {}", route.name);
+            all.push(one(Origin::Reason, &about, format!("short overlap: {reason}"), at(description, &reason.span)));
+        }
+    }
+    // Of an imported file the report says what was assumed.
+    if !description.source.text.is_empty() && report.taken.is_empty() {
+        for (name, value) in defaults(station) {
+            all.push(one(Origin::Default, name, value, String::new()));
+        }
+    }
+    let reported =
+        [(Origin::Import, &report.defaulted), (Origin::Lacking, &report.lacking), (Origin::NotUsed, &report.skipped)];
+    for (origin, lines) in reported {
+        all.extend(lines.iter().map(|line| one(origin, "import", line.clone(), String::new())));
+    }
+    let notes = model.iter().flat_map(|model| &model.notes);
+    all.extend(notes.map(|note| one(Origin::Derived, &note.about, note.text.clone(), String::new())));
+    all
+}
+
+/// The values for the whole station that the file does not give.
+fn defaults(station: &Station) -> Vec<(&'static str, String)> {
+    let times = &station.times;
+    let mut all: Vec<(&'static str, &Range<usize>, String)> = [
+        ("times.cycle_ms", &times.cycle_ms),
+        ("times.clear_ms", &times.clear_ms),
+        ("times.shunt_loss_ms", &times.shunt_loss_ms),
+        ("times.drive_ms", &times.drive_ms),
+        ("times.throw_ms", &times.throw_ms),
+        ("times.release_ms", &times.release_ms),
+        ("times.stay_ms", &times.stay_ms),
+        ("times.turn_ms", &times.turn_ms),
+        ("times.telegram_age_ms", &times.telegram_age_ms),
+    ]
+    .map(|(name, time)| (name, &time.span, format!("{time} ms")))
+    .into();
+    let braking = &station.braking;
+    let brake = &braking.deceleration_mm_s2;
+    all.push(("braking.deceleration_mm_s2", &brake.span, format!("{brake} mm/s²")));
+    let speeds = &braking.speeds_kmh;
+    all.push(("braking.speeds_kmh", &speeds.span, format!("{:?} km/h", speeds.value)));
+    let least = &station.overlaps.least_m;
+    all.push(("overlaps.least_m", &least.span, format!("{least} m")));
+    let missing = all.into_iter().filter(|(_, span, _)| span.is_empty());
+    missing.map(|(name, _, value)| (name, format!("the file does not say; {value} is taken"))).collect()
+}
