@@ -114,6 +114,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
             self.check_route(number, route, report);
         }
         for (number, segment) in (0_u8..).zip(&self.segments) {
+            require(report, usize::from(segment.length) <= P, Rule::PathTooLong, Place::Segment(number));
             let mut others = self.all_paths();
             for (other, segment) in (0_u8..).zip(&self.segments) {
                 others = others.or(segment.throat).or(segment.all().only_if(other != number));
@@ -204,8 +205,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
                 used = used.or(route.held_from(0).circuits);
             }
         }
-        for (number, segment) in (0_u8..).zip(&self.segments) {
-            require(report, usize::from(segment.length) <= P, Rule::PathTooLong, Place::Segment(number));
+        for segment in &self.segments {
             used = used.or(segment.all());
         }
         for (number, length) in (0_u8..).zip(&self.lengths) {
