@@ -24,6 +24,17 @@ pub fn catalogue() -> Vec<Entry> {
     entries
 }
 
+/// All conditions but the one at `place`. `M` is one less than `N`.
+const fn all_but<const N: usize, const M: usize>(all: [&'static str; N], place: usize) -> [&'static str; M] {
+    let mut kept = [""; M];
+    let mut next = 0;
+    while next < M {
+        kept[next] = all[if next < place { next } else { next + 1 }];
+        next += 1;
+    }
+    kept
+}
+
 fn comparisons() -> Vec<Entry> {
     let statement = "Whatever is detected: where the conventional device or the machine as claimed shows something, the device \
                      shows nothing higher; its display rises only on T1 of evidence and falls only to an aspect heard for T5; \

@@ -1,21 +1,21 @@
 //! The interlocking: what the models show, wrong layouts, traces that are runs of the kernel, and the ground truth.
 
 mod common;
+mod meeting;
 
 use atc_kernel::Machine;
-use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Input, Layout, Positions, Request, RouteId, Rule, SegmentId, State, Travel, movement,
-};
+use atc_kernel::interlocking::{CircuitId, CircuitSet, Input, Layout, Positions, Rule, State, Travel, movement};
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
 use atc_models::interlocking::ground::{Ahead, Blade, Heading};
 use atc_models::interlocking::stations::{
-    Overlaps, circuits, crossing, junction, loop_route, passing, passing_loop, rest, siding, terminus,
+    Overlaps, circuits, crossing, junction, passing, passing_loop, rest, siding, terminus,
 };
 use atc_models::interlocking::yard::{self, Yard};
 use atc_models::interlocking::{Purpose, Sight};
 use atc_models::{Expectation, Outcome, Subject, Verdict, catalogue, check};
 use common::outcome;
+use meeting::{dispatch, meeting, turn};
 use std::collections::{BTreeSet, HashSet};
 use std::sync::LazyLock;
 
@@ -23,25 +23,6 @@ static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
     let entries: Vec<_> = catalogue().into_iter().filter(|entry| entry.name.starts_with("interlocking")).collect();
     atc_models::in_parallel(&entries, 2, |entry| check(entry, 1), |_| ())
 });
-
-const UP: Start = Start { at: passing::W, heading: Heading::Up, segment: Some(0) };
-const DOWN: Start = Start { at: passing::E, heading: Heading::Down, segment: Some(1) };
-
-fn dispatch(routes: &[u8]) -> Vec<Request> {
-    let id = |route: &u8| RouteId::new(*route).expect("a route");
-    routes.iter().flat_map(|route| [Request::Set(id(route)), Request::Withdraw(id(route))]).collect()
-}
-
-fn turn(segment: u8, travel: Travel) -> Request {
-    Request::Turn(SegmentId::new(segment).expect("a segment"), travel)
-}
-
-/// Two trains that meet in the passing loop.
-fn meeting() -> Environment {
-    let routes = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE, loop_route::DOWN_IN_TWO, loop_route::DOWN_OUT_TWO];
-    let turns = [0, 1].into_iter().flat_map(|segment| [turn(segment, Travel::Toward), turn(segment, Travel::Away)]);
-    Environment { requests: dispatch(&routes).into_iter().chain(turns).collect(), ..Environment::usual(vec![UP, DOWN]) }
-}
 
 #[test]
 fn a_sight_that_is_not_reached_turns_red() {

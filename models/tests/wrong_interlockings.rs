@@ -1,10 +1,10 @@
 //! Wrong devices in the models of the interlocking: each must turn a claim red that the kernel keeps in the same model.
 
 mod common;
+mod meeting;
 
 use atc_kernel::interlocking::{
-    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteId, RouteState, SegmentId, SpeedCode, State,
-    Table, Travel, Works,
+    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteState, SpeedCode, State, Table, Travel, Works,
 };
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
@@ -16,25 +16,7 @@ use atc_models::interlocking::yard::Yard;
 use atc_models::interlocking::{Purpose, Sight};
 use atc_models::{Outcome, Verdict};
 use common::outcome;
-
-const UP: Start = Start { at: passing::W, heading: Heading::Up, segment: Some(0) };
-const DOWN: Start = Start { at: passing::E, heading: Heading::Down, segment: Some(1) };
-
-fn dispatch(routes: &[u8]) -> Vec<Request> {
-    let id = |route: &u8| RouteId::new(*route).expect("a route");
-    routes.iter().flat_map(|route| [Request::Set(id(route)), Request::Withdraw(id(route))]).collect()
-}
-
-fn turn(segment: u8, travel: Travel) -> Request {
-    Request::Turn(SegmentId::new(segment).expect("a segment"), travel)
-}
-
-/// Two trains that meet in the passing loop.
-fn meeting() -> Environment {
-    let routes = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE, loop_route::DOWN_IN_TWO, loop_route::DOWN_OUT_TWO];
-    let turns = [0, 1].into_iter().flat_map(|segment| [turn(segment, Travel::Toward), turn(segment, Travel::Away)]);
-    Environment { requests: dispatch(&routes).into_iter().chain(turns).collect(), ..Environment::usual(vec![UP, DOWN]) }
-}
+use meeting::{UP, dispatch, meeting, turn};
 
 /// The kernel's device with a defect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -35,13 +35,7 @@ const ALL: [&str; 8] = [
 
 /// All but the one at `place`.
 const fn without(place: usize) -> [&'static str; ALL.len() - 1] {
-    let mut kept = [""; ALL.len() - 1];
-    let mut next = 0;
-    while next < kept.len() {
-        kept[next] = ALL[if next < place { next } else { next + 1 }];
-        next += 1;
-    }
-    kept
+    super::all_but(ALL, place)
 }
 
 /// What a model assumes, and what it lifts.

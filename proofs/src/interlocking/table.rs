@@ -129,6 +129,44 @@ harness! {
     }
 }
 
+/// A layout, contents of a table, a cycle, and a circuit that stands for all.
+struct Scene {
+    layout: Layout<1, 1, 0, 1>,
+    contents: Contents<1>,
+    now: Epoch,
+    circuit: CircuitId,
+}
+
+fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
+    let circuit = CircuitId::new(any_byte(e, "a circuit that stands for all (number)", 0..=7));
+    let layout = Layout::with_what_proofs_need(Plan { clear: 1, turn: Ticks(1), ..Plan::EMPTY });
+    let contents = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
+    let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+    e.assume(circuit.is_some() && layout.is_ok());
+    Some(Scene { layout: layout.ok()?, contents, now, circuit: circuit? })
+}
+
+impl Scene {
+    /// Whether the circuit's telegram tells a train to stay where it is.
+    #[inline(always)]
+    fn stops(&self, table: &Table<1>) -> bool {
+        let mut stop = true;
+        for (place, it) in (0_u8..).zip(&self.layout.telegrams(table, self.now)) {
+            let stays = it.stop == self.circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
+            stop &= place != self.circuit.number() || stays;
+        }
+        stop
+    }
+
+    /// Whether the contents say that a train in the circuit is granted something.
+    #[inline(always)]
+    fn grants(&self) -> bool {
+        let (number, grant) = (self.circuit.number(), self.contents.grants[0]);
+        let train = self.contents.occupied.bits() >> number & 1 == 1;
+        train && grant.train.bits() == 1_u64 << number && grant.circuits.bits() != 0
+    }
+}
+
 harness! {
     /// Where the table is of another cycle, every circuit gets a telegram that tells a train to stay where it is.
     t_atc_3_stale(e)
@@ -144,26 +182,14 @@ harness! {
         Train: "the table says that a train in the circuit is granted something",
     }
     {
-        let number = any_byte(e, "a circuit that stands for all (number)", 0..=7);
-        let Some(circuit) = CircuitId::new(number) else { return e.assume(false) };
-        let plan = Plan::<1, 1, 0, 1> { clear: 1, turn: Ticks(1), ..Plan::EMPTY };
-        let Ok(layout) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
-        let contents: Contents<1> = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
-        let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+        let Some(scene) = any_scene(e) else { return };
         let written = Epoch(e.word("epoch", 0..=1));
-        if written == now {
+        if written == scene.now {
             return e.assume(false);
         }
-        let table = Table::write(written, contents);
-        let telegrams = layout.telegrams(&table, now);
-        let mut stop = true;
-        for (place, it) in (0_u8..).zip(&telegrams) {
-            stop &= place != number || it.stop == circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
-        }
-        e.claim(Claim::Stop as u32, stop);
-        let train = contents.occupied.bits() >> number & 1 == 1;
-        let granted = contents.grants[0].train.bits() == 1_u64 << number && contents.grants[0].circuits.bits() != 0;
-        e.cover(Cover::Train as u32, train && granted);
+        let table = Table::write(written, scene.contents);
+        e.claim(Claim::Stop as u32, scene.stops(&table));
+        e.cover(Cover::Train as u32, scene.grants());
     }
 }
 
@@ -182,26 +208,14 @@ harness! {
         Train: "the table says that a train in the circuit is granted something",
     }
     {
-        let number = any_byte(e, "a circuit that stands for all (number)", 0..=7);
-        let Some(circuit) = CircuitId::new(number) else { return e.assume(false) };
-        let plan = Plan::<1, 1, 0, 1> { clear: 1, turn: Ticks(1), ..Plan::EMPTY };
-        let Ok(layout) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
-        let contents: Contents<1> = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
-        let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+        let Some(scene) = any_scene(e) else { return };
         let damage = u64::from(e.word("difference of the check", 0..=1));
         if damage == 0 {
             return e.assume(false);
         }
-        let (_, right, _) = Table::write(now, contents).parts();
-        let table = Table::from_parts(now, right ^ damage, contents);
-        let telegrams = layout.telegrams(&table, now);
-        let mut stop = true;
-        for (place, it) in (0_u8..).zip(&telegrams) {
-            stop &= place != number || it.stop == circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
-        }
-        e.claim(Claim::Stop as u32, stop);
-        let train = contents.occupied.bits() >> number & 1 == 1;
-        let granted = contents.grants[0].train.bits() == 1_u64 << number && contents.grants[0].circuits.bits() != 0;
-        e.cover(Cover::Train as u32, train && granted);
+        let (_, right, _) = Table::write(scene.now, scene.contents).parts();
+        let table = Table::from_parts(scene.now, right ^ damage, scene.contents);
+        e.claim(Claim::Stop as u32, scene.stops(&table));
+        e.cover(Cover::Train as u32, scene.grants());
     }
 }
