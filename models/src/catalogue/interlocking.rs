@@ -42,13 +42,7 @@ const ALL: [&str; 12] = [
 
 /// All but the one at `place`.
 const fn without(place: usize) -> [&'static str; ALL.len() - 1] {
-    let mut kept = [""; ALL.len() - 1];
-    let mut next = 0;
-    while next < kept.len() {
-        kept[next] = ALL[if next < place { next } else { next + 1 }];
-        next += 1;
-    }
-    kept
+    super::all_but(ALL, place)
 }
 
 /// What a model assumes, and what it lifts.
@@ -56,8 +50,9 @@ type Conditions = (&'static [&'static str], &'static [&'static str]);
 
 const SOUND: Conditions = (&ALL, &[]);
 
-const ROUTES: &[&str] = &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-5", "ILK-6", "ILK-9", "ATC-1"];
-const POINTS: &[&str] = &["ILK-1", "ILK-2", "ILK-3", "ILK-4"];
+const ROUTES: &[&str] =
+    &["ILK-1", "ILK-5", "ILK-6", "ILK-7", "ILK-8", "ILK-9", "ILK-10", "ILK-12", "ILK-13", "ILK-17", "ILK-18", "ATC-1"];
+const POINTS: &[&str] = &["ILK-1", "ILK-5", "ILK-6", "ILK-7", "ILK-8"];
 
 fn about(
     name: &'static str,

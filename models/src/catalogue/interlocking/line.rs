@@ -14,7 +14,10 @@ pub(super) fn entries() -> Vec<Entry> {
     let words = "both stations are commanded to turn the line either way in any cycle; permissions are read in any cycle of their \
                  life, or never";
     let model = |name, statement: &str, conditions, turn, neighbour, purpose| {
-        Entry::new(about(name, statement, words, &["ILK-9"], conditions), Pair { turn, life: LIFE, neighbour, purpose })
+        Entry::new(
+            about(name, statement, words, &["ILK-19"], conditions),
+            Pair { turn, life: LIFE, neighbour, purpose },
+        )
     };
     vec![
         model(
@@ -31,7 +34,7 @@ pub(super) fn entries() -> Vec<Entry> {
             SHORT,
             u16::from(LIFE),
             Neighbour::Alike,
-            Purpose::Hazard(&["turn-outlasts-telegrams", "ILK-9"]),
+            Purpose::Hazard(&["turn-outlasts-telegrams", "ILK-19"]),
         ),
         model(
             "interlocking-line-other-protocol",

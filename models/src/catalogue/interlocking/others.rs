@@ -62,7 +62,7 @@ pub(super) fn entries() -> Vec<Entry> {
                 "interlocking-junction-sliding",
                 "A train slides past the branch's signal: the point in the flank of the main route leads it into the sand.",
                 &format!("{words}; a train on the branch slides by two circuits in the cycle after it has come"),
-                &["ILK-1", "ILK-3", "ILK-4"],
+                &["ILK-1", "ILK-6", "ILK-7", "ILK-8"],
                 SOUND,
             ),
             junction(),
