@@ -1,5 +1,6 @@
 //! From harness to C: rustc → wasm-ld → wasm2c.
 
+use crate::loops::one_way_back;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,8 @@ pub const STACK: u32 = 4096;
 
 const LINK: [&str; 6] =
     ["--no-entry", "--gc-sections", "--stack-first", "--initial-memory=65536", "--import-undefined", "--strip-debug"];
+
+const DRIVER: &str = include_str!("../../cbmc/driver.c");
 
 const LIMITS: Limits = Limits { time: Duration::from_mins(2), memory_kib: 4 << 20 };
 
@@ -97,10 +100,18 @@ impl Compiled {
         ];
         tool(tools, "wasm2c", &convert, None, &folder)?;
         let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
-        write(&source, &without_accessors(&text)?)?;
-        write(&folder.join("driver.c"), include_str!("../../cbmc/driver.c"))?;
+        write(&source, &one_way_back(&without_accessors(&text)?)?)?;
+        write(&folder.join("driver.c"), DRIVER)?;
         Ok(folder)
     }
+}
+
+/// Puts C that was written by hand where that of a harness would be.
+pub(crate) fn write_c(folder: &Path, header: &str) -> Result<(), String> {
+    fresh(folder)?;
+    write(&folder.join("harness.h"), header)?;
+    write(&folder.join("harness.c"), "")?;
+    write(&folder.join("driver.c"), DRIVER)
 }
 
 /// wasm2c's own accessors of linear memory go through memcpy, which CBMC does not look into: the driver has typed ones.

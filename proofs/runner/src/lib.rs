@@ -7,6 +7,7 @@
 pub mod campaign;
 mod cbmc;
 mod compile;
+mod loops;
 pub mod mutants;
 pub mod native;
 mod process;

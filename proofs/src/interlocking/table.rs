@@ -148,7 +148,7 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
 
 impl Scene {
     /// Whether the circuit's telegram tells a train to stay where it is.
-    #[inline(always)]
+    #[inline]
     fn stops(&self, table: &Table<1>) -> bool {
         let mut stop = true;
         for (place, it) in (0_u8..).zip(&self.layout.telegrams(table, self.now)) {
@@ -159,7 +159,7 @@ impl Scene {
     }
 
     /// Whether the contents say that a train in the circuit is granted something.
-    #[inline(always)]
+    #[inline]
     fn grants(&self) -> bool {
         let (number, grant) = (self.circuit.number(), self.contents.grants[0]);
         let train = self.contents.occupied.bits() >> number & 1 == 1;
