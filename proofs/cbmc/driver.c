@@ -4,6 +4,7 @@
    -DCASE=n -DCASES=m  the case to prove, of a harness that is split into cases
    -DMEMORY=bytes      linear memory: the stack and the constant data, a multiple of 4
    -DREACH             replaces every claim by false: each one that can be reached must then FAIL
+   -DBOTH              asks both in one run: beside each claim, `reach` of its number is such a false one
 
    Claims and cover points have numbers; each number is an assertion of its own, so that it has a verdict of its own.
    A trap (panic, overflow check, index out of bounds, division by zero, unreachable) is an assertion too.
@@ -110,14 +111,18 @@ u32 w2c_prover_choose(struct w2c_prover *p, u32 cases) {
 
 void w2c_prover_assume(struct w2c_prover *p, u32 holds) { __CPROVER_assume(holds != 0); }
 
-#ifdef REACH
-#define HOLDS(holds) 0
+#if defined(REACH)
+#define CLAIM(n) case n: __CPROVER_assert(0, "claim " #n); break;
+#elif defined(BOTH)
+#define CLAIM(n) case n: __CPROVER_assert(holds != 0, "claim " #n); __CPROVER_assert(0, "reach " #n); break;
+#else
+#define CLAIM(n) case n: __CPROVER_assert(holds != 0, "claim " #n); break;
+#endif
+#if defined(REACH) || defined(BOTH)
 #define COVERED(reached) ((reached) == 0)
 #else
-#define HOLDS(holds) ((holds) != 0)
 #define COVERED(reached) 1
 #endif
-#define CLAIM(n) case n: __CPROVER_assert(HOLDS(holds), "claim " #n); break;
 #define COVER(n) case n: __CPROVER_assert(COVERED(reached), "cover " #n); break;
 
 void w2c_prover_claim(struct w2c_prover *p, u32 number, u32 holds) {

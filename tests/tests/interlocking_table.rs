@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use atc_kernel::Machine as _;
 use atc_kernel::duplex::{Duplex, output};
 use atc_kernel::interlocking::{
-    CircuitSet, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, Movement, Orders, Positions, Request, RouteId,
-    SegmentId, SegmentSet, SpeedCode, State, Table, Travel,
+    CircuitId, CircuitSet, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, Movement, Orders, Positions, Request,
+    RouteId, SegmentId, SegmentSet, SpeedCode, State, Table, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{self, Line, Need, Sketch, Way};
@@ -265,4 +265,21 @@ fn a_wrong_bit_in_one_channel_stops_every_train() {
         }
     }
     assert_eq!(Positions::NONE, Layout::<2, 2, 1, 2>::SAFE.drives);
+}
+
+#[test]
+fn each_of_64_numbers_has_a_set_of_its_own() {
+    for number in 0..64_u8 {
+        let circuit = CircuitId::new(number).unwrap();
+        assert_eq!(circuit.number(), number);
+        assert_eq!(circuit.alone().bits(), 1 << number);
+        assert_eq!(CircuitSet::nth(usize::from(number)), circuit.alone());
+        assert_eq!(circuit.alone().first(), Some(circuit));
+        assert!(circuit.alone().is_one());
+        for other in 0..64_u8 {
+            let other = CircuitId::new(other).unwrap();
+            assert_eq!(circuit.alone().has(other), circuit == other);
+        }
+    }
+    assert_eq!(CircuitId::new(64), None);
 }

@@ -53,6 +53,12 @@ impl Solver {
         }
     }
 
+    /// The one for what the first solver is known to have no answer to in its time.
+    #[must_use]
+    pub fn at_once(self, tools: &Tools) -> Self {
+        if self == Self::Auto && tools.versions.contains_key("kissat") { Self::Kissat } else { self }
+    }
+
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
@@ -64,6 +70,17 @@ impl Solver {
     }
 }
 
+/// What to ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// What holds.
+    Proof,
+    /// Which claims and cover points can be reached.
+    Reach,
+    /// Both in one run.
+    Both,
+}
+
 /// What to ask in one run.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
@@ -71,8 +88,8 @@ pub struct Question<'a> {
     pub harness: &'a str,
     /// The case, of how many.
     pub case: (usize, usize),
-    /// Whether to ask what is reachable, instead of what holds.
-    pub reach: bool,
+    /// What of it.
+    pub ask: Ask,
     /// Bytes of the stack.
     pub stack: u32,
     /// Which solver.
@@ -84,7 +101,7 @@ pub struct Question<'a> {
 impl<'a> Question<'a> {
     /// Does every claim of `harness` hold?
     pub fn proof(harness: &'a str, solver: Solver, limit: Duration) -> Self {
-        Self { harness, case: (0, 1), reach: false, stack: STACK, solver, limit }
+        Self { harness, case: (0, 1), ask: Ask::Proof, stack: STACK, solver, limit }
     }
 }
 
@@ -106,6 +123,23 @@ impl Answer {
     /// The same for a cover point.
     pub fn cover(&self, number: usize) -> Option<bool> {
         self.holds.get(&format!("cover {number}")).copied()
+    }
+
+    /// The answer to [`Ask::Both`] as those to the proof and to what can be reached.
+    fn apart(self) -> (Self, Self) {
+        let (mut proof, mut reach) = (Self::default(), Self::default());
+        for (description, holds) in self.holds {
+            if let Some(number) = description.strip_prefix("reach ") {
+                reach.holds.insert(format!("claim {number}"), holds);
+            } else if description.starts_with("cover ") {
+                reach.holds.insert(description, holds);
+            } else {
+                proof.holds.insert(description, holds);
+            }
+        }
+        proof.values =
+            self.values.into_iter().filter(|(description, _)| proof.holds.contains_key(description)).collect();
+        (proof, reach)
     }
 
     /// The first failed assertion that is neither a claim nor a cover point: a trap or a bound that is too small.
@@ -142,6 +176,28 @@ pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
     }
 }
 
+/// What holds in one case of a harness, and what can be reached; each with the time that it took.
+pub type Halves = (Result<(Answer, Duration), Silence>, Result<(Answer, Duration), Silence>);
+
+/// Asks CBMC both what holds and what can be reached: in one run if that has an answer in time, and otherwise one after the other.
+/// Of a harness that is known to be `hard`, one after the other at once.
+pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, hard: bool) -> Halves {
+    let mut waited = Duration::ZERO;
+    if question.solver == Solver::Auto && !hard {
+        let limit = question.limit.min(FIRST);
+        let both = Question { ask: Ask::Both, solver: Solver::Minisat, limit, ..*question };
+        if let Ok((answer, took)) = ask_one(tools, folder, &both) {
+            let (proof, reach) = answer.apart();
+            return (Ok((proof, took)), Ok((reach, Duration::ZERO)));
+        }
+        waited = limit;
+    }
+    let proof = ask_one(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question });
+    // An incremental solver finds the many reachable points fastest.
+    let reach = ask_one(tools, folder, &Question { ask: Ask::Reach, solver: Solver::Minisat, ..*question });
+    (proof.map(|(answer, took)| (answer, took + waited)), reach)
+}
+
 fn ask_one(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
     let (case, cases) = question.case;
     let mut arguments: Vec<String> = vec![
@@ -159,12 +215,15 @@ fn ask_one(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
         "--unwindset".to_owned(),
         format!("load_bytes.0:{}", DATA + 1),
     ];
-    if question.reach {
-        arguments.push("-DREACH".to_owned());
-    }
+    let (define, name) = match question.ask {
+        Ask::Proof => (None, ""),
+        Ask::Reach => (Some("-DREACH"), "-reach"),
+        Ask::Both => (Some("-DBOTH"), "-both"),
+    };
+    arguments.extend(define.map(ToOwned::to_owned));
     arguments.extend(CBMC.iter().map(ToString::to_string));
     arguments.extend(question.solver.options(tools));
-    let output = folder.join(format!("cbmc-{case}{}.json", if question.reach { "-reach" } else { "" }));
+    let output = folder.join(format!("cbmc-{case}{name}.json"));
     let limits = Limits { time: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
     let job = Job { program: &program, arguments: &arguments, variable: None, folder, output: &output, limits };

@@ -2,15 +2,15 @@
 //! kernel must fail on it.
 
 use crate::campaign::{Options, flags, in_parallel};
-use crate::cbmc::{Question, Silence, ask_fresh};
-use crate::compile::compile;
+use crate::cbmc::{Answer, Question, Silence, Solver, ask_fresh};
+use crate::compile::{Compiled, compile};
 use crate::process::only_run;
 use crate::report::{Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
 use crate::tools::Tools;
 use crate::{provenance, root, select};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A mutant, as `proofs/mutants.toml` has it.
 #[derive(Clone, Debug, Deserialize)]
@@ -140,7 +140,7 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
                 case: (case, harness.cases),
                 ..Question::proof(harness.name, options.solver, options.limit)
             };
-            let answer = match ask_fresh(tools, &compiled, &question) {
+            let answer = match reject(tools, &compiled, &question) {
                 Ok((answer, _)) => answer,
                 Err(Silence::Late) => return Err(format!("{}: no answer in time", harness.name)),
                 Err(Silence::Broken(reason)) => return Err(format!("{}: {reason}", harness.name)),
@@ -168,6 +168,20 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
     // Every harness that is named must reject it: a theorem that no longer does has become weaker.
     let verdict = if reasons.is_empty() { MutantVerdict::Killed } else { MutantVerdict::Survived };
     Ok((verdict, killed, (!reasons.is_empty()).then(|| reasons.join("; "))))
+}
+
+/// What is wrong is found more easily than that nothing is: MiniSat gets a minute, and Kissat what that leaves.
+fn reject(tools: &Tools, compiled: &Compiled, question: &Question) -> Result<(Answer, Duration), Silence> {
+    if question.solver != Solver::Auto {
+        return ask_fresh(tools, compiled, question);
+    }
+    let limit = question.limit.min(Duration::from_mins(1));
+    match ask_fresh(tools, compiled, &Question { solver: Solver::Minisat, limit, ..*question }) {
+        Err(Silence::Late) => {
+            ask_fresh(tools, compiled, &Question { solver: question.solver.at_once(tools), ..*question })
+        }
+        answer => answer,
+    }
 }
 
 fn copy(from: &Path, to: &PathBuf) -> Result<(), String> {

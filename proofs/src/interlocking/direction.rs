@@ -3,17 +3,18 @@
 use super::{any_input, any_layout, any_state};
 use atc_kernel::interlocking::{Layout, Phase, Request, State, Travel};
 
-const ROUTES: usize = 2;
+const ROUTES: usize = 1;
 const PATH: usize = 2;
+const SEGMENTS: usize = 2;
 
-/// Whether a held route needs the direction towards the station, and whether one needs the other.
-fn needs(layout: &Layout<ROUTES, PATH, 1, 1>, state: &State<ROUTES, 1>) -> (bool, bool) {
+/// Whether a held route needs the direction of segment `it` towards the station, and whether one needs the other.
+fn needs(layout: &Layout<ROUTES, PATH, 1, SEGMENTS>, state: &State<ROUTES, SEGMENTS>, it: usize) -> (bool, bool) {
     let (mut toward, mut away) = (false, false);
     for number in 0..ROUTES {
         let (route, state) = (&layout.plan().routes[number], state.routes[number]);
         let held = state.phase != Phase::Idle;
-        toward |= held && state.tail == 0 && route.from.bits() & 1 == 1;
-        away |= held && route.to.bits() & 1 == 1;
+        toward |= held && state.tail == 0 && route.from.bits() >> it & 1 == 1;
+        away |= held && route.to.bits() >> it & 1 == 1;
     }
     (toward, away)
 }
@@ -25,8 +26,8 @@ harness! {
     theorem "T-ILK-9";
     requirements ["ILK-17", "ILK-18", "ILK-19", "ILK-20"];
     assumptions [];
-    bound "2 routes of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
-    cases 1;
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 2 segments of up to 2 circuits";
+    cases 2;
     claims {
         One: "a segment has at most one direction",
         Needed: "a held route from the segment has the direction towards the station until its first place is released, one to the segment has the other",
@@ -46,14 +47,15 @@ harness! {
         Sent: "a train that the neighbour has sent comes in over a blocked circuit: the direction stays, the permission does not",
     }
     {
-        let Some(layout) = any_layout::<E, ROUTES, PATH, 1, 1>(e) else { return };
-        let mut before: State<ROUTES, 1> = any_state(e);
+        let Some(layout) = any_layout::<E, ROUTES, PATH, 1, SEGMENTS>(e) else { return };
+        let it = e.choose("the segment that is looked at", SEGMENTS);
+        let mut before: State<ROUTES, SEGMENTS> = any_state(e);
         // For how many cycles the neighbour has not been permitted, as far as anybody can count.
         let not_permitted = e.word("not permitted for (cycles)", 0..=3);
         let since = u32::from(not_permitted);
         let turn = layout.plan().turn.0;
         let limit = u32::from(turn);
-        before.directions.withdrawn[0].0 = if since < limit { not_permitted } else { turn };
+        before.directions.withdrawn[it].0 = if since < limit { not_permitted } else { turn };
         let valid = before.is_valid(&layout);
         e.assume(valid);
         if !valid {
@@ -61,22 +63,22 @@ harness! {
         }
         let input = any_input(e);
         let (after, output) = layout.interlock(before, input);
-        let (was_toward, was_away) = (before.directions.toward.bits() & 1 == 1, before.directions.away.bits() & 1 == 1);
-        let (toward, away) = (after.directions.toward.bits() & 1 == 1, after.directions.away.bits() & 1 == 1);
+        let (was_toward, was_away) = (before.directions.toward.bits() >> it & 1 == 1, before.directions.away.bits() >> it & 1 == 1);
+        let (toward, away) = (after.directions.toward.bits() >> it & 1 == 1, after.directions.away.bits() >> it & 1 == 1);
         let (_, _, contents) = output.table.parts();
-        let told = (contents.toward.bits() & 1 == 1) == toward && (contents.away.bits() & 1 == 1) == away;
+        let told = (contents.toward.bits() >> it & 1 == 1) == toward && (contents.away.bits() >> it & 1 == 1) == away;
         e.claim(Claim::One as u32, !(toward && away) && told);
-        let (need_toward, need_away) = needs(&layout, &after);
+        let (need_toward, need_away) = needs(&layout, &after, it);
         e.claim(Claim::Needed as u32, (!need_toward || toward) && (!need_away || away));
         let (mut ask_toward, mut ask_away) = (false, false);
         if let Some(Request::Turn(segment, travel)) = input.request {
-            ask_toward = segment.number() == 0 && travel == Travel::Toward;
-            ask_away = segment.number() == 0 && travel == Travel::Away;
+            ask_toward = usize::from(segment.number()) == it && travel == Travel::Toward;
+            ask_away = usize::from(segment.number()) == it && travel == Travel::Away;
         }
         let (to_toward, from_toward) = (toward && !was_toward, was_toward && !toward);
         let (to_away, from_away) = (away && !was_away, was_away && !away);
         e.claim(Claim::Command as u32, (!(to_toward || from_away) || ask_toward) && (!(to_away || from_toward) || ask_away));
-        let segment = layout.plan().segments[0];
+        let segment = layout.plan().segments[it];
         let mut line = 0;
         for place in 0..PATH {
             line |= if place < usize::from(segment.length) { segment.circuits[place].bits() } else { 0 };
@@ -84,14 +86,14 @@ harness! {
         let clear = input.occupied.bits() & (line | segment.throat.bits()) == 0;
         let taken = from_toward || from_away;
         e.claim(Claim::Clear as u32, !taken || clear && !(from_toward && need_toward) && !(from_away && need_away));
-        let consent = input.consent.bits() & 1 == 1;
+        let consent = input.consent.bits() >> it & 1 == 1;
         e.claim(Claim::Consent as u32, !to_away || consent && since >= limit);
         let closed = after.works.blocked.bits() & line != 0;
         e.claim(Claim::Blocked as u32, !(to_toward || to_away) || !closed);
-        let permitted = output.permits.bits() & 1 == 1;
+        let permitted = output.permits.bits() >> it & 1 == 1;
         e.claim(Claim::Permits as u32, !permitted || toward && !closed);
         let now = if toward { 0 } else { since + 1 };
-        e.claim(Claim::Counted as u32, u32::from(after.directions.withdrawn[0].0) == if now < limit { now } else { limit });
+        e.claim(Claim::Counted as u32, u32::from(after.directions.withdrawn[it].0) == if now < limit { now } else { limit });
         e.cover(Cover::Toward as u32, to_toward && was_away);
         e.cover(Cover::Away as u32, to_away);
         e.cover(Cover::Waits as u32, from_toward && !away);

@@ -4,6 +4,7 @@
 //! runs one cycle after the tracking, and claims. One circuit, one point and one pair of routes stand for all.
 
 mod atc;
+mod cycle;
 mod direction;
 mod pair;
 mod point;
@@ -22,15 +23,20 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 
-/// The places of a path in the harnesses of one route; 16, as many as the machine has, unless the environment variable `ATC_PLACES` says otherwise (1 to 16).
+/// The places of a path in the harnesses of one route; 16, as many as the machine has, unless the environment variable `ATC_PLACES` says otherwise (1 to 16);
+/// 4 for a wrong kernel: what a short path rejects, a long one does.
+#[allow(unexpected_cfgs, reason = "a harness is chosen by a cfg")]
 pub const PLACES: usize = match option_env!("ATC_PLACES") {
     Some(number) => crate::harness::decimal(number),
+    None if cfg!(chosen) => 4,
     None => 16,
 };
 
-/// The places of a path in the harnesses of several routes; 4 unless the environment variable `ATC_PATH` says otherwise.
+/// The places of a path in the harnesses of several routes; 4 unless the environment variable `ATC_PATH` says otherwise; 2 for a wrong kernel.
+#[allow(unexpected_cfgs, reason = "a harness is chosen by a cfg")]
 pub const PATH: usize = match option_env!("ATC_PATH") {
     Some(number) => crate::harness::decimal(number),
+    None if cfg!(chosen) => 2,
     None => 4,
 };
 
@@ -40,6 +46,11 @@ pub const POINTS: usize = 4;
 /// All harnesses of this room.
 pub const ALL: &[Harness] = &[
     pair::t_ilk_1::HARNESS,
+    pair::t_ilk_1_three::HARNESS,
+    cycle::t_ilk_1_local::HARNESS,
+    cycle::t_ilk_1_line::HARNESS,
+    cycle::t_ilk_1_refused::HARNESS,
+    cycle::t_ilk_1_start::HARNESS,
     route::t_ilk_2::HARNESS,
     signal::t_ilk_3::HARNESS,
     signal::t_ilk_3_monotone::HARNESS,

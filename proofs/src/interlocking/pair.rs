@@ -1,4 +1,4 @@
-//! Two routes: what may be held together (T-ILK-1).
+//! Two routes, and three: what may be held together (T-ILK-1).
 
 use super::{PATH, any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, bit, held, kept};
 use crate::Engine;
@@ -122,5 +122,47 @@ harness! {
         let both = reserved && state.phase != Phase::Idle;
         e.cover(Cover::Both as u32, both);
         e.cover(Cover::Under as u32, both && mine.0.circuits.bits() & kept(&routes[other], state).circuits.bits() & circuit != 0);
+    }
+}
+
+harness! {
+    /// A third route hides nothing, and adds nothing: a route is reserved beside two others exactly if it would be reserved beside either.
+    t_ilk_1_three(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-1", "ILK-2"];
+    assumptions [];
+    bound "3 routes of 1 circuit, 32 circuits, 16 points";
+    cases 3;
+    claims {
+        Neither: "a route is reserved beside two others only if it would be beside either of them",
+        Both: "and it is if it would be beside either of them",
+    }
+    covers {
+        All: "a route is reserved while both others are held",
+    }
+    {
+        let Some(layout) = any_routes_layout::<E, 3, 1>(e) else { return };
+        let asked = e.choose("the route that is asked for", 3);
+        let others = match asked { 0 => [1, 2], 1 => [0, 2], _ => [0, 1] };
+        let routes = &layout.plan().routes;
+        let mut states = [RouteState::IDLE; 3];
+        let mut valid = true;
+        for other in others {
+            states[other] = any_route_state(e);
+            valid &= states[other].is_valid(&routes[other]);
+        }
+        e.assume(valid);
+        let sight = any_sight(e);
+        let reserved = refuse_route(&layout, &states, asked, sight).is_none();
+        let without = |other: usize| {
+            let mut fewer = states;
+            fewer[other] = RouteState::IDLE;
+            refuse_route(&layout, &fewer, asked, sight).is_none()
+        };
+        let either = without(others[0]) && without(others[1]);
+        e.claim(Claim::Neither as u32, !reserved || either);
+        e.claim(Claim::Both as u32, reserved || !either);
+        let held = states[others[0]].phase != Phase::Idle && states[others[1]].phase != Phase::Idle;
+        e.cover(Cover::All as u32, reserved && held);
     }
 }

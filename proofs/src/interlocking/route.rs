@@ -1,6 +1,6 @@
 //! One route: how it follows its train and is released (T-ILK-5, 6, 7), and how it is reserved (T-ILK-2).
 //!
-//! A route's own step looks at nothing but the route and the circuits that count as occupied (T-ILK-1, locality), so one route stands
+//! A route's own step looks at nothing but the route and the circuits that count as occupied (`t_ilk_1_local`), so one route stands
 //! for all 64.
 
 use super::{PLACES, any_circuits, any_route_state, any_routes_layout, bit, held, kept};

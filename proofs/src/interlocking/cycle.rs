@@ -1,0 +1,290 @@
+//! The whole cycle (T-ILK-1): that it is made of the parts that the other theorems are about, and that a refusal leaves no trace.
+
+use super::{any_input, any_layout, any_state, bit};
+use crate::Engine;
+use atc_kernel::Machine;
+use atc_kernel::interlocking::{
+    CircuitSet, Epoch, Input, Layout, Phase, Plan, PointSet, Positions, Request, RouteState, SegmentSet, Sight, State,
+    Travel, View, grant, ready, refuse_route, shows_proceed,
+};
+
+/// The places of a path for locality; 2 unless the environment variable `ATC_LOCAL` says otherwise.
+const LOCAL: usize = match option_env!("ATC_LOCAL") {
+    Some(number) => crate::harness::decimal(number),
+    None => 2,
+};
+
+/// Positions as detection delivers them: a point in both positions is in neither.
+fn plausible(detected: Positions) -> Positions {
+    let both = detected.normal.bits() & detected.reverse.bits();
+    Positions {
+        normal: PointSet::from_bits(detected.normal.bits() & !both),
+        reverse: PointSet::from_bits(detected.reverse.bits() & !both),
+    }
+}
+
+/// What the conflict check sees, found from the layout and the inputs.
+fn sight<const R: usize, const P: usize, const N: usize, const S: usize>(
+    plan: &Plan<R, P, N, S>,
+    before: &State<R, S>,
+    input: Input,
+) -> Sight {
+    let blocked = before.works.blocked.bits() & !input.orders.unblock.bits() | input.orders.block.bits();
+    let mut under = 0;
+    for number in 0..N {
+        under |= u32::from(plan.points[number].detectors.bits() & input.occupied.bits() != 0) << number;
+    }
+    let mut closed = 0;
+    for number in 0..S {
+        let segment = &plan.segments[number];
+        for place in 0..P {
+            let there = place < usize::from(segment.length) && segment.circuits[place].bits() & blocked != 0;
+            closed |= u8::from(there) << number;
+        }
+    }
+    Sight {
+        occupied: input.occupied,
+        blocked: CircuitSet::from_bits(blocked),
+        closed: SegmentSet::from_bits(closed),
+        detected: plausible(input.detected),
+        under: PointSet::from_bits(under),
+        directions: (before.directions.toward, before.directions.away),
+    }
+}
+
+/// What a cycle makes of one route, against the parts that the other theorems are about.
+#[allow(clippy::struct_excessive_bools, reason = "one for each claim and cover point")]
+struct Parts {
+    untouched: bool,
+    withdrawn: bool,
+    reserved: bool,
+    once: bool,
+    aspect: bool,
+    grant: bool,
+    epoch: bool,
+    accepted: bool,
+    refused: bool,
+}
+
+/// One cycle of any layout in any valid state, as route `it` sees it. None if nothing is assumed to be so.
+fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
+    e: &mut E,
+    cases: usize,
+) -> Option<Parts> {
+    let layout: Layout<R, P, N, S> = any_layout(e)?;
+    let before: State<R, S> = any_state(e);
+    let plan = layout.plan();
+    let mut valid = true;
+    for number in 0..R {
+        valid &= before.routes[number].is_valid(&plan.routes[number]);
+    }
+    e.assume(valid);
+    if !valid {
+        return None;
+    }
+    let input = any_input(e);
+    let it = if cases == 1 { 0 } else { e.choose("the route that is looked at", cases) };
+    let (after, output) = layout.interlock(before, input);
+    let sight = sight(plan, &before, input);
+    let driven = output.drives.normal.bits() | output.drives.reverse.bits();
+    let firm = Positions {
+        normal: PointSet::from_bits(sight.detected.normal.bits() & !driven),
+        reverse: PointSet::from_bits(sight.detected.reverse.bits() & !driven),
+    };
+    let view = View { occupied: sight.occupied, blocked: sight.blocked, closed: sight.closed, firm };
+    let mut followed = before.routes;
+    for (state, route) in followed.iter_mut().zip(&plan.routes) {
+        *state = state.follow(route, sight.occupied);
+    }
+    let (route, mine, now) = (&plan.routes[it], followed[it], after.routes[it]);
+    let end = |state: RouteState| state.reserve(route, ready(route, state, view));
+    let is_it = |number: u8| usize::from(number) == it;
+    let asked = matches!(input.request, Some(Request::Set(asked)) if is_it(asked.number()));
+    let withdrawn =
+        matches!(input.request, Some(Request::Withdraw(asked)) if is_it(asked.number())) && mine.phase != Phase::Idle;
+    let untouched = now == end(mine);
+    let refusal = refuse_route(&layout, &followed, it, sight);
+    let free = refusal.is_none();
+    let done = output.answer == Some(Ok(()));
+    let reserved = if free { done && now == end(RouteState::RESERVED) } else { !done && untouched };
+    let others = (0..R).any(|number| number != it && followed[number].phase != Phase::Idle);
+    let (epoch, _, contents) = output.table.parts();
+    Some(Parts {
+        untouched: asked || withdrawn || untouched,
+        withdrawn: !withdrawn || now == end(mine.withdraw(route, sight.occupied)),
+        reserved: !asked || reserved,
+        once: !asked || mine.phase == Phase::Idle || !done,
+        aspect: (output.proceed.bits() >> it & 1 == 1) == shows_proceed(route, now, view),
+        grant: contents.grants[it] == grant(route, now, view),
+        epoch: after.epoch.0 == before.epoch.0.wrapping_add(1) && epoch == after.epoch,
+        accepted: asked && free && (others || R == 1),
+        refused: asked && !free,
+    })
+}
+
+harness! {
+    /// Locality: in one cycle of the whole device, each route takes the steps that its own theorems are about, with the same circuits
+    /// and points in sight, and nothing else changes it. What is asked for touches one route; what is refused touches none.
+    t_ilk_1_local(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-1", "ILK-4"];
+    assumptions [];
+    bound "2 routes of up to 2 circuits, 32 circuits, 2 points";
+    cases 2;
+    claims {
+        Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
+        Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
+        Reserved: "a route that is asked for is reserved if the conflict check, after all have followed their trains, finds nothing; and otherwise as untouched",
+        Once: "a held route is not reserved again",
+        Aspect: "its signal shows what the route and the same circuits and points say",
+        Grant: "and so does its grant",
+        Epoch: "the cycle has the next number, and so has its table",
+    }
+    covers {
+        Accepted: "a route is reserved while another is held",
+        Refused: "a route is refused",
+    }
+    {
+        let Some(parts) = parts::<E, 2, LOCAL, 2, 0>(e, 2) else { return };
+        e.claim(Claim::Untouched as u32, parts.untouched);
+        e.claim(Claim::Withdrawn as u32, parts.withdrawn);
+        e.claim(Claim::Reserved as u32, parts.reserved);
+        e.claim(Claim::Once as u32, parts.once);
+        e.claim(Claim::Aspect as u32, parts.aspect);
+        e.claim(Claim::Grant as u32, parts.grant);
+        e.claim(Claim::Epoch as u32, parts.epoch);
+        e.cover(Cover::Accepted as u32, parts.accepted);
+        e.cover(Cover::Refused as u32, parts.refused);
+    }
+}
+
+harness! {
+    /// The same with plain line, for one route.
+    t_ilk_1_line(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-1", "ILK-4"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
+    cases 1;
+    claims {
+        Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
+        Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
+        Reserved: "a route that is asked for is reserved if the conflict check finds nothing; and otherwise as untouched",
+        Once: "a held route is not reserved again",
+        Aspect: "its signal shows what the route, the same circuits and points, and the segments with a blocked circuit say",
+        Grant: "and so does its grant",
+        Epoch: "the cycle has the next number, and so has its table",
+    }
+    covers {
+        Accepted: "a route is reserved",
+        Refused: "a route is refused",
+    }
+    {
+        let Some(parts) = parts::<E, 1, 2, 1, 1>(e, 1) else { return };
+        e.claim(Claim::Untouched as u32, parts.untouched);
+        e.claim(Claim::Withdrawn as u32, parts.withdrawn);
+        e.claim(Claim::Reserved as u32, parts.reserved);
+        e.claim(Claim::Once as u32, parts.once);
+        e.claim(Claim::Aspect as u32, parts.aspect);
+        e.claim(Claim::Grant as u32, parts.grant);
+        e.claim(Claim::Epoch as u32, parts.epoch);
+        e.cover(Cover::Accepted as u32, parts.accepted);
+        e.cover(Cover::Refused as u32, parts.refused);
+    }
+}
+
+harness! {
+    /// What is refused leaves no trace: the cycle is the one without a request, but for the permission to the neighbour that a request to
+    /// turn a segment away ends.
+    t_ilk_1_refused(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-4"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
+    cases 1;
+    claims {
+        State: "routes, blocks and restrictions are those without the request, and so is every direction away from the station; and the confirmed blocks, unless a permission is lost",
+        Toward: "a direction towards the station is lost only by a request to turn that segment away, and none is won",
+        Outputs: "signals, drives and grants are those without the request",
+        Permits: "the neighbour is permitted no more than without the request",
+    }
+    covers {
+        Set: "a route is refused",
+        Point: "an individual point command is refused",
+        Waits: "a segment is to be turned away, and loses its permission",
+    }
+    {
+        let Some(layout) = any_layout::<E, 1, 2, 1, 1>(e) else { return };
+        let before: State<1, 1> = any_state(e);
+        let valid = before.is_valid(&layout);
+        e.assume(valid);
+        if !valid {
+            return;
+        }
+        let input = any_input(e);
+        let (after, output) = layout.interlock(before, input);
+        let refused = matches!(output.answer, Some(Err(_)));
+        e.assume(refused);
+        let (without, silent) = layout.interlock(before, Input { request: None, ..input });
+        let (works, directions) = (after.works, after.directions);
+        let lost = without.directions.toward.bits() & !directions.toward.bits();
+        let won = directions.toward.bits() & !without.directions.toward.bits();
+        // A turn time of one cycle is over at once: then the withdrawal confirms what is blocked there.
+        let confirmed = works.confirmed == without.works.confirmed && output.confirmed == silent.confirmed;
+        let same = after.routes[0] == without.routes[0]
+            && works.blocked == without.works.blocked
+            && works.restrictions[5] == without.works.restrictions[5]
+            && directions.away == without.directions.away;
+        e.claim(Claim::State as u32, same && (confirmed || lost != 0));
+        let turned = match input.request {
+            Some(Request::Turn(segment, Travel::Away)) => bit(u16::from(segment.number())),
+            _ => 0,
+        };
+        e.claim(Claim::Toward as u32, won == 0 && u64::from(lost) & !turned == 0);
+        let (_, _, contents) = output.table.parts();
+        let (_, _, other) = silent.table.parts();
+        let shown = output.proceed == silent.proceed && output.drives == silent.drives;
+        e.claim(Claim::Outputs as u32, shown && contents.grants[0] == other.grants[0]);
+        e.claim(Claim::Permits as u32, output.permits.bits() & !silent.permits.bits() == 0);
+        e.cover(Cover::Set as u32, matches!(input.request, Some(Request::Set(_))));
+        e.cover(Cover::Point as u32, matches!(input.request, Some(Request::Drive(..))));
+        e.cover(Cover::Waits as u32, lost != 0);
+    }
+}
+
+harness! {
+    /// The device starts in the most restrictive state, and has a safe output.
+    t_ilk_1_start(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-15"];
+    assumptions [];
+    bound "1 route of 1 circuit, 1 segment of 1 circuit";
+    cases 1;
+    claims {
+        Valid: "the initial state is valid, whatever the layout",
+        Nothing: "no route is held and no segment has a direction, and every permission may still be in the air",
+        Blocked: "every circuit is blocked, none is confirmed, and every one is restricted to stop",
+        Safe: "the safe output shows and drives nothing, permits nothing, confirms nothing, and its table is readable in no cycle",
+    }
+    covers {
+        Any: "a layout with a route",
+    }
+    {
+        let Some(layout) = any_layout::<E, 1, 1, 0, 1>(e) else { return };
+        let circuit = usize::from(e.word("a circuit that stands for all (number)", 0..=63) & 63);
+        let epoch = Epoch(e.word("a cycle (number)", 0..=3));
+        let initial = layout.initial();
+        e.claim(Claim::Valid as u32, initial.is_valid(&layout));
+        let directions = initial.directions;
+        let none = directions.toward.bits() | directions.away.bits() == 0;
+        e.claim(Claim::Nothing as u32, initial.routes[0].phase == Phase::Idle && none && directions.withdrawn[0].0 == 0);
+        let works = initial.works;
+        let blocked = works.blocked.bits() == u64::MAX && works.confirmed.bits() == 0;
+        e.claim(Claim::Blocked as u32, blocked && works.restrictions[circuit].0 == 0);
+        let safe = <Layout<1, 1, 0, 1> as Machine>::SAFE;
+        let dark = safe.proceed.bits() == 0 && safe.drives.normal.bits() | safe.drives.reverse.bits() == 0;
+        let silent = safe.permits.bits() == 0 && safe.confirmed.bits() == 0 && safe.answer.is_none();
+        e.claim(Claim::Safe as u32, dark && silent && safe.table.read(epoch).is_none());
+        e.cover(Cover::Any as u32, layout.plan().routes[0].length == 1);
+    }
+}
