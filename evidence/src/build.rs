@@ -174,6 +174,14 @@ fn tools(plan: &Plan, provenance: &Provenance) -> Vec<Tool> {
         .collect()
 }
 
+/// Whether an open item is about several pieces of evidence with one reason, such as `3 models`.
+fn of_many(about: &str) -> bool {
+    let kinds = [Kind::Harness, Kind::Model, Kind::Mutant, Kind::Measured, Kind::Test];
+    about.split_once(' ').is_some_and(|(count, what)| {
+        count.parse::<usize>().is_ok() && kinds.into_iter().any(|kind| open::plural(kind) == what)
+    })
+}
+
 /// The end of the run: complete or not, and the exit code with its reasons.
 pub fn status(case: &Case, required: Required) -> Status {
     let mut counts: BTreeMap<String, BTreeMap<Verdict, usize>> = BTreeMap::new();
@@ -196,7 +204,7 @@ pub fn status(case: &Case, required: Required) -> Status {
         // Those of the station follow below, each once.
         let of_station = broken().any(|rule| one.text.ends_with(&format!("[{}]", rule.rule)));
         let of_evidence = case.evidence.iter().any(|evidence| evidence.title == one.about);
-        if !of_station && !of_evidence && !one.about.contains(' ') {
+        if !of_station && !of_evidence && !of_many(&one.about) {
             reasons.push(format!("{}: {}", one.about, one.text));
         }
     }

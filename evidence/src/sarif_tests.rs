@@ -130,3 +130,16 @@ fn an_incomplete_case_without_results_did_not_succeed() {
         json!({"executionSuccessful": false, "exitCode": 1, "exitCodeDescription": case.status.reasons[0]})
     );
 }
+
+/// A line's name may have spaces; what is one reason for many is told with each of them.
+#[test]
+fn what_stops_a_line_is_a_reason_whatever_its_name() {
+    let mut case = mixed();
+    for about in ["A line with spaces", "2 models"] {
+        let text = "BLK-9: NO".to_owned();
+        case.open_items.push(OpenItem { severity: Severity::Stop, about: about.to_owned(), text });
+    }
+    let reasons = crate::build::status(&case, crate::build::Required::NoDefect).reasons;
+    assert!(reasons.contains(&"A line with spaces: BLK-9: NO".to_owned()), "{reasons:?}");
+    assert!(!reasons.iter().any(|reason| reason.starts_with("2 models")), "{reasons:?}");
+}
