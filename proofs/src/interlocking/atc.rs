@@ -342,6 +342,7 @@ harness! {
         Train: "a circuit that counts as clear has a stop telegram",
         Nothing: "a telegram that grants no circuit is a stop telegram: its own circuit, not open, no speed",
         Last: "the stop circuit is granted, and the last of its route's grant, or of what its segment grants",
+        Ends: "what is granted of a route that is not granted to its end ends there",
     }
     covers {
         Clear: "something is granted at a circuit without a train",
@@ -376,6 +377,11 @@ harness! {
             }
         }
         e.claim(Claim::Last as u32, hold.bits() == 0 || open && last && (on_route || on_line));
+        let mut ends = true;
+        for grant in contents.grants {
+            ends &= grant.circuits.bits() & hold.bits() == 0 || grant.complete || grant.last.bits() == stop;
+        }
+        e.claim(Claim::Ends as u32, ends);
         let granted = contents.grants[0].circuits.bits() != 0 && contents.grants[0].train.bits() == 1 << own;
         e.cover(Cover::Clear as u32, !train && granted);
         e.cover(Cover::Route as u32, open && on_route);

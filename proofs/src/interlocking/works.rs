@@ -22,6 +22,7 @@ harness! {
         Confirmed: "only a blocked circuit that no route holds is confirmed",
         Clear: "it becomes confirmed only while it is not occupied",
         Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and the neighbour has not been permitted to send for the turn time",
+        Stays: "a confirmed circuit stays confirmed until its block is lifted",
         Lasts: "while it stays confirmed, the neighbour is not permitted to send and no route out is held",
     }
     covers {
@@ -102,6 +103,8 @@ harness! {
         let clear = occupied & (line | segment.throat.bits()) == 0;
         let quiet = clear && protects(&after);
         e.claim(Claim::Quiet as u32, !becomes || !on_line || quiet);
+        let stays = has(after.works.confirmed.bits()) && has(output.confirmed.bits());
+        e.claim(Claim::Stays as u32, !was_confirmed || !is_blocked || stays);
         e.claim(Claim::Lasts as u32, !confirmed || !on_line || protects(&after) && output.permits.bits() & 1 == 0);
         e.cover(Cover::Becomes as u32, becomes && on_line);
         e.cover(Cover::Held as u32, is_blocked && !confirmed && in_route && !has(occupied));
