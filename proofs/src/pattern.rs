@@ -7,6 +7,7 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
 
 /// The harnesses of this module.
+#[cfg(not(chosen))]
 pub const ALL: &[Harness] =
     &[t_pat_1::HARNESS, t_pat_1_root::HARNESS, t_pat_2::HARNESS, t_pat_3::HARNESS, pat_3::HARNESS];
 

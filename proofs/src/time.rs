@@ -5,6 +5,7 @@ use atc_kernel::aspect::{Times, TimesError, TimesMs};
 use atc_kernel::time::{Cycle, Millis, Ticks};
 
 /// The harnesses of this module.
+#[cfg(not(chosen))]
 pub const ALL: &[Harness] = &[time_rounding::HARNESS, time_constructor::HARNESS];
 
 /// The cycle of the rounding proof in milliseconds: a constant, as no prover divides by an arbitrary number.

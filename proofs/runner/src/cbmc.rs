@@ -1,6 +1,6 @@
 //! One run of CBMC, and what it says.
 
-use crate::compile::{Compiled, STACK};
+use crate::compile::STACK;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
 use serde_json::Value;
@@ -29,7 +29,7 @@ pub const CBMC: [&str; 11] = [
 const FIRST: Duration = Duration::from_secs(20);
 
 /// Bytes of constant data that a harness may have.
-const DATA: u32 = 1024;
+const DATA: u32 = 768;
 
 /// Which solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -158,24 +158,6 @@ pub enum Silence {
     Broken(String),
 }
 
-/// Asks CBMC. `folder` is what [`Compiled::to_c`] made.
-///
-/// # Errors
-/// No answer, and why. Only an answer that is complete is one.
-pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
-    if question.solver != Solver::Auto || !tools.versions.contains_key("kissat") {
-        return ask_one(tools, folder, question);
-    }
-    let first = Question { limit: question.limit.min(FIRST), solver: Solver::Minisat, ..*question };
-    match ask_one(tools, folder, &first) {
-        Err(Silence::Late) => {
-            let (answer, took) = ask_one(tools, folder, &Question { solver: Solver::Kissat, ..*question })?;
-            Ok((answer, took + first.limit))
-        }
-        answer => answer,
-    }
-}
-
 /// What holds in one case of a harness, and what can be reached; each with the time that it took.
 pub type Halves = (Result<(Answer, Duration), Silence>, Result<(Answer, Duration), Silence>);
 
@@ -186,19 +168,23 @@ pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, hard: bool) -
     if question.solver == Solver::Auto && !hard {
         let limit = question.limit.min(FIRST);
         let both = Question { ask: Ask::Both, solver: Solver::Minisat, limit, ..*question };
-        if let Ok((answer, took)) = ask_one(tools, folder, &both) {
+        if let Ok((answer, took)) = ask(tools, folder, &both) {
             let (proof, reach) = answer.apart();
             return (Ok((proof, took)), Ok((reach, Duration::ZERO)));
         }
         waited = limit;
     }
-    let proof = ask_one(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question });
+    let proof = ask(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question });
     // An incremental solver finds the many reachable points fastest.
-    let reach = ask_one(tools, folder, &Question { ask: Ask::Reach, solver: Solver::Minisat, ..*question });
+    let reach = ask(tools, folder, &Question { ask: Ask::Reach, solver: Solver::Minisat, ..*question });
     (proof.map(|(answer, took)| (answer, took + waited)), reach)
 }
 
-fn ask_one(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
+/// Asks CBMC once; [`Solver::Auto`] is MiniSat here. `folder` is what [`Compiled::to_c`] made.
+///
+/// # Errors
+/// No answer, and why. Only an answer that is complete is one.
+pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
     let (case, cases) = question.case;
     let mut arguments: Vec<String> = vec![
         folder.join("driver.c").display().to_string(),
@@ -290,13 +276,4 @@ fn values(trace: &Value) -> Vec<u16> {
     let drawn = steps.iter().filter(|step| step["stepType"] == "assignment" && step["lhs"] == "drawn");
     let number = |step: &Value| u32::from_str_radix(step["value"]["binary"].as_str()?, 2).ok();
     drawn.filter_map(number).map(u32::to_le_bytes).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]])).collect()
-}
-
-/// Compiles the harness of `question` to C and asks; for callers that ask once.
-///
-/// # Errors
-/// As [`ask`].
-pub fn ask_fresh(tools: &Tools, compiled: &Compiled, question: &Question) -> Result<(Answer, Duration), Silence> {
-    let folder = compiled.to_c(tools, question.harness, question.stack).map_err(Silence::Broken)?;
-    ask(tools, &folder, question)
 }

@@ -1,6 +1,6 @@
 //! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
 
-use atc_prover::{mutants, parse_cbmc, root};
+use atc_prover::{campaign, mutants, parse_cbmc, root, select};
 
 const DONE: &str = r#"[{"program":"CBMC"},{"result":[
   {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
@@ -66,4 +66,10 @@ fn every_requirement_of_a_harness_has_a_mutant() {
             assert!(known, "no mutant breaks {requirement}");
         }
     }
+}
+
+#[test]
+fn the_harnesses_that_are_known_to_be_hard_exist() {
+    let names: Vec<String> = campaign::HARD.iter().chain(&mutants::SLOW).map(|name| (*name).to_owned()).collect();
+    select(&names).unwrap();
 }
