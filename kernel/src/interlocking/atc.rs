@@ -58,7 +58,7 @@ pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The circuits where a grant may begin. A train anywhere else is told to stop, without a look at every grant.
 #[inline]
-pub(super) fn begins<const R: usize, const P: usize, const N: usize, const S: usize>(
+pub fn begins<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
     contents: &Contents<R>,
 ) -> CircuitSet {
@@ -160,6 +160,22 @@ pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
     }
     let speed = speed.or_lower(lowest(layout, contents, hold, circuit));
     Movement { stop, open: true, speed, hold }
+}
+
+/// The telegram of one circuit from what was read of the table, if it could be read; `begins` is what [`begins()`] says of it.
+#[inline]
+pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    contents: Option<&Contents<R>>,
+    begins: CircuitSet,
+    circuit: CircuitId,
+) -> Movement {
+    //= spec/interlocking.md#atc-6-unreadable-table
+    //# A table that cannot be read MUST make every telegram a stop telegram.
+    match contents {
+        Some(contents) if begins.has(circuit) => movement(layout, contents, circuit),
+        _ => Movement::stop_in(circuit),
+    }
 }
 
 /// The most restrictive code of restrictions and distance over `circuits`, for a train that comes from `from`.

@@ -205,12 +205,11 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     /// # Errors
     /// The first rule that is broken, and where; [`Plan::check`] tells all of them.
     pub fn new(plan: Plan<R, P, N, S>) -> Result<Self, super::Broken> {
+        // The very function that the proofs use: what they assume of a layout holds of every one that is made here.
+        let layout = Self::with_what_proofs_need(plan)?;
         let mut first = None;
-        plan.check(&mut |broken| first = first.or(Some(broken)));
-        match first {
-            Some(broken) => Err(broken),
-            None => Ok(Self { plan }),
-        }
+        layout.plan.check_engineering(&mut |broken| first = first.or(Some(broken)));
+        first.map_or(Ok(layout), Err)
     }
 
     /// A layout that keeps the rules that the theorems rest on, and perhaps not those of engineering: the theorems hold for it, but

@@ -23,7 +23,7 @@ mod table;
 mod track;
 mod works;
 
-pub use atc::{MAX_LINKS, Movement, connect, movement};
+pub use atc::{MAX_LINKS, Movement, begins, connect, movement, telegram};
 pub use check::{Broken, Place, Rule};
 pub use direction::{Directions, Needs, Travel};
 pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, Plan, Point, Route, Segment, SpeedCode, Station};
@@ -194,15 +194,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     #[must_use]
     pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Movement; MAX_CIRCUITS] {
         let contents = table.read(epoch);
-        let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| atc::begins(self, contents));
+        let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(self, contents));
         core::array::from_fn(|number| {
             let circuit = CircuitSet::nth(number).first().unwrap_or(CircuitId::ZERO);
-            //= spec/interlocking.md#atc-6-unreadable-table
-            //# A table that cannot be read MUST make every telegram a stop telegram.
-            match &contents {
-                Some(contents) if begins.has(circuit) => movement(self, contents, circuit),
-                _ => Movement::stop_in(circuit),
-            }
+            telegram(self, contents.as_ref(), begins, circuit)
         })
     }
 }

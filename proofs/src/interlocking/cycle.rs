@@ -1,6 +1,6 @@
 //! The whole cycle (T-ILK-1): that it is made of the parts that the other theorems are about, and that a refusal leaves no trace.
 
-use super::{any_input, any_layout, any_state, bit};
+use super::{any_cycle, any_input, any_layout, any_state, bit};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
@@ -122,6 +122,21 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     })
 }
 
+/// Says of the parts what two harnesses claim of them, each of its own.
+macro_rules! tell {
+    ($e:ident, $parts:ident) => {
+        $e.claim(Claim::Untouched as u32, $parts.untouched);
+        $e.claim(Claim::Withdrawn as u32, $parts.withdrawn);
+        $e.claim(Claim::Reserved as u32, $parts.reserved);
+        $e.claim(Claim::Once as u32, $parts.once);
+        $e.claim(Claim::Aspect as u32, $parts.aspect);
+        $e.claim(Claim::Grant as u32, $parts.grant);
+        $e.claim(Claim::Epoch as u32, $parts.epoch);
+        $e.cover(Cover::Accepted as u32, $parts.accepted);
+        $e.cover(Cover::Refused as u32, $parts.refused);
+    };
+}
+
 harness! {
     /// Locality: in one cycle of the whole device, each route takes the steps that its own theorems are about, with the same circuits
     /// and points in sight, and nothing else changes it. What is asked for touches one route; what is refused touches none.
@@ -146,15 +161,7 @@ harness! {
     }
     {
         let Some(parts) = parts::<E, 2, LOCAL, 2, 0>(e, 2) else { return };
-        e.claim(Claim::Untouched as u32, parts.untouched);
-        e.claim(Claim::Withdrawn as u32, parts.withdrawn);
-        e.claim(Claim::Reserved as u32, parts.reserved);
-        e.claim(Claim::Once as u32, parts.once);
-        e.claim(Claim::Aspect as u32, parts.aspect);
-        e.claim(Claim::Grant as u32, parts.grant);
-        e.claim(Claim::Epoch as u32, parts.epoch);
-        e.cover(Cover::Accepted as u32, parts.accepted);
-        e.cover(Cover::Refused as u32, parts.refused);
+        tell!(e, parts);
     }
 }
 
@@ -181,15 +188,7 @@ harness! {
     }
     {
         let Some(parts) = parts::<E, 1, 2, 1, 1>(e, 1) else { return };
-        e.claim(Claim::Untouched as u32, parts.untouched);
-        e.claim(Claim::Withdrawn as u32, parts.withdrawn);
-        e.claim(Claim::Reserved as u32, parts.reserved);
-        e.claim(Claim::Once as u32, parts.once);
-        e.claim(Claim::Aspect as u32, parts.aspect);
-        e.claim(Claim::Grant as u32, parts.grant);
-        e.claim(Claim::Epoch as u32, parts.epoch);
-        e.cover(Cover::Accepted as u32, parts.accepted);
-        e.cover(Cover::Refused as u32, parts.refused);
+        tell!(e, parts);
     }
 }
 
@@ -214,14 +213,7 @@ harness! {
         Waits: "a segment is to be turned away, and loses its permission",
     }
     {
-        let Some(layout) = any_layout::<E, 1, 2, 1, 1>(e) else { return };
-        let before: State<1, 1> = any_state(e);
-        let valid = before.is_valid(&layout);
-        e.assume(valid);
-        if !valid {
-            return;
-        }
-        let input = any_input(e);
+        let Some((layout, before, input)) = any_cycle::<E, 1, 2, 1, 1>(e) else { return };
         let (after, output) = layout.interlock(before, input);
         let refused = matches!(output.answer, Some(Err(_)));
         e.assume(refused);

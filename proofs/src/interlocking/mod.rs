@@ -23,17 +23,16 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 
-/// The places of a path in the harnesses of one route; 16, as many as the machine has, unless the environment variable `ATC_PLACES` says otherwise (1 to 16);
-/// 4 for a wrong kernel: what a short path rejects, a long one does.
-#[allow(unexpected_cfgs, reason = "a harness is chosen by a cfg")]
+/// The places of a path in the harnesses of one route; 16, as many as the machine has, unless the environment variable
+/// `ATC_PLACES` says otherwise (1 to 16); 4 for a wrong kernel: what a short path rejects, a long one does.
 pub const PLACES: usize = match option_env!("ATC_PLACES") {
     Some(number) => crate::harness::decimal(number),
     None if cfg!(chosen) => 4,
     None => 16,
 };
 
-/// The places of a path in the harnesses of several routes; 4 unless the environment variable `ATC_PATH` says otherwise; 2 for a wrong kernel.
-#[allow(unexpected_cfgs, reason = "a harness is chosen by a cfg")]
+/// The places of a path in the harnesses of several routes; 4 unless the environment variable `ATC_PATH` says otherwise;
+/// 2 for a wrong kernel.
 pub const PATH: usize = match option_env!("ATC_PATH") {
     Some(number) => crate::harness::decimal(number),
     None if cfg!(chosen) => 2,
@@ -44,6 +43,7 @@ pub const PATH: usize = match option_env!("ATC_PATH") {
 pub const POINTS: usize = 4;
 
 /// All harnesses of this room.
+#[cfg(not(chosen))]
 pub const ALL: &[Harness] = &[
     pair::t_ilk_1::HARNESS,
     pair::t_ilk_1_three::HARNESS,
@@ -73,6 +73,7 @@ pub const ALL: &[Harness] = &[
     atc::t_atc_1_apart::HARNESS,
     atc::t_atc_2::HARNESS,
     atc::t_atc_4::HARNESS,
+    atc::t_atc_4_each::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
@@ -165,6 +166,20 @@ fn any_layout<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize
     let layout = Layout::with_what_proofs_need(any_plan(e)).ok();
     e.assume(layout.is_some());
     layout
+}
+
+/// Any layout that the theorems speak of, any valid state of it, and any input: what one cycle begins with.
+fn any_cycle<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
+    e: &mut E,
+) -> Option<(Layout<R, P, N, S>, State<R, S>, Input)> {
+    let layout = any_layout(e)?;
+    let state: State<R, S> = any_state(e);
+    let valid = state.is_valid(&layout);
+    e.assume(valid);
+    if !valid {
+        return None;
+    }
+    Some((layout, state, any_input(e)))
 }
 
 /// Any phase.

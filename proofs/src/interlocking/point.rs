@@ -1,7 +1,7 @@
 //! Points (T-ILK-4): one point stands for all.
 
-use super::{any_input, any_layout, any_state, held, kept};
-use atc_kernel::interlocking::{Phase, Position, Request, State};
+use super::{any_cycle, held, kept};
+use atc_kernel::interlocking::{Phase, Position, Request};
 
 const ROUTES: usize = 2;
 const PATH: usize = 2;
@@ -33,14 +33,7 @@ harness! {
         Fails: "a route fails while its point is driven",
     }
     {
-        let Some(layout) = any_layout::<E, ROUTES, PATH, POINTS, 0>(e) else { return };
-        let before: State<ROUTES, 0> = any_state(e);
-        let valid = before.is_valid(&layout);
-        e.assume(valid);
-        if !valid {
-            return;
-        }
-        let input = any_input(e);
+        let Some((layout, before, input)) = any_cycle::<E, ROUTES, PATH, POINTS, 0>(e) else { return };
         let (after, output) = layout.interlock(before, input);
         let number = e.word("a point that stands for all (number)", 0..=1) & 1;
         let mut detectors = 0;
