@@ -24,7 +24,7 @@
 //! * **Parse, don't validate.** A parameter type has one constructor, which checks; `step` never meets an
 //!   invalid one.
 //! * **One invariant.** Every state has one `is_valid`; every proof assumes it before a step, and it is shown after, as a whole
-//!   or (of the interlocking) part by part. The initial state is valid and the most restrictive.
+//!   or (of pairs of routes) part by part. The initial state is valid and the most restrictive.
 //! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
 //!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`], a lower
 //!   [`permitted::Permission`], a wider [`position::Interval`], fewer proceed aspects in [`interlocking::Output`].

@@ -4,8 +4,8 @@ use super::{any_cycle, any_input, any_layout, any_state, bit};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Epoch, Input, Layout, Phase, Plan, PointSet, Positions, Request, RouteState, SegmentSet, Sight, State,
-    Travel, View, grant, ready, refuse_route, shows_proceed,
+    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Request, RouteState, SegmentSet, Sight,
+    State, Travel, View, grant, ready, refuse_route, shows_proceed,
 };
 
 /// The places of a path for locality; 2 unless the environment variable `ATC_LOCAL` says otherwise.
@@ -189,6 +189,53 @@ harness! {
     {
         let Some(parts) = parts::<E, 1, 2, 1, 1>(e, 1) else { return };
         tell!(e, parts);
+    }
+}
+
+harness! {
+    /// Induction: a cycle that begins in a valid state ends in one, whatever the inputs. So what the theorems assume of a state holds in
+    /// every cycle.
+    t_ilk_1_valid(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-1"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
+    cases 1;
+    claims {
+        Routes: "every route is in a state that it can be in",
+        Directions: "no segment has two directions, each has the one that a held route needs, and time is counted where permission is withdrawn",
+        Works: "only blocked circuits are confirmed, and none that a route holds",
+        Valid: "and so the state is valid as a whole",
+    }
+    covers {
+        Reserved: "a route is reserved",
+        Released: "a held route becomes idle",
+        Turned: "a segment is turned",
+        Confirmed: "a circuit is confirmed",
+    }
+    {
+        let Some((layout, before, input)) = any_cycle::<E, 1, 2, 1, 1>(e) else { return };
+        let (after, output) = layout.interlock(before, input);
+        let plan = layout.plan();
+        let mut routes = true;
+        let mut held = 0;
+        for (route, state) in plan.routes.iter().zip(&after.routes) {
+            routes &= state.is_valid(route);
+            held |= state.circuits(route).bits();
+        }
+        e.claim(Claim::Routes as u32, routes);
+        let needs = Needs::of(&layout, &after.routes);
+        let (toward, away) = (after.directions.toward.bits(), after.directions.away.bits());
+        let needed = needs.toward.bits() & !toward == 0 && needs.away.bits() & !away == 0;
+        e.claim(Claim::Directions as u32, after.directions.is_valid(plan.turn) && needed);
+        e.claim(Claim::Works as u32, after.works.is_valid() && held & after.works.confirmed.bits() == 0);
+        e.claim(Claim::Valid as u32, after.is_valid(&layout));
+        let set = matches!(input.request, Some(Request::Set(_))) && output.answer == Some(Ok(()));
+        let idle = |state: &State<1, 1>| state.routes[0].phase == Phase::Idle;
+        e.cover(Cover::Reserved as u32, set);
+        e.cover(Cover::Released as u32, !idle(&before) && idle(&after));
+        e.cover(Cover::Turned as u32, toward != before.directions.toward.bits() || away != before.directions.away.bits());
+        e.cover(Cover::Confirmed as u32, output.confirmed.bits() & !before.works.confirmed.bits() != 0);
     }
 }
 

@@ -49,6 +49,7 @@ pub const ALL: &[Harness] = &[
     pair::t_ilk_1_three::HARNESS,
     cycle::t_ilk_1_local::HARNESS,
     cycle::t_ilk_1_line::HARNESS,
+    cycle::t_ilk_1_valid::HARNESS,
     cycle::t_ilk_1_refused::HARNESS,
     cycle::t_ilk_1_start::HARNESS,
     route::t_ilk_2::HARNESS,
