@@ -6,6 +6,7 @@
 mod atc;
 mod cycle;
 mod direction;
+mod layout;
 mod pair;
 mod point;
 mod route;
@@ -75,6 +76,7 @@ pub const ALL: &[Harness] = &[
     atc::t_atc_2::HARNESS,
     atc::t_atc_4::HARNESS,
     atc::t_atc_4_each::HARNESS,
+    layout::t_lay_2::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
