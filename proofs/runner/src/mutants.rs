@@ -154,8 +154,8 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
             );
             counterexample = counterexample
                 .or_else(|| answer.values.iter().find(|(what, _)| what.starts_with("claim ")).map(|(_, v)| v.clone()));
-            // A trap is what the theorem of totality is about.
-            claims.extend(answer.other_failure().filter(|what| what.starts_with("trap: ")).map(ToOwned::to_owned));
+            // A panic is what the theorem of totality is about. Any other trap, a stack that runs out say, is the harness's own.
+            claims.extend(answer.other_failure().filter(|what| *what == "trap: panic").map(ToOwned::to_owned));
             if !claims.is_empty() {
                 break;
             }

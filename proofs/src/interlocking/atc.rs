@@ -401,7 +401,7 @@ harness! {
 }
 
 harness! {
-    /// Each circuit has the telegram of its own train: where no grant begins, and so nothing is looked for, nothing would have been found. Here a grant
+    /// Where no grant begins, and so nothing is looked for, nothing would have been found; and the circuit of a number is that of the number. Here a grant
     /// may be to trains in any circuits, in several at once included.
     t_atc_4_each(e)
     theorem "T-ATC-4";

@@ -193,8 +193,8 @@ harness! {
 }
 
 harness! {
-    /// Induction: a cycle that begins in a valid state ends in one, whatever the inputs. So what the theorems assume of a state holds in
-    /// every cycle.
+    /// Induction: a cycle (after the tracking) that begins in a valid state ends in one, whatever the inputs. So what the theorems assume of
+    /// a state holds in every cycle.
     t_ilk_1_valid(e)
     theorem "T-ILK-1";
     requirements ["ILK-1"];
