@@ -3,7 +3,7 @@
 use super::{any_circuits, any_plan, bit};
 use crate::engine::any_byte;
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitSet, Layout, MAX_CODES, Plan, Point, SpeedCode};
+use atc_kernel::interlocking::{CircuitSet, Layout, MAX_CODES, Plan, Point, RouteSet, SpeedCode};
 
 const ROUTES: usize = 2;
 const PATH: usize = 2;
@@ -13,12 +13,16 @@ const SEGMENTS: usize = 2;
 /// Any plan. Lengths are of two kinds.
 fn any_whole_plan<E: crate::Engine + ?Sized>(e: &mut E) -> Plan<ROUTES, PATH, POINTS, SEGMENTS> {
     let mut plan = any_plan(e);
-    let mut entry = 0x8000_u16;
+    let (mut entry, mut other) = (0x8000_u16, 2);
     for route in &mut plan.routes {
         route.entry = any_circuits(e, "entry (bits)", entry..=entry);
         route.approach = any_circuits(e, "approach (bits)", entry..=entry);
         route.speed = SpeedCode(any_byte(e, "speed code", 0..=3));
-        entry = 8;
+        route.conflicts = RouteSet::from_bits(u64::from(e.word("conflicting routes (bits)", 0..=other)));
+        (entry, other) = (8, 1);
+    }
+    for segment in &mut plan.segments {
+        segment.throat = any_circuits(e, "throat (bits)", 2..=2);
     }
     plan.points =
         core::array::from_fn(|_| Point { detectors: any_circuits(e, "detectors of a point (bits)", 0x4000..=0x4000) });
