@@ -52,48 +52,54 @@ macro_rules! harness {
         covers { $($cover:ident: $cover_text:literal,)+ }
         $body:block
     ) => {
-        // All of them, or the ones that are chosen: a wrong kernel needs one or two.
-        #[cfg(any(not(chosen), $name))]
         $(#[doc = $statement])+
+        #[allow(unexpected_cfgs, reason = "a harness is chosen by a cfg of its name")]
         pub mod $name {
-            use super::*;
-            use $crate::harness::{Harness, Point};
+            // All of them, or the ones that are chosen: a wrong kernel needs one or two.
+            #[cfg(any(not(chosen), $name))]
+            pub use body::*;
 
-            #[derive(Clone, Copy)]
-            enum Claim { $($claim,)+ }
+            #[cfg(any(not(chosen), $name))]
+            mod body {
+                use super::super::*;
+                use $crate::harness::{Harness, Point};
 
-            #[derive(Clone, Copy)]
-            enum Cover { $($cover,)+ }
+                #[derive(Clone, Copy)]
+                enum Claim { $($claim,)+ }
 
-            /// What this harness is.
-            pub const HARNESS: Harness = Harness {
-                name: stringify!($name),
-                theorem: $theorem,
-                statement: concat!($($statement),+),
-                requirements: &[$($requirement),*],
-                assumptions: &[$($assumption),*],
-                bound: $bound,
-                cases: $cases,
-                claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
-                covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
-                run: |engine| run(engine),
-            };
+                #[derive(Clone, Copy)]
+                enum Cover { $($cover,)+ }
 
-            /// The body, for any engine.
-            #[inline(always)]
-            pub fn run<E: $crate::Engine + ?Sized>($engine: &mut E) $body
+                /// What this harness is.
+                pub const HARNESS: Harness = Harness {
+                    name: stringify!($name),
+                    theorem: $theorem,
+                    statement: concat!($($statement),+),
+                    requirements: &[$($requirement),*],
+                    assumptions: &[$($assumption),*],
+                    bound: $bound,
+                    cases: $cases,
+                    claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
+                    covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
+                    run: |engine| run(engine),
+                };
 
-            #[cfg(kani)]
-            #[kani::proof]
-            #[kani::unwind(18)]
-            fn kani() {
-                run(&mut $crate::engine::model::Kani);
-            }
+                /// The body, for any engine.
+                #[inline(always)]
+                pub fn run<E: $crate::Engine + ?Sized>($engine: &mut E) $body
 
-            #[cfg(engine = "cbmc")]
-            #[unsafe(no_mangle)]
-            extern "C" fn $name() {
-                run(&mut $crate::engine::cbmc::Cbmc);
+                #[cfg(kani)]
+                #[kani::proof]
+                #[kani::unwind(18)]
+                fn kani() {
+                    run(&mut $crate::engine::model::Kani);
+                }
+
+                #[cfg(engine = "cbmc")]
+                #[unsafe(no_mangle)]
+                extern "C" fn $name() {
+                    run(&mut $crate::engine::cbmc::Cbmc);
+                }
             }
         }
     };

@@ -8,7 +8,6 @@
 //! kernel's own helpers: those may be wrong.
 #![no_std]
 #![cfg_attr(not(engine = "cbmc"), forbid(unsafe_code))]
-#![allow(unexpected_cfgs, reason = "a harness is chosen by a cfg of its name")]
 
 #[macro_use]
 mod harness;

@@ -9,11 +9,11 @@ mod unknown;
 use crate::{Engine, Harness};
 use atc_kernel::position::{Correction, KNOTS, Millibels, Position, Spacing, Table};
 
-pub use bounds::*;
-pub use inclusion::*;
-pub use interval::*;
-pub use odometer::*;
-pub use unknown::*;
+pub use bounds::{pos_part, pos_part_rounds};
+pub use inclusion::t_pos_2;
+pub use interval::{t_pos_1, t_pos_1_exact, t_pos_1_levels, t_pos_1_span, t_pos_1_step};
+pub use odometer::t_pos_3;
+pub use unknown::{pos_machine, t_pos_4, t_pos_5};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]

@@ -8,9 +8,11 @@ use atc_kernel::aspect::AspectId;
 use atc_kernel::distance::Metres;
 use atc_kernel::telegram::{Counter, Frame, Gradient, Length, Main, Route, SectionId, Sub, Telegram};
 
-pub use counter::*;
 pub(crate) use counter::{any_bits_of_stream, any_sequence};
-pub use framing::*;
+pub use counter::{t_tel_6, t_tel_6_repeated, tel_7, tel_sequence, tel_total};
+pub use framing::{
+    t_tel_1, t_tel_2, t_tel_3, t_tel_3_few, t_tel_3_linear, t_tel_3_shift, t_tel_4, t_tel_5, t_tel_5_apart,
+};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]

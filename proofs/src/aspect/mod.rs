@@ -16,13 +16,13 @@ use crate::{ASPECTS, Engine, Harness};
 use atc_kernel::aspect::{Acceptance, AspectSet, Display, Parts, State, Times, step};
 use atc_kernel::time::Ticks;
 
-pub use bound::*;
-pub use carry::*;
-pub use compare::*;
-pub use display::*;
-pub use evidence::*;
-pub use gap::*;
-pub use table::*;
+pub use bound::{t_acc_2, t_acc_3, t_acc_7};
+pub use carry::{carry_away, carry_idle};
+pub use compare::{t_acc_5, t_acc_6};
+pub use display::{set_1, t_acc_8, total};
+pub use evidence::{t_acc_1, t_acc_1_rise};
+pub use gap::{t_acc_4, t_acc_4_alone, t_acc_4_tolerated};
+pub use table::{table_names, time_table};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]

@@ -13,11 +13,11 @@ use crate::{Engine, Harness, any_byte, any_flag};
 use atc_kernel::block::{Block, Fault, Hold, Input, Output, Parts, SectionSet, State, Status, TrainCount, step};
 use atc_kernel::time::Ticks;
 
-pub use count::*;
-pub use geometry::*;
-pub use line::*;
-pub use report::*;
-pub use reset::*;
+pub use count::{blk_8, blk_machine, blk_set, blk_total, t_blk_2, t_blk_3};
+pub use geometry::{blk_9, blk_9_size, t_blk_4_geometry};
+pub use line::{blk_11, t_blk_3_border, t_blk_4_line, t_blk_5_line, t_blk_5_three};
+pub use report::{t_blk_1, t_blk_4, t_blk_5_report, t_blk_6};
+pub use reset::{t_blk_2_reset, t_blk_5};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]

@@ -197,7 +197,7 @@ harness! {
     /// a state holds in every cycle.
     t_ilk_1_valid(e)
     theorem "T-ILK-1";
-    requirements ["ILK-1"];
+    requirements ["ILK-16", "ILK-17"];
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
     cases 1;

@@ -18,9 +18,9 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Judgement, Main, SectionId, Stream, Sub};
 use atc_kernel::time::Ticks;
 
-pub use distance::*;
-pub use memory::*;
-pub use permission::*;
+pub use distance::{t_per_4, t_per_4_fix, t_per_4_metres};
+pub use memory::{per_9, per_machine, per_total, t_per_2, t_per_5_evidence, t_per_6, t_per_7, t_per_8};
+pub use permission::{t_per_1, t_per_5, t_per_5_permission, t_per_5_speed};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]
