@@ -3,6 +3,7 @@
 mod support;
 
 use atc_layout::Rule;
+use atc_layout::form::Position;
 use atc_layout::import::{Imported, osrd, railml, read_any};
 use proptest::prelude::*;
 use support::railml::{Version, railml as written};
@@ -79,7 +80,63 @@ fn a_flank_point_of_a_route_relation_is_held() {
         .replace("<conflictingRoutes>", "<routeRelations><routeRelation id=\"rr\"><requiredSwitchPosition><relatedSwitchAndPosition inPosition=\"right\"><refersToSwitch ref=\"swil2\"/></relatedSwitchAndPosition></requiredSwitchPosition></routeRelation></routeRelations><conflictingRoutes>");
     let model = imported(&text).description.model().unwrap();
     let held = model.routes[0].path[0].positions.get(&2);
-    assert_eq!(held, Some(&atc_layout::form::Position::Reverse));
+    assert_eq!(held, Some(&Position::Reverse));
+}
+
+const CHAINAGE: &str = include_str!("files/chainage.railml.xml");
+
+#[test]
+fn places_may_be_given_by_chainage_alone_up_or_down_the_net_element() {
+    let found = imported(CHAINAGE);
+    let lengths: Vec<(String, u16)> =
+        found.description.station.circuits.iter().map(|at| (at.name.value.clone(), at.length_m.value)).collect();
+    let wanted = [("0T", 500), ("1T", 400), ("W", 140), ("M", 240), ("L", 250), ("E", 120), ("2T", 500), ("3T", 600)];
+    assert_eq!(lengths, wanted.map(|(name, length)| (name.to_owned(), length)));
+    assert!(found.report.lacking.is_empty(), "{}", found.report);
+    let model = found.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(model.names.routes, ["A-B1", "A-B2", "B1-end"]);
+}
+
+#[test]
+fn a_place_in_another_system_or_beyond_its_track_is_not_guessed_in_silence() {
+    let elsewhere = imported(&CHAINAGE.replacen(
+        "positioningSystemRef=\"km\" measure=\"11900\"",
+        "positioningSystemRef=\"other\" measure=\"11900\"",
+        1,
+    ));
+    assert!(
+        elsewhere.report.lacking.iter().any(|line| line == "a place on a net element of: d7"),
+        "{}",
+        elsewhere.report
+    );
+    let beyond = imported(&CHAINAGE.replacen("measure=\"11040\"", "measure=\"11400\"", 1)).report;
+    let told = "places beyond their net element are taken to be at its end: d2 at 400 m of 300 m";
+    assert!(beyond.defaulted.iter().any(|line| line == told), "{beyond}");
+}
+
+#[test]
+fn an_overlap_is_that_of_the_exit_and_runs_over_its_sections_or_to_its_limit() {
+    let found = imported(CHAINAGE);
+    let overlaps: Vec<_> = found.description.station.routes.iter().map(|route| &route.overlap).collect();
+    let way = |overlap: &[atc_layout::At<atc_layout::form::Element>]| -> Vec<(String, Vec<Position>)> {
+        let through = |at: &atc_layout::form::Element| at.points.values().map(|given| given.value).collect();
+        overlap.iter().map(|at| (at.circuit.clone(), through(at))).collect()
+    };
+    assert_eq!(way(overlaps[0]), [("E".to_owned(), vec![Position::Normal])], "to its limit, with its switch");
+    assert_eq!(way(overlaps[1]), [("E".to_owned(), vec![Position::Reverse])], "that of the destination point");
+    assert_eq!(found.description.station.routes[0].stay_ms.as_ref().map(|at| at.value), Some(40_000));
+    let other = "overlap ov3 for route A-B2, which has the overlap ov2";
+    assert!(found.report.skipped.iter().any(|line| line == other), "{}", found.report);
+    // A position that no way has: the overlap is left out, and the report says so.
+    let opposed = imported(&CHAINAGE.replace(
+        "<requiresSwitchInPosition><relatedSwitchAndPosition inPosition=\"right\">",
+        "<requiresSwitchInPosition><relatedSwitchAndPosition inPosition=\"left\">",
+    ));
+    assert!(
+        opposed.report.lacking.iter().any(|line| line.starts_with("overlap ov1 for route A-B1: no way leads")),
+        "{}",
+        opposed.report
+    );
 }
 
 /// A station of our own in the form of OSRD: a line with a loop, cut by four detectors.

@@ -85,11 +85,22 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     };
     switches(xml, &relations, &mut tracks, report);
     links(&relations, &mut tracks, report);
+    let measures: BTreeMap<&str, Measures<'_>> =
+        xml.all("netElement").filter_map(|element| Some((element.attribute("id")?, measures(element)))).collect();
     let mut lost = Vec::new();
+    let mut beyond = Vec::new();
+    let mut spot = |node: Node<'a, 'a>, id: &'a str, network: &Network| {
+        let (spot, given) = spot(node, &edges, network, &measures)?;
+        // A centimetre is lost in the digits of coordinates.
+        if (given - spot.at).abs() > 0.01 {
+            beyond.push(format!("{id} at {given:.0} m of {:.0} m", network.edges[spot.edge].length));
+        }
+        Some(spot)
+    };
     for (list, detector) in [("trainDetectionElement", true), ("signalIS", false)] {
         for node in xml.all(list) {
             let Some(id) = node.attribute("id") else { continue };
-            match spot(node, &edges, &tracks.network) {
+            match spot(node, id, &tracks.network) {
                 Some(spot) if detector => drop(tracks.detectors.insert(id, spot)),
                 Some(spot) => drop(tracks.signals.insert(id, spot)),
                 None => lost.push(id),
@@ -98,7 +109,7 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     }
     for node in xml.all("bufferStop") {
         let Some(id) = node.attribute("id") else { continue };
-        let Some(spot) = spot(node, &edges, &tracks.network) else {
+        let Some(spot) = spot(node, id, &tracks.network) else {
             lost.push(id);
             continue;
         };
@@ -109,6 +120,11 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     }
     if !lost.is_empty() {
         report.lacking.push(format!("a place on a net element of: {}", lost.join(", ")));
+    }
+    if !beyond.is_empty() {
+        report
+            .defaulted
+            .push(format!("places beyond their net element are taken to be at its end: {}", beyond.join(", ")));
     }
     tracks
 }
@@ -150,21 +166,52 @@ fn track_lengths<'a>(xml: &Xml<'a>) -> BTreeMap<&'a str, f64> {
     lengths
 }
 
-fn spot(node: Node<'_, '_>, edges: &BTreeMap<&str, usize>, network: &Network) -> Option<Spot> {
+/// Linear coordinates of a net element: positioning system, share of its length, measure.
+type Measures<'a> = Vec<(&'a str, f64, f64)>;
+
+fn measures<'a>(element: Node<'a, 'a>) -> Measures<'a> {
+    let coordinates = element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate");
+    let given = coordinates.filter_map(|node| {
+        let linear = child(node, "linearCoordinate")?;
+        let system = linear.attribute("positioningSystemRef").unwrap_or_default();
+        Some((system, number(node, "intrinsicCoord")?, number(linear, "measure")?))
+    });
+    given.collect()
+}
+
+/// A place, and the metres from the begin of its net element as they are given: a place cannot be beyond its end.
+fn spot(
+    node: Node<'_, '_>,
+    edges: &BTreeMap<&str, usize>,
+    network: &Network,
+    measures: &BTreeMap<&str, Measures<'_>>,
+) -> Option<(Spot, f64)> {
     let location = child(node, "spotLocation")?;
-    let edge = *edges.get(location.attribute("netElementRef")?)?;
+    let element = location.attribute("netElementRef")?;
+    let edge = *edges.get(element)?;
     let length = network.edges[edge].length;
     let at = match (number(location, "intrinsicCoord"), number(location, "pos")) {
-        (Some(share), _) => share.clamp(0.0, 1.0) * length,
-        (None, Some(metres)) => metres.clamp(0.0, length),
-        (None, None) => child(location, "linearCoordinate").and_then(|at| number(at, "measure"))?.clamp(0.0, length),
+        (Some(share), _) => share * length,
+        (None, Some(metres)) => metres,
+        (None, None) => share_of(location, measures.get(element)?)? * length,
     };
     let toward_end = match location.attribute("applicationDirection") {
         Some("normal") => Some(true),
         Some("reverse") => Some(false),
         _ => None,
     };
-    Some(Spot { edge, at, toward_end })
+    Some((Spot { edge, at: at.clamp(0.0, length), toward_end }, at))
+}
+
+/// Where on its net element a place with a linear coordinate is: between the coordinates that the element gives in that system.
+fn share_of(location: Node<'_, '_>, measures: &Measures<'_>) -> Option<f64> {
+    let linear = child(location, "linearCoordinate")?;
+    let system = linear.attribute("positioningSystemRef").unwrap_or_default();
+    let measure = number(linear, "measure")?;
+    let mut same = measures.iter().filter(|(name, ..)| *name == system);
+    let ((_, from, begin), (_, to, end)) = (same.next()?, same.next_back()?);
+    let share = from + (measure - begin) / (end - begin) * (to - from);
+    share.is_finite().then_some(share)
 }
 
 /// The navigable relations by id: which ends they join.

@@ -36,9 +36,7 @@ pub fn write<'a>(xml: &Xml<'a>, placed: &Placed<'a>, station: &mut Station, repo
             Err(why) => reader.report.lacking.push(format!("route {id}: {why}; it is left out")),
         }
     }
-    for overlap in xml.all("overlap") {
-        reader.overlap(overlap, &mut routes);
-    }
+    reader.overlaps(&mut routes);
     reader.conflicts(&mut routes);
     let groups = xml.all("routeReleaseGroupAhead").chain(xml.all("routeReleaseGroupRear")).count();
     if groups > 0 {
@@ -71,6 +69,7 @@ impl<'a> Reader<'a, '_> {
 
     /// A position that the file gives for a switch, as that of a point.
     fn position(&mut self, node: Node<'a, 'a>) -> Option<(usize, Position)> {
+        let node = child(node, "relatedSwitchAndPosition").unwrap_or(node);
         let id = reference(node, "refersToSwitch").or_else(|| reference(node, "refersTo"))?;
         let switch = self.xml.referred(id)?.attribute("id")?;
         let Some((point, left_is_normal)) = self.placed.switches.get(switch) else {
@@ -215,46 +214,93 @@ impl<'a> Reader<'a, '_> {
             references(node, "additionalRelation").filter_map(|id| self.xml.id(id)).collect();
         let mut found = BTreeMap::new();
         for required in relations.into_iter().flat_map(|relation| children(relation, "requiredSwitchPosition")) {
-            let given = child(required, "relatedSwitchAndPosition").unwrap_or(required);
-            found.extend(self.position(given));
+            found.extend(self.position(required));
         }
         found
     }
 
-    fn overlap(&mut self, node: Node<'a, 'a>, routes: &mut [Route]) {
-        let id = node.attribute("id").unwrap_or_default();
+    /// Gives routes their overlaps: the one that a route's exit names before one that names the route, and that before one that
+    /// names the place where the route ends. A route has one at most.
+    fn overlaps(&mut self, routes: &mut [Route]) {
+        let mut at_exits: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for node in self.xml.all("route") {
+            let number = node.attribute("id").and_then(|id| self.names.get(id)).copied();
+            let (Some(number), Some(exit)) = (number, child(node, "routeExit")) else { continue };
+            let point = reference(exit, "refersTo").and_then(|id| self.xml.id(id));
+            for id in references(exit, "hasOverlap").chain(point.iter().flat_map(|at| references(*at, "hasOverlap"))) {
+                at_exits.entry(id).or_default().push(number);
+            }
+        }
+        let mut wanted: Vec<(u8, usize, Node<'a, 'a>)> = Vec::new();
+        for node in self.xml.all("overlap") {
+            let id = node.attribute("id").unwrap_or_default();
+            let of_exits = at_exits.get(id).into_iter().flatten().map(|route| (0, *route));
+            let named =
+                references(node, "activeForApproachRoute").filter_map(|id| self.names.get(id)).map(|at| (1, *at));
+            let mut found: Vec<(u8, usize)> = of_exits.chain(named).collect();
+            if found.is_empty() {
+                let at = reference(node, "relatedToTrackAsset").and_then(|id| self.exit(id));
+                let ends = (0..routes.len())
+                    .filter(|route| at.is_some() && self.end_of(&routes[*route]).map(|end| end.0) == at);
+                found.extend(ends.map(|route| (2, route)));
+            }
+            if found.is_empty() {
+                self.report.lacking.push(format!("overlap {id}: it names no route that was taken"));
+            }
+            wanted.extend(found.into_iter().map(|(rank, route)| (rank, route, node)));
+        }
+        wanted.sort_by_key(|(rank, ..)| *rank);
+        let mut given: BTreeMap<usize, &str> = BTreeMap::new();
+        for (_, number, node) in wanted {
+            let id = node.attribute("id").unwrap_or_default();
+            let name = &routes[number].name;
+            match given.get(&number) {
+                Some(other) if *other == id => continue,
+                Some(other) => {
+                    self.report.skipped.push(format!("overlap {id} for route {name}, which has the overlap {other}"));
+                    continue;
+                }
+                None => {}
+            }
+            let positions = self.positions(node, &["requiresSwitchInPosition"]);
+            match self.overlap(node, &routes[number], &positions) {
+                Ok(path) => {
+                    let timer = node.descendants().find_map(|timer| timer.attribute("timerValue").and_then(duration));
+                    if timer.is_none() {
+                        self.report
+                            .defaulted
+                            .push(format!("route {name}: stay time of [times]: overlap {id} has no release timer"));
+                    }
+                    routes[number].overlap = path;
+                    routes[number].stay_ms = timer.map(At::derived);
+                    given.insert(number, id);
+                }
+                Err(why) => self.report.lacking.push(format!("overlap {id} for route {name}: {why}")),
+            }
+        }
+    }
+
+    /// The way of an overlap from the end of a route: over its sections, or to what limits it if it names none.
+    fn overlap(
+        &self,
+        node: Node<'a, 'a>,
+        route: &Route,
+        positions: &BTreeMap<usize, Position>,
+    ) -> Result<Vec<At<Element>>, &'static str> {
         let sections = self.sections(node);
-        let positions = self.positions(node, &["requiresSwitchInPosition"]);
-        let timer = node.descendants().find_map(|timer| timer.attribute("timerValue").and_then(duration));
-        let mut for_routes: Vec<usize> =
-            references(node, "activeForApproachRoute").filter_map(|id| self.names.get(id).copied()).collect();
-        if for_routes.is_empty() {
-            let at = reference(node, "relatedToTrackAsset").and_then(|id| self.exit(id));
-            for_routes = (0..routes.len())
-                .filter(|route| at.is_some() && self.end_of(&routes[*route]).map(|end| end.0) == at)
-                .collect();
+        let limit = references(node, "isLimitedBy").find_map(|id| self.exit(id));
+        let within = if sections.is_empty() { None } else { Some(&sections) };
+        if within.is_none() && limit.is_none() {
+            return Err("it names neither sections nor a limit with a place");
         }
-        if for_routes.is_empty() || sections.is_empty() {
-            self.report.lacking.push(format!("overlap {id}: it names no route that was taken, or no section"));
-            return;
-        }
-        for number in for_routes {
-            let Some((joint, last)) = self.end_of(&routes[number]) else { continue };
-            let ahead = self.placed.graph.across(joint, last).filter(|ahead| sections.contains(ahead));
-            let way = ahead.and_then(|first| {
-                let sought = Sought { start: joint, first, exit: None, within: Some(&sections), positions: &positions };
-                search(&self.placed.graph, &sought)
-            });
-            let Some(way) = way else {
-                self.report.lacking.push(format!(
-                    "overlap {id}: its sections do not go on from the end of route {}",
-                    routes[number].name
-                ));
-                continue;
-            };
-            routes[number].overlap = self.path(&way);
-            routes[number].stay_ms = timer.map(At::derived);
-        }
+        let way = self.end_of(route).and_then(|(joint, last)| {
+            let first = self.placed.graph.across(joint, last)?;
+            let exit = if within.is_none() { limit } else { None };
+            search(&self.placed.graph, &Sought { start: joint, first, exit, within, positions })
+        });
+        let way =
+            way.ok_or("no way leads from the end of the route over its sections, or to its limit, with its switches")?;
+        Ok(self.path(&way))
     }
 
     /// The joint at the end of a route, and its last circuit.

@@ -14,7 +14,7 @@ pub struct Xml<'a> {
 }
 
 /// Elements that are looked at; the others are reported as not used.
-const USED: [&str; 27] = [
+const USED: [&str; 28] = [
     "netElements",
     "netRelations",
     "networks",
@@ -28,6 +28,7 @@ const USED: [&str; 27] = [
     "signalsIL",
     "routes",
     "overlaps",
+    "destinationPoints",
     "conflictingRoutes",
     "routeRelations",
     "platforms",
@@ -64,11 +65,13 @@ impl<'a> Xml<'a> {
 
     /// The element of the infrastructure that one of the interlocking stands for: that of its `refersTo`, or itself.
     pub fn referred(&self, id: &str) -> Option<Node<'a, 'a>> {
-        let node = self.id(id)?;
-        match reference(node, "refersTo").and_then(|id| self.id(id)) {
-            Some(referred) => Some(referred),
-            None => Some(node),
+        let mut node = self.id(id)?;
+        // A route's exit names a destination point, that a signal of the interlocking, that one of the infrastructure.
+        for _ in 0..3 {
+            let Some(next) = reference(node, "refersTo").and_then(|id| self.id(id)) else { break };
+            node = next;
         }
+        Some(node)
     }
 
     /// A title of the file: its metadata, or the name of an operational point.
