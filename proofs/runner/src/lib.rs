@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 pub use campaign::{Options, campaign};
 pub use cbmc::{Answer, Solver, parse as parse_cbmc};
 pub use mutants::mutants;
+pub use process::end_all_on_interrupt;
 pub use tools::Tools;
 
 use atc_proofs::Harness;

@@ -1,7 +1,7 @@
 //! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
-use atc_prover::{Options, Tools, campaign, harnesses, mutants, native, root, select, selftest};
+use atc_prover::{Options, Tools, campaign, end_all_on_interrupt, harnesses, mutants, native, root, select, selftest};
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
@@ -104,7 +104,7 @@ impl Run {
 }
 
 fn main() -> ExitCode {
-    match run(Cli::parse().command) {
+    match end_all_on_interrupt().and_then(|()| run(Cli::parse().command)) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(reason) => {

@@ -1,12 +1,39 @@
 //! Runs a program with a time limit and a memory limit, and ends all that it started.
 
 use nix::fcntl::{Flock, FlockArg};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use wait_timeout::ChildExt;
+
+/// The process groups of the programs that run. Each has its own, so that its end takes along what it started; so an interrupt
+/// of this program does not reach them by itself.
+static GROUPS: Mutex<BTreeSet<i32>> = Mutex::new(BTreeSet::new());
+
+/// Lets an interrupt (Ctrl-C), a hang-up or a request to end take along the programs that run: exit code 130.
+///
+/// # Errors
+/// The system has no such signals, or another handler was set.
+pub fn end_all_on_interrupt() -> Result<(), String> {
+    let end = || {
+        // Held until the exit: nothing is started any more.
+        let groups = GROUPS.lock().unwrap_or_else(PoisonError::into_inner);
+        for group in groups.iter() {
+            end_group(*group);
+        }
+        std::process::exit(130);
+    };
+    ctrlc::set_handler(end).map_err(|error| format!("interrupts cannot be handled: {error}"))
+}
+
+/// Kills a process group. It may just have ended; then there is nothing to kill.
+fn end_group(group: i32) {
+    let _ = nix::sys::signal::killpg(nix::unistd::Pid::from_raw(group), nix::sys::signal::Signal::SIGKILL);
+}
 
 /// The folder of the proofs, for one run at a time: another run that wants it waits.
 ///
@@ -65,30 +92,35 @@ pub fn run(job: &Job) -> Result<(End, Duration), String> {
     let mut errors = job.output.as_os_str().to_owned();
     errors.push(".err");
     let started = Instant::now();
-    let mut child = Command::new("sh")
-        .args(["-c", "ulimit -v \"$0\"; exec \"$@\""])
-        .arg(job.limits.memory_kib.to_string())
-        .arg(job.program)
-        .args(job.arguments)
-        .envs(job.variable.clone())
-        .current_dir(job.folder)
-        .stdin(Stdio::null())
-        .stdout(open(job.output)?)
-        .stderr(open(Path::new(&errors))?)
-        .process_group(0)
-        .spawn()
-        .map_err(|error| format!("{} cannot be started: {error}", job.program.display()))?;
-    let group = i32::try_from(child.id()).map(nix::unistd::Pid::from_raw);
-    let ended = child.wait_timeout(job.limits.time).map_err(|error| format!("{}: {error}", job.program.display()))?;
-    let end = if let Some(status) = ended {
-        status.code().map_or(End::Killed, End::Code)
-    } else {
-        if let Ok(group) = group {
-            // It may just have ended; then there is nothing to kill.
-            let _ = nix::sys::signal::killpg(group, nix::sys::signal::Signal::SIGKILL);
-        }
+    let (output, errors) = (open(job.output)?, open(Path::new(&errors))?);
+    let (mut child, group) = {
+        let mut groups = GROUPS.lock().unwrap_or_else(PoisonError::into_inner);
+        let child = Command::new("sh")
+            .args(["-c", "ulimit -v \"$0\"; exec \"$@\""])
+            .arg(job.limits.memory_kib.to_string())
+            .arg(job.program)
+            .args(job.arguments)
+            .envs(job.variable.clone())
+            .current_dir(job.folder)
+            .stdin(Stdio::null())
+            .stdout(output)
+            .stderr(errors)
+            .process_group(0)
+            .spawn()
+            .map_err(|error| format!("{} cannot be started: {error}", job.program.display()))?;
+        let group = i32::try_from(child.id()).map_err(|error| format!("{}: {error}", job.program.display()))?;
+        groups.insert(group);
+        (child, group)
+    };
+    let ended = child.wait_timeout(job.limits.time);
+    if matches!(ended, Ok(None)) {
+        end_group(group);
         let _ = child.wait();
-        End::Late
+    }
+    GROUPS.lock().unwrap_or_else(PoisonError::into_inner).remove(&group);
+    let end = match ended.map_err(|error| format!("{}: {error}", job.program.display()))? {
+        Some(status) => status.code().map_or(End::Killed, End::Code),
+        None => End::Late,
     };
     Ok((end, started.elapsed()))
 }
