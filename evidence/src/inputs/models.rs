@@ -270,6 +270,23 @@ mod tests {
         assert_eq!(outcome(vec![], true), Verdict::Vacuous);
     }
 
+    /// Stations whose plan breaks a rule of engineering, and two neighbours: the oracle runs the trace again, word by word.
+    #[test]
+    fn accidents_at_stations_are_replayed_and_drawn() {
+        let named = ["interlocking-no-flank", "interlocking-undeclared", "interlocking-line-other-protocol"];
+        let catalogue = atc_models::catalogue();
+        let entries = catalogue.iter().filter(|entry| named.contains(&entry.name));
+        let outcomes: Vec<_> = entries.map(|entry| atc_models::check(entry, 1)).collect();
+        assert_eq!(outcomes.len(), named.len());
+        for outcome in outcomes {
+            let charts: Vec<_> = outcome.properties.iter().filter_map(super::draw).collect();
+            assert!(!charts.is_empty(), "{}", outcome.model);
+            for chart in charts {
+                assert!(chart.svg.starts_with("<svg"), "{}: {}", outcome.model, chart.caption);
+            }
+        }
+    }
+
     #[test]
     fn numbers_are_grouped() {
         assert_eq!(super::thousands(1_234_567), "1\u{202f}234\u{202f}567");

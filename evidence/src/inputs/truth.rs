@@ -17,7 +17,37 @@ pub fn words(trace: &Trace) -> String {
         let all = heads.iter().zip(1..).map(|(heads, cycle)| format!("{cycle}: {heads}"));
         text = format!("{text} Heads really in section, by cycle: {}.", all.collect::<Vec<_>>().join("; "));
     }
-    text
+    text + &ground(trace)
+}
+
+/// Where trains and points of a station really are, in the cycles in which that changes, and what comes of it.
+fn ground(trace: &Trace) -> String {
+    let mut changes: Vec<String> = Vec::new();
+    let mut last = String::new();
+    for (step, cycle) in trace.steps.iter().zip(1..) {
+        let Some(trains) = step.words.get("trains").and_then(Value::as_array) else { return String::new() };
+        let trains: Vec<_> = trains.iter().filter_map(train).collect();
+        let points = step.words.get("points_at").map(names).unwrap_or_default();
+        let mut now = if trains.is_empty() { "no train".to_owned() } else { trains.join(" and ") };
+        if !points.is_empty() {
+            now = format!("{now}, points {}", points.join(", "));
+        }
+        if now != last {
+            changes.push(format!("{cycle}: {now}"));
+            last = now;
+        }
+    }
+    let harm = trace.steps.last().and_then(|step| step.words.get("harm")).and_then(Value::as_str);
+    let harm = harm.filter(|harm| *harm != "none").map(|harm| format!(" At the end: {harm}.")).unwrap_or_default();
+    format!(" Really, from cycle: {}.{harm}", changes.join("; "))
+}
+
+/// A train that is on the tracks of the station: from its rear to its front.
+fn train(train: &Value) -> Option<String> {
+    let (front, rear) = (train["front"].as_str()?, train["rear"].as_str()?);
+    let heading = train["heading"].as_str()?;
+    let at = if front == rear { front.to_owned() } else { format!("{rear} to {front}") };
+    Some(format!("a train in {at} going {heading}"))
 }
 
 fn names(value: &Value) -> Vec<String> {
@@ -34,14 +64,16 @@ fn heads(value: &Value, sections: i64) -> String {
     if inside.is_empty() { "none".to_owned() } else { inside }
 }
 
-/// The record with one more cycle of the same inputs and no reset, so that a chart shows the report of the last one: an output
-/// stands from the end of its cycle on.
+/// The record with one more cycle of the same inputs and no reset or request, so that a chart shows what the last one brought: an
+/// output stands from the end of its cycle on.
 pub fn one_more(trace: &Trace) -> String {
     let mut record = trace.trace_jsonl();
-    if let Some(last) = trace.steps.last().filter(|_| trace.machine == "block-count") {
+    if let Some(last) = trace.steps.last().filter(|_| ["block-count", "interlocking"].contains(&&*trace.machine)) {
         let mut input = last.input.clone();
-        if let Some(reset) = input.get_mut("reset") {
-            *reset = Value::Null;
+        for command in ["reset", "request"] {
+            if let Some(given) = input.get_mut(command) {
+                *given = Value::Null;
+            }
         }
         record.extend([serde_json::json!({ "step": input }).to_string(), "\n".to_owned()]);
     }
@@ -78,6 +110,38 @@ mod tests {
         assert!(words(&beyond).ends_with("2: 1."));
         beyond.steps[0].words.clear();
         assert_eq!(words(&beyond), " Faulty: missed in section 0.");
+    }
+
+    #[test]
+    fn trains_and_points_of_a_station_are_told_when_they_change() {
+        let step = |trains, points, harm| Step {
+            input: json!({ "occupied": [], "request": { "set": "R0" } }),
+            output: json!({}),
+            words: BTreeMap::from([
+                ("trains".to_owned(), trains),
+                ("points_at".to_owned(), points),
+                ("harm".to_owned(), json!(harm)),
+            ]),
+        };
+        let (coming, here) = (json!(["coming"]), json!([{ "front": "B", "rear": "A", "heading": "up" }]));
+        let station = Trace {
+            machine: "interlocking".to_owned(),
+            config: json!({}),
+            steps: vec![
+                step(coming.clone(), json!(["normal"]), "none"),
+                step(coming, json!(["normal"]), "none"),
+                step(here, json!(["to reverse"]), "derailment"),
+            ],
+            loop_start: None,
+        };
+        assert_eq!(
+            words(&station),
+            " Really, from cycle: 1: no train, points normal; 3: a train in A to B going up, points to reverse. At the \
+             end: derailment."
+        );
+        let last: serde_json::Value =
+            serde_json::from_str(one_more(&station).lines().last().unwrap_or_default()).expect("JSON");
+        assert_eq!(last, json!({ "step": { "occupied": [], "request": null } }));
     }
 
     #[test]

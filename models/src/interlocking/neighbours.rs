@@ -5,8 +5,9 @@
 //! train; the line is then occupied for both until the train has left it.
 
 use super::stations::circuits;
+use super::trace::Run;
 use crate::check::{Claim, Subject};
-use crate::outcome::{Step, Trace};
+use crate::outcome::Trace;
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
@@ -108,17 +109,21 @@ impl Pair {
         state
     }
 
-    /// The state and the output before the model begins, after a cycle in which everything is clear and unblocked.
-    fn begin(layout: &Small) -> Kernel<1, 1> {
+    /// The cycle before the model begins, in which everything is clear and unblocked.
+    fn unblocking() -> Input {
         let orders = Orders { unblock: CircuitSet::ALL, ..Orders::default() };
-        let input = Input {
+        Input {
             occupied: CircuitSet::EMPTY,
             detected: Positions::NONE,
             request: None,
             orders,
             consent: SegmentSet::EMPTY,
-        };
-        layout.cycle(layout.initial(), input).0
+        }
+    }
+
+    /// The state after it.
+    fn begin(layout: &Small) -> Kernel<1, 1> {
+        layout.cycle(layout.initial(), Self::unblocking()).0
     }
 
     /// Whether a station has the direction away from it.
@@ -214,11 +219,11 @@ impl Subject for Pair {
         )
     }
 
-    /// The run of the first station's kernel, from the cycle on in which it has been unblocked. The further words of a step: what the second one does.
+    /// The run of the first station's kernel, the cycle included in which it is unblocked. The further words of a step: what the second one does.
     fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
         let layout = self.layout();
-        let mut state = Self::begin(&layout);
-        let mut steps = Vec::new();
+        let mut run = Run::begin("line", &["line"], &layout);
+        run.step(&Self::unblocking(), BTreeMap::from([("hazard".to_owned(), json!(false))]));
         let word = |directions: Directions<1>| {
             if Self::sends(directions) {
                 "away"
@@ -230,15 +235,10 @@ impl Subject for Pair {
         };
         for (place, (_, cycle)) in path.iter().enumerate() {
             let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
-            let (next, output) = layout.cycle(state, Self::input(*cycle, 0));
-            state = next;
             let travel = |command: Option<Travel>| {
                 command
                     .map(|travel| json!({"turn": "S0", "to": if travel == Travel::Toward { "toward" } else { "away" }}))
             };
-            let occupied: &[&str] = if cycle.train { &["line"] } else { &[] };
-            let consent: &[&str] = if cycle.consent[0] { &["S0"] } else { &[] };
-            let permits: &[&str] = if output.permits.is_empty() { &[] } else { &["S0"] };
             let words = BTreeMap::from([
                 ("direction".to_owned(), json!(word(after.directions[0]))),
                 ("neighbour_command".to_owned(), json!(travel(cycle.commands[1]))),
@@ -246,11 +246,8 @@ impl Subject for Pair {
                 ("neighbour_direction".to_owned(), json!(word(after.directions[1]))),
                 ("hazard".to_owned(), json!(after.against)),
             ]);
-            let input = json!({"occupied": occupied, "request": travel(cycle.commands[0]), "consent": consent});
-            let answer = output.answer.map(|answer| if answer.is_ok() { "accepted" } else { "refused" });
-            steps.push(Step { input, output: json!({"permits": permits, "answer": answer}), words });
+            run.step(&Self::input(*cycle, 0), words);
         }
-        let config = json!({"station": "line", "circuits": ["line"], "turn_cycles": self.turn, "clear_cycles": 1});
-        Trace { machine: "interlocking".to_owned(), config, steps, loop_start: None }
+        run.trace()
     }
 }

@@ -2,16 +2,15 @@
 
 use super::device::Device;
 use super::ground::{Blade, Heading};
-use super::stations::{POINTS, ROUTES, SEGMENTS};
 use super::train::{Place, Train};
 use super::yard::{Cycle, Harm, State, Yard};
 use crate::outcome::{Step, Trace};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Input, Output, Phase, PointSet, Position, Positions, Refusal, Request, RouteSet, SegmentSet,
-    State as Kernel, Travel,
+    CircuitSet, Element, Input, Layout, MAX_CODES, Output, Phase, PointSet, Position, Positions, Refusal, Request,
+    RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
 };
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// The length of a cycle in milliseconds.
@@ -21,11 +20,10 @@ impl<D: Device> Yard<D> {
     /// The run of the kernel: first what happens before the model begins, then the path. The further words of a step: where trains and
     /// points really are, and what has gone wrong.
     pub(super) fn run_of(&self, path: &[(State, Option<Cycle>)]) -> Trace {
-        let mut state = self.station.layout.initial();
-        let mut steps = Vec::new();
+        let mut run = Run::begin(self.station.name, self.station.ground.circuits, &self.station.layout);
         for input in self.prelude() {
             let words = BTreeMap::from([("trains".to_owned(), json!([])), ("hazard".to_owned(), json!(false))]);
-            steps.push(self.step(&mut state, input, words));
+            run.step(&input, words);
         }
         for (place, (_, cycle)) in path.iter().enumerate() {
             let Some(cycle) = cycle else { break };
@@ -38,23 +36,9 @@ impl<D: Device> Yard<D> {
                 ("harm".to_owned(), json!(harm_word(harm))),
                 ("hazard".to_owned(), json!(harm != Harm::None)),
             ]);
-            steps.push(self.step(&mut state, cycle.input, words));
+            run.step(&cycle.input, words);
         }
-        Trace { machine: "interlocking".to_owned(), config: self.config(), steps, loop_start: None }
-    }
-
-    fn step(&self, state: &mut Kernel<ROUTES, SEGMENTS>, input: Input, words: BTreeMap<String, Value>) -> Step {
-        let (next, output) = self.station.layout.cycle(*state, input);
-        *state = next;
-        Step { input: self.input(&input), output: self.output(state, &output), words }
-    }
-
-    fn circuits(&self, set: CircuitSet) -> Value {
-        if set == CircuitSet::ALL {
-            return json!(self.station.ground.circuits);
-        }
-        let there = |(number, _): &(usize, _)| set.meets(CircuitSet::nth(*number));
-        self.station.ground.circuits.iter().enumerate().filter(there).map(|(_, name)| json!(name)).collect()
+        run.trace()
     }
 
     fn train(&self, train: &Train) -> Value {
@@ -68,16 +52,50 @@ impl<D: Device> Yard<D> {
             }
         }
     }
+}
+
+/// A run of the kernel on a layout, in the words of the oracle's protocol.
+pub(super) struct Run<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
+    station: &'a str,
+    circuits: &'a [&'a str],
+    layout: &'a Layout<R, P, N, S>,
+    state: Kernel<R, S>,
+    steps: Vec<Step>,
+}
+
+impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a, R, P, N, S> {
+    /// From the initial state.
+    pub(super) fn begin(station: &'a str, circuits: &'a [&'a str], layout: &'a Layout<R, P, N, S>) -> Self {
+        Self { station, circuits, layout, state: layout.initial(), steps: Vec::new() }
+    }
+
+    /// One more cycle.
+    pub(super) fn step(&mut self, input: &Input, words: BTreeMap<String, Value>) {
+        let (next, output) = self.layout.cycle(self.state, *input);
+        self.state = next;
+        self.steps.push(Step { input: self.input(input), output: self.output(&output), words });
+    }
+
+    /// The whole run.
+    pub(super) fn trace(self) -> Trace {
+        Trace { machine: "interlocking".to_owned(), config: self.config(), steps: self.steps, loop_start: None }
+    }
+
+    fn circuits(&self, set: CircuitSet) -> Vec<&'a str> {
+        let there = |(number, _): &(usize, _)| set.meets(CircuitSet::nth(*number));
+        self.circuits.iter().enumerate().filter(there).map(|(_, name)| *name).collect()
+    }
+
+    fn segments(&self, set: SegmentSet) -> Vec<String> {
+        let there =
+            |(number, segment): &(usize, &Segment<P>)| segment.length > 0 && set.meets(SegmentSet::nth(*number));
+        self.layout.plan().segments.iter().enumerate().filter(there).map(|(number, _)| segment_name(number)).collect()
+    }
 
     fn input(&self, input: &Input) -> Value {
         let orders = &input.orders;
-        let restricted = |set| match self.circuits(set) {
-            Value::Array(names) => names
-                .into_iter()
-                .map(|name| (name.as_str().unwrap_or_default().to_owned(), json!(orders.speed.0)))
-                .collect(),
-            _ => Map::new(),
-        };
+        let restrict: BTreeMap<_, _> =
+            self.circuits(orders.restrict).into_iter().map(|name| (name, speed_km_h(orders.speed))).collect();
         json!({
             "occupied": self.circuits(input.occupied),
             "detected": positions(input.detected),
@@ -85,39 +103,28 @@ impl<D: Device> Yard<D> {
             "orders": {
                 "block": self.circuits(orders.block),
                 "unblock": self.circuits(orders.unblock),
-                "restrict": restricted(orders.restrict),
+                "restrict": restrict,
                 "lift": self.circuits(orders.lift),
             },
-            "consent": segments(input.consent),
+            "consent": self.segments(input.consent),
         })
     }
 
-    fn output(&self, state: &Kernel<ROUTES, SEGMENTS>, output: &Output<ROUTES>) -> Value {
-        let exists = self.station.layout.plan().routes.iter().map(atc_kernel::interlocking::Route::exists);
-        let phases: Map<_, _> = (0..)
-            .zip(&state.routes)
-            .zip(exists)
-            .filter(|(_, exists)| *exists)
-            .map(|((number, route), _): ((u8, _), _)| (route_name(number), json!(phase(route.phase))))
-            .collect();
-        let telegrams: Map<_, _> = self
-            .station
-            .layout
-            .telegrams(&output.table, state.epoch)
-            .iter()
-            .zip(self.station.ground.circuits)
-            .filter(|(telegram, _)| telegram.open)
-            .map(|(telegram, name)| {
-                let stop = self.station.ground.circuits[usize::from(telegram.stop.number())];
-                ((*name).to_owned(), json!({"stop": stop, "speed": telegram.speed.0, "open": telegram.open}))
-            })
-            .collect();
+    fn output(&self, output: &Output<R>) -> Value {
+        let held = (0..).zip(&self.state.routes).filter(|(_, route)| route.is_held());
+        let phases: BTreeMap<_, _> = held.map(|(number, route)| (route_name(number), phase(route.phase))).collect();
+        let telegrams = self.layout.telegrams(&output.table, self.state.epoch);
+        let telegrams = self.circuits.iter().zip(&telegrams).filter(|(_, telegram)| telegram.open);
+        let told = telegrams.map(|(name, telegram)| {
+            let stop = self.circuits[usize::from(telegram.stop.number())];
+            (*name, json!({"stop": stop, "speed_km_h": speed_km_h(telegram.speed), "open": telegram.open}))
+        });
         json!({
             "routes": phases,
             "proceed": names(output.proceed),
             "drives": positions(output.drives),
-            "telegrams": telegrams,
-            "permits": segments(output.permits),
+            "telegrams": told.collect::<BTreeMap<_, _>>(),
+            "permits": self.segments(output.permits),
             "confirmed": self.circuits(output.confirmed),
             "answer": output.answer.map(|answer| match answer {
                 Ok(()) => json!("accepted"),
@@ -126,44 +133,75 @@ impl<D: Device> Yard<D> {
         })
     }
 
-    /// The layout, as far as the kernel reads it.
+    /// The plan in the oracle's words.
     fn config(&self) -> Value {
-        let plan = self.station.layout.plan();
-        let routes: Map<_, _> = (0..)
+        let plan = self.layout.plan();
+        let element = |element: &Element| json!({"circuits": self.circuits(element.circuits), "points": positions(element.positions)});
+        let routes: Vec<_> = (0..)
             .zip(&plan.routes)
             .filter(|(_, route)| route.exists())
             .map(|(number, route): (u8, _)| {
-                let path: Vec<_> = route.path[..usize::from(route.length)]
-                    .iter()
-                    .map(|element| json!({"circuit": self.circuits(element.circuits), "points": positions(element.positions)}))
-                    .collect();
-                let value = json!({
+                json!({
+                    "name": route_name(number),
                     "entry": self.circuits(route.entry),
                     "approach": self.circuits(route.approach),
-                    "path": path,
-                    "overlap": {"circuits": self.circuits(route.overlap.circuits), "points": positions(route.overlap.positions)},
+                    "path": route.path[..usize::from(route.length)].iter().map(element).collect::<Vec<_>>(),
+                    "overlap": element(&route.overlap),
                     "beyond": self.circuits(route.beyond),
                     "continuing": names(route.continuing),
                     "conflicts": names(route.conflicts),
-                    "from": segments(route.from),
-                    "to": segments(route.to),
+                    "from": self.segments(route.from),
+                    "to": self.segments(route.to),
                     "drive_cycles": route.drive.0,
                     "release_cycles": route.release.0,
                     "stay_cycles": route.stay.0,
-                });
-                (route_name(number), value)
+                    "speed_code": route.speed.0,
+                })
             })
             .collect();
-        json!({
+        let segments: Vec<_> = (0..)
+            .zip(&plan.segments)
+            .filter(|(_, segment)| segment.length > 0)
+            .map(|(number, segment): (usize, _)| {
+                let circuits = &segment.circuits[..usize::from(segment.length)];
+                json!({
+                    "name": segment_name(number),
+                    "circuits": circuits.iter().flat_map(|circuit| self.circuits(*circuit)).collect::<Vec<_>>(),
+                    "throat": self.circuits(segment.throat),
+                })
+            })
+            .collect();
+        let points = plan.points.iter().enumerate();
+        let points = points
+            .map(|(number, point)| json!({"name": point_name(number), "detectors": self.circuits(point.detectors)}));
+        let circuits = self.circuits.iter().zip(&plan.lengths);
+        let circuits = circuits.map(|(name, length)| json!({"name": name, "length_m": length.0}));
+        json!({"plan": {
+            "station": self.station,
             "cycle_ms": CYCLE_MS,
-            "station": self.station.name,
-            "circuits": self.station.ground.circuits,
-            "detectors": plan.points.iter().map(|point| self.circuits(point.detectors)).collect::<Vec<_>>(),
             "clear_cycles": plan.clear,
             "turn_cycles": plan.turn.0,
+            "speeds_km_h": (0..).take(MAX_CODES).map(|code| speed_km_h(SpeedCode(code))).collect::<Vec<_>>(),
+            "braking_m": plan.braking.iter().map(|braking| braking.0).collect::<Vec<_>>(),
+            "circuits": circuits.collect::<Vec<_>>(),
+            "points": points.collect::<Vec<_>>(),
+            "segments": segments,
             "routes": routes,
-        })
+        }})
     }
+}
+
+/// The speed that stands for a code: the models know codes only.
+const fn speed_km_h(code: SpeedCode) -> u16 {
+    code.0 as u16 * 20
+}
+
+fn point_name(number: usize) -> String {
+    format!("P{number}")
+}
+
+fn segment_name(number: usize) -> String {
+    format!("S{number}")
 }
 
 /// The name of a route: R and its number.
@@ -180,14 +218,9 @@ fn positions(positions: Positions) -> Value {
         let it = PointSet::nth(point);
         let word =
             if positions.normal.meets(it) { Some("normal") } else { positions.reverse.meets(it).then_some("reverse") };
-        word.map(|word| (format!("P{point}"), json!(word)))
+        word.map(|word| (point_name(point), json!(word)))
     };
-    Value::Object((0..POINTS).filter_map(name).collect())
-}
-
-fn segments(set: SegmentSet) -> Vec<String> {
-    let there = |number: &usize| set.meets(SegmentSet::nth(*number));
-    (0..SEGMENTS).filter(there).map(|number| format!("S{number}")).collect()
+    Value::Object((0..32).filter_map(name).collect())
 }
 
 fn request(request: Request) -> Value {

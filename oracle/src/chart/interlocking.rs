@@ -69,6 +69,9 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
         ),
         "Requests and detections are drawn over the cycles in which they were read; all else stands from the end of the cycle on.".to_owned(),
     ];
+    if matches!(config, Config::Plan(_)) {
+        scene.notes.push("A plan in the kernel's own terms: the rules of engineering were not checked.".to_owned());
+    }
     scene.lanes = requests(cycles);
     scene.lanes.extend(circuits(&machine, &moments));
     scene.lanes.extend(routes(&machine, &moments));

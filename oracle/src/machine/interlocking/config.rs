@@ -1,18 +1,31 @@
-//! The configuration: a layout as its TOML file has it, as a JSON object.
+//! The configuration: a layout as its TOML file has it, as a JSON object, or a plan in the kernel's own terms.
 
 use std::borrow::Cow;
 use std::fmt;
 
-use atc_layout::form::Station;
-use atc_layout::{Compiled, Description, Errors};
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use atc_kernel::interlocking::{MAX_CODES, Station};
+use atc_layout::{Description, Errors, Names, form};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A layout: the tables and fields of a layout file, as a JSON object.
+use super::plan::PlanConfig;
+
+/// A layout: the tables and fields of a layout file, as a JSON object; or a plan in the kernel's own terms.
 #[derive(Clone, Debug)]
-pub struct Config {
-    description: Description,
+pub enum Config {
+    /// As a layout file has it. Every rule is checked.
+    Layout(Box<Description>),
+    /// In the kernel's own terms: the field `plan`.
+    Plan(Box<PlanConfig>),
+}
+
+/// What the machine needs of a configuration.
+pub(super) struct Opened {
+    pub(super) layout: Box<Station>,
+    pub(super) names: Names,
+    pub(super) speeds_kmh: [u16; MAX_CODES],
+    pub(super) cycle_ms: u32,
 }
 
 impl Config {
@@ -20,8 +33,19 @@ impl Config {
     ///
     /// # Errors
     /// Every rule that it breaks, in sentences.
-    pub fn compile(&self) -> Result<Compiled, String> {
-        self.description.compile().map_err(|errors| sentences(&errors))
+    pub(super) fn opened(&self) -> Result<Opened, String> {
+        match self {
+            Self::Layout(description) => {
+                let compiled = description.compile().map_err(|errors| sentences(&errors))?;
+                let values = &compiled.model.values;
+                let (speeds_kmh, cycle_ms) = (values.speeds_kmh, values.cycle_ms);
+                Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms })
+            }
+            Self::Plan(plan) => {
+                let (layout, names, speeds_kmh) = plan.layout()?;
+                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms })
+            }
+        }
     }
 }
 
@@ -36,22 +60,39 @@ fn sentences(errors: &Errors) -> String {
 
 impl From<Description> for Config {
     fn from(description: Description) -> Self {
-        Self { description }
+        Self::Layout(Box::new(description))
     }
+}
+
+/// The object with the one field `plan`.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanOnly")]
+struct PlanOnly {
+    /// The plan.
+    plan: PlanConfig,
 }
 
 impl Serialize for Config {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.description.station.serialize(serializer)
+        match self {
+            Self::Layout(description) => description.station.serialize(serializer),
+            Self::Plan(plan) => PlanOnly { plan: (**plan).clone() }.serialize(serializer),
+        }
     }
 }
 
 impl<'de> Deserialize<'de> for Config {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let Tree(tree) = Tree::deserialize(deserializer)?;
+        if tree.get("plan").is_some() {
+            let only = PlanOnly::deserialize(tree)
+                .map_err(|error| D::Error::custom(format_args!("the plan is not of its form: {}", error.message())))?;
+            return Ok(Self::Plan(Box::new(only.plan)));
+        }
         let text = toml::to_string(&tree).map_err(D::Error::custom)?;
         match Description::from_toml("", &text) {
-            Ok(description) => Ok(Self { description }),
+            Ok(description) => Ok(description.into()),
             Err(errors) => {
                 let what: Vec<_> = errors.problems.iter().map(|problem| problem.what.as_str()).collect();
                 Err(D::Error::custom(format_args!("the layout is not of its form: {}", what.join(". "))))
@@ -66,7 +107,7 @@ impl JsonSchema for Config {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Station::json_schema(generator)
+        json_schema!({ "anyOf": [generator.subschema_for::<form::Station>(), generator.subschema_for::<PlanOnly>()] })
     }
 }
 

@@ -3,6 +3,7 @@
 mod because;
 mod config;
 mod forms;
+mod plan;
 mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,6 +13,8 @@ use atc_kernel::interlocking::{
     SegmentSet, SpeedCode, Station,
 };
 use atc_layout::Names;
+
+use config::Opened;
 
 pub use config::Config;
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
@@ -225,21 +228,15 @@ impl Interlocked {
 impl Machine for Interlocked {
     const NAME: &'static str = "interlocking";
     const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"request":{"set":"W-1"},"orders":{"unblock":["1T"]},"consent":["West"]}"#;
-    const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}"#;
+    const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}; or {"plan":{…}}, the kernel's own terms, for the traces of models: the rules of engineering are not checked"#;
 
     type Config = Config;
     type Step = Step;
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        let compiled = config.compile()?;
-        Ok(Self {
-            layout: compiled.layout(),
-            speeds_kmh: compiled.model.values.speeds_kmh,
-            cycle_ms: compiled.model.values.cycle_ms,
-            names: compiled.names,
-            state: Box::new(State::INITIAL),
-        })
+        let Opened { layout, names, speeds_kmh, cycle_ms } = config.opened()?;
+        Ok(Self { layout, names, speeds_kmh, cycle_ms, state: Box::new(State::INITIAL) })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {

@@ -1,0 +1,273 @@
+//! The other configuration: a plan in the kernel's own terms, with names. It is what the traces of the models are on.
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{
+    self as kernel, Broken, CircuitSet, Element, Layout, Place, PointSet, Positions, RouteSet, Segment, SegmentSet,
+    SpeedCode, Station,
+};
+use atc_kernel::time::Ticks;
+use atc_layout::{Names, Rule};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{ByName, Side, place, places};
+
+/// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
+/// engineering are not, so that a trace on a bad layout, which ends in an accident, can be replayed. Not for a real station.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlan")]
+pub struct PlanConfig {
+    /// The name of the station.
+    pub station: String,
+    /// The length of a logic cycle in ms.
+    #[schemars(range(min = 1))]
+    pub cycle_ms: u32,
+    /// How many cycles in a row a circuit must be reported clear before it counts as clear.
+    pub clear_cycles: u8,
+    /// For how many cycles the neighbour's permission must have been withdrawn before a segment turns.
+    pub turn_cycles: u16,
+    /// The speed of each code from 0 (stop), in km/h; at most 8.
+    pub speeds_km_h: Vec<u16>,
+    /// The braking distance from each of these speeds, in metres.
+    pub braking_m: Vec<u16>,
+    /// The circuits.
+    pub circuits: Vec<CircuitForm>,
+    /// The points.
+    pub points: Vec<PointForm>,
+    /// The segments of plain line.
+    pub segments: Vec<SegmentForm>,
+    /// The routes.
+    pub routes: Vec<RouteForm>,
+}
+
+/// A track circuit.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanCircuit")]
+pub struct CircuitForm {
+    /// Its name.
+    pub name: String,
+    /// Its length in metres.
+    pub length_m: u16,
+}
+
+/// A point.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanPoint")]
+pub struct PointForm {
+    /// Its name.
+    pub name: String,
+    /// The circuits whose occupation says that a train may be on it.
+    pub detectors: Vec<String>,
+}
+
+/// A segment of plain line.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanSegment")]
+pub struct SegmentForm {
+    /// Its name.
+    pub name: String,
+    /// Its circuits, the one next to the station first.
+    pub circuits: Vec<String>,
+    /// The last circuit of the routes that go out to it.
+    pub throat: Vec<String>,
+}
+
+/// Circuits, and points with the positions in which they must stand.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanElement")]
+pub struct ElementForm {
+    /// The circuits: one in a path.
+    pub circuits: Vec<String>,
+    /// The points.
+    pub points: ByName<Side>,
+}
+
+/// A route.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "InterlockingPlanRoute")]
+pub struct RouteForm {
+    /// Its name.
+    pub name: String,
+    /// The circuit in rear of its signal.
+    pub entry: Vec<String>,
+    /// The circuits on which a train may be that counts on the signal.
+    pub approach: Vec<String>,
+    /// The path in order of travel.
+    pub path: Vec<ElementForm>,
+    /// The overlap.
+    pub overlap: ElementForm,
+    /// The circuits that adjoin its end.
+    pub beyond: Vec<String>,
+    /// The routes that go on where this one ends.
+    pub continuing: Vec<String>,
+    /// The routes that are declared to conflict.
+    pub conflicts: Vec<String>,
+    /// The segment that its train comes from: one or none.
+    pub from: Vec<String>,
+    /// The segment that its train goes out to: one or none.
+    pub to: Vec<String>,
+    /// How long the points may take to arrive.
+    pub drive_cycles: u16,
+    /// How long it stays locked when it is withdrawn.
+    pub release_cycles: u16,
+    /// How long a train must have stood on the last circuit before the overlap is given up.
+    pub stay_cycles: u16,
+    /// The highest speed code.
+    #[schemars(range(max = 7))]
+    pub speed_code: u8,
+}
+
+type Plan = kernel::Plan<64, 16, 32, 8>;
+
+impl PlanConfig {
+    /// The layout, and the names of its numbers.
+    ///
+    /// # Errors
+    /// What there is no room for, a name that stands twice or for nothing, and the first rule that the plan breaks.
+    pub(super) fn layout(&self) -> Result<(Box<Station>, Names, [u16; kernel::MAX_CODES]), String> {
+        let names = self.names()?;
+        if self.cycle_ms == 0 {
+            return Err("cycle_ms is 0; a cycle lasts 1 ms or more".to_owned());
+        }
+        let mut speeds = [0; kernel::MAX_CODES];
+        let mut plan = Box::new(Plan::EMPTY);
+        fill(&mut speeds, self.speeds_km_h.iter().copied(), "speeds_km_h")?;
+        fill(&mut plan.braking, self.braking_m.iter().map(|metres| Metres(*metres)), "braking_m")?;
+        fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
+        plan.clear = self.clear_cycles;
+        plan.turn = Ticks(self.turn_cycles);
+        let points = self.points.iter().map(|point| circuits(&names, &point.detectors, "detectors"));
+        let points =
+            points.map(|set| set.map(|detectors| kernel::Point { detectors })).collect::<Result<Vec<_>, _>>()?;
+        fill(&mut plan.points, points, "points")?;
+        let segments =
+            self.segments.iter().map(|segment| segment_of(&names, segment)).collect::<Result<Vec<_>, _>>()?;
+        fill(&mut plan.segments, segments, "segments")?;
+        let routes = self.routes.iter().map(|route| route_of(&names, route)).collect::<Result<Vec<_>, _>>()?;
+        fill(&mut plan.routes, routes, "routes")?;
+        let layout = Layout::with_what_proofs_need(*plan).map_err(|broken| sentence(broken, &names))?;
+        Ok((Box::new(layout), names, speeds))
+    }
+
+    fn names(&self) -> Result<Names, String> {
+        let routes = distinct(self.routes.iter().map(|route| &route.name), "route")?;
+        Ok(Names {
+            station: self.station.clone(),
+            circuits: distinct(self.circuits.iter().map(|circuit| &circuit.name), "circuit")?,
+            points: distinct(self.points.iter().map(|point| &point.name), "point")?,
+            signals: routes.clone(),
+            routes,
+            segments: distinct(self.segments.iter().map(|segment| &segment.name), "segment")?,
+        })
+    }
+}
+
+fn distinct<'a>(given: impl Iterator<Item = &'a String>, kind: &str) -> Result<Vec<String>, String> {
+    let mut names = Vec::new();
+    for name in given {
+        if names.contains(name) {
+            return Err(format!("two {kind}s have the name {name:?}; each {kind} has its own"));
+        }
+        names.push(name.clone());
+    }
+    Ok(names)
+}
+
+fn fill<T>(places: &mut [T], values: impl IntoIterator<Item = T>, field: &str) -> Result<(), String> {
+    let most = places.len();
+    let mut places = places.iter_mut();
+    for value in values {
+        *places.next().ok_or_else(|| format!("{field} has more than {most} entries; there is room for {most}"))? =
+            value;
+    }
+    Ok(())
+}
+
+fn circuits(names: &Names, list: &[String], field: &str) -> Result<CircuitSet, String> {
+    let numbers = places(&names.circuits, list, field, "circuit")?;
+    Ok(numbers.into_iter().fold(CircuitSet::EMPTY, |set, number| set.or(CircuitSet::nth(number.into()))))
+}
+
+fn routes(names: &Names, list: &[String], field: &str) -> Result<RouteSet, String> {
+    let numbers = places(&names.routes, list, field, "route")?;
+    Ok(numbers.into_iter().fold(RouteSet::EMPTY, |set, number| set.or(RouteSet::nth(number.into()))))
+}
+
+fn segments(names: &Names, list: &[String], field: &str) -> Result<SegmentSet, String> {
+    let numbers = places(&names.segments, list, field, "segment")?;
+    Ok(numbers.into_iter().fold(SegmentSet::EMPTY, |set, number| set.or(SegmentSet::nth(number.into()))))
+}
+
+fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, String> {
+    let mut positions = Positions::NONE;
+    for (name, Side(position)) in &form.points.0 {
+        let point = PointSet::nth(place(&names.points, name, field, "point")?.into());
+        match position {
+            kernel::Position::Normal => positions.normal = positions.normal.or(point),
+            kernel::Position::Reverse => positions.reverse = positions.reverse.or(point),
+        }
+    }
+    Ok(Element { circuits: circuits(names, &form.circuits, field)?, positions })
+}
+
+fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> {
+    let mut made = Segment { throat: circuits(names, &form.throat, "throat")?, ..Segment::NONE };
+    let listed = form.circuits.iter().map(|name| circuits(names, std::slice::from_ref(name), "circuits"));
+    fill(&mut made.circuits, listed.collect::<Result<Vec<_>, _>>()?, "the circuits of a segment")?;
+    made.length = length_of(form.circuits.len(), "segment", &form.name)?;
+    Ok(made)
+}
+
+fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String> {
+    let mut made = kernel::Route {
+        entry: circuits(names, &form.entry, "entry")?,
+        approach: circuits(names, &form.approach, "approach")?,
+        length: length_of(form.path.len(), "route", &form.name)?,
+        overlap: element(names, &form.overlap, "overlap")?,
+        beyond: circuits(names, &form.beyond, "beyond")?,
+        continuing: routes(names, &form.continuing, "continuing")?,
+        conflicts: routes(names, &form.conflicts, "conflicts")?,
+        from: segments(names, &form.from, "from")?,
+        to: segments(names, &form.to, "to")?,
+        drive: Ticks(form.drive_cycles),
+        release: Ticks(form.release_cycles),
+        stay: Ticks(form.stay_cycles),
+        speed: SpeedCode(form.speed_code),
+        ..kernel::Route::NONE
+    };
+    let path = form.path.iter().map(|at| element(names, at, "path")).collect::<Result<Vec<_>, _>>()?;
+    fill(&mut made.path, path, "the path of a route")?;
+    Ok(made)
+}
+
+/// In a plan of the kernel a length of 0 means that there is no such thing; what is listed is there.
+fn length_of(circuits: usize, kind: &str, name: &str) -> Result<u8, String> {
+    let length = u8::try_from(circuits).ok().filter(|length| *length > 0);
+    length.ok_or_else(|| format!("{kind} {name} has {circuits} circuits; it has 1 to 16"))
+}
+
+/// The rule that is broken, and where.
+fn sentence(broken: Broken, names: &Names) -> String {
+    let of = |list: &[String], number: u8| list.get(usize::from(number)).cloned().unwrap_or_else(|| number.to_string());
+    let route = |number: u8| format!("route {}", of(&names.routes, number));
+    let segment = |number: u8| format!("segment {}", of(&names.segments, number));
+    let about = match broken.place {
+        Place::Plan => "the plan".to_owned(),
+        Place::Route(number) => route(number),
+        Place::Overlap(number) => format!("the overlap of {}", route(number)),
+        Place::Path(number, place) => format!("place {place} of {}", route(number)),
+        Place::Routes(one, other) => format!("{} with {}", route(one), route(other)),
+        Place::Point(number) => format!("point {}", of(&names.points, number)),
+        Place::Segment(number) => segment(number),
+        Place::Segments(one, other) => format!("{} with {}", segment(one), segment(other)),
+        Place::Circuit(number) => format!("circuit {}", of(&names.circuits, number)),
+    };
+    let rule = Rule::Plan(broken.rule);
+    format!("{about} breaks a rule: {} [{}]", rule.text(), rule.name())
+}
