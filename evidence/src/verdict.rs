@@ -107,7 +107,14 @@ impl Verdict {
     /// `worst` names the evidence with this verdict, `bounds` the bounds that were met on the way.
     pub fn conclusion(self, goal: &str, worst: &[String], bounds: &[String]) -> String {
         let named = list(worst, 2);
-        let within = if bounds.is_empty() { String::new() } else { format!(" The bounds are: {}.", bounds.join("; ")) };
+        let within = match bounds {
+            [] => String::new(),
+            [one] => format!(" The bound is: {one}."),
+            [..] if bounds.len() <= 3 => format!(" The bounds are: {}.", bounds.join("; ")),
+            [..] => {
+                format!(" What was proved within bounds has {} of them: they are listed after page one.", bounds.len())
+            }
+        };
         match self {
             Self::Proved => format!("{goal} is proved for all inputs, all valid states and all valid parameters."),
             Self::ProvedBounded => format!("{goal} is proved within bounds.{within} Beyond them it is not proved."),

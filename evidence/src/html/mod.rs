@@ -32,7 +32,7 @@ pub fn document(case: &Case) -> String {
             body {
                 (page_one::render(case))
                 (contents())
-                (page_one::words())
+                (page_one::words(case))
                 (report::definition(case))
                 (report::management(case))
                 h2 #technical { "4 Technical safety report" }

@@ -4,7 +4,7 @@
 //! anything that reassures.
 
 use super::{badge, date};
-use crate::case::{Case, Condition, Severity};
+use crate::case::{Case, Condition, Kind, Severity};
 use crate::verdict::Verdict;
 use maud::{Markup, html};
 use std::collections::BTreeMap;
@@ -88,8 +88,12 @@ pub fn render(case: &Case) -> Markup {
     }
 }
 
-/// What the verdicts mean, for the page after.
-pub fn words() -> Markup {
+/// What the verdicts mean and what the bounds are, for the page after.
+pub fn words(case: &Case) -> Markup {
+    let mut bounds: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for one in case.evidence.iter().filter(|one| one.kind == Kind::Harness && one.verdict == Verdict::ProvedBounded) {
+        bounds.entry(&one.detail).or_default().push(one.id.trim_start_matches("harness:"));
+    }
     html! {
         h4 { "What the words mean" }
         table.counts {
@@ -98,6 +102,17 @@ pub fn words() -> Markup {
             }
         }
         p.small.soft { "The best stands first. Nothing is called better than the worst of what it rests on." }
+        @if !bounds.is_empty() {
+            h4 #bounds { "The bounds" }
+            p.small { "What is proved-bounded holds for everything within its bound; beyond it nothing is proved. For the interlocking " a href="#argument" { "the argument" }
+                " says how what is proved of one route, of two and of the parts of a cycle carries to a station." }
+            table {
+                thead { tr { th style="width:38%" { "Within" } th { "Proved by" } } }
+                @for (bound, harnesses) in &bounds {
+                    tr { td { (bound) } td.small { (harnesses.join(", ")) } }
+                }
+            }
+        }
     }
 }
 
