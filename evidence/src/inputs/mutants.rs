@@ -123,7 +123,7 @@ mod tests {
             seconds: 0.0,
         };
         let provenance = Provenance { aspects: 4, ..Provenance::default() };
-        let mutants = Mutants { schema: 1, provenance, mutants: vec![result] };
+        let mutants = Mutants { schema: 1, provenance, mutants: vec![result], controls: Vec::new() };
         evidence(&[catalogue], Some(&mutants), stale)[0].verdict
     }
 

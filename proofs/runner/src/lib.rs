@@ -7,6 +7,7 @@
 pub mod campaign;
 mod cbmc;
 mod compile;
+mod control;
 mod loops;
 pub mod mutants;
 pub mod native;
@@ -20,6 +21,7 @@ use std::path::{Path, PathBuf};
 
 pub use campaign::{Options, campaign};
 pub use cbmc::{Answer, Solver, parse as parse_cbmc};
+pub use control::is_smaller;
 pub use mutants::mutants;
 pub use process::end_all_on_interrupt;
 pub use tools::Tools;

@@ -184,6 +184,11 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     })?;
     bar.finish_and_clear();
     let killed = result.mutants.iter().filter(|mutant| mutant.verdict == MutantVerdict::Killed).count();
+    let passed = result.controls.iter().filter(|control| control.reason.is_none()).count();
+    println!(
+        "{passed} of {} controls passed: the right kernel where a harness is smaller than in its proof",
+        result.controls.len()
+    );
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())

@@ -4,11 +4,13 @@
 use crate::campaign::{Options, flags, in_parallel};
 use crate::cbmc::{Answer, Question, Silence, Solver, ask};
 use crate::compile::{STACK, compile};
+use crate::control::{controls, is_smaller};
 use crate::process::only_run;
-use crate::report::{Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
+use crate::report::{Control, Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
 use crate::tools::Tools;
 use crate::{provenance, root, select};
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -92,11 +94,17 @@ pub fn mutants(
     let tools = Tools::find(&root);
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
     let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
+    let killers: BTreeSet<String> = chosen.iter().flat_map(|mutant| mutant.killed_by.iter().cloned()).collect();
+    let controls = match &tools {
+        Ok(tools) => controls(tools, &root, options, &select(&killers.into_iter().collect::<Vec<_>>())?)?,
+        Err(_) => Vec::new(),
+    };
     let results = in_parallel(options.jobs, chosen.len(), |index| {
         let mutant = chosen[index];
         let started = Instant::now();
         let (verdict, killed_by, reason) = match &tools {
-            Ok(tools) => attempt(tools, &root, mutant, options)
+            Ok(tools) => trusted(&controls, mutant)
+                .and_then(|()| attempt(tools, &root, mutant, options))
                 .unwrap_or_else(|reason| (MutantVerdict::Error, Vec::new(), Some(reason))),
             Err(reason) => (MutantVerdict::NotRun, Vec::new(), Some(reason.clone())),
         };
@@ -115,7 +123,22 @@ pub fn mutants(
         result
     });
     provenance.seconds = started.elapsed().as_secs_f64();
-    Ok(Mutants { schema: SCHEMA, provenance, mutants: results })
+    Ok(Mutants { schema: SCHEMA, provenance, mutants: results, controls })
+}
+
+/// A harness that rejects the right kernel too shows nothing by rejecting a wrong one.
+fn trusted(controls: &[Control], mutant: &Mutant) -> Result<(), String> {
+    for name in &mutant.killed_by {
+        let control = controls.iter().find(|control| control.harness == *name);
+        match control.map(|control| &control.reason) {
+            Some(Some(reason)) => return Err(format!("the control failed: {reason}")),
+            None if select(std::slice::from_ref(name))?.into_iter().any(is_smaller) => {
+                return Err(format!("there is no control of {name}"));
+            }
+            Some(None) | None => {}
+        }
+    }
+    Ok(())
 }
 
 type Attempt = (MutantVerdict, Vec<Kill>, Option<String>);

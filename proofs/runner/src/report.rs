@@ -141,6 +141,21 @@ pub struct Mutants {
     pub provenance: Provenance,
     /// One for each mutant that was asked for.
     pub mutants: Vec<MutantResult>,
+    /// How the right kernel fares, compiled as the wrong ones are: one for each harness that was to reject some and is
+    /// smaller than in its proof.
+    #[serde(default)]
+    pub controls: Vec<Control>,
+}
+
+/// The right kernel before a harness that is to reject wrong ones.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Control {
+    /// The harness.
+    pub harness: String,
+    /// Why it does not pass; none if it does.
+    pub reason: Option<String>,
+    /// Wall time.
+    pub seconds: f64,
 }
 
 /// What became of a mutant.

@@ -1,6 +1,6 @@
 //! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
 
-use atc_prover::{campaign, mutants, parse_cbmc, root, select};
+use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select};
 
 const DONE: &str = r#"[{"program":"CBMC"},{"result":[
   {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
@@ -72,4 +72,27 @@ fn every_requirement_of_a_harness_has_a_mutant() {
 fn the_harnesses_that_are_known_to_be_hard_exist() {
     let names: Vec<String> = campaign::HARD.iter().chain(&mutants::SLOW).map(|name| (*name).to_owned()).collect();
     select(&names).unwrap();
+}
+
+/// Where a size depends on what a harness is compiled for, the bound says the size, and the harness has a control.
+#[test]
+fn every_harness_that_is_smaller_for_a_wrong_kernel_has_a_control() {
+    let folder = root().join("proofs/src/interlocking");
+    let mut seen = 0;
+    for file in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+        let imports = text.lines().take_while(|line| !line.starts_with("harness!")).collect::<Vec<_>>().join(" ");
+        let sized = ["PLACES", "{PATH, ", " PATH, ", "super::PATH"].iter().any(|word| imports.contains(word));
+        let smaller = text.contains("cfg!(chosen)") || sized && text.contains("use super::");
+        if !smaller || text.contains("pub const ALL") {
+            continue;
+        }
+        for body in text.split("harness! {").skip(1) {
+            let name = body.lines().find_map(|line| line.trim().split_once("(e)")).unwrap().0.to_owned();
+            let by_size = body.contains("    bound BOUND;");
+            assert_eq!(is_smaller(select(std::slice::from_ref(&name)).unwrap()[0]), by_size, "{name}");
+            seen += usize::from(by_size);
+        }
+    }
+    assert!(seen >= 15, "only {seen}");
 }

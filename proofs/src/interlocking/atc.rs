@@ -17,7 +17,7 @@ const ROUTES: usize = 2;
 const PATH: usize = if cfg!(chosen) { 2 } else { 3 };
 const SEGMENTS: usize = 2;
 
-const BOUND: &str = "2 routes of up to 3 circuits, 32 circuits, 2 segments of up to 3 circuits";
+pub const BOUND: &str = "2 routes of up to 3 circuits, 32 circuits, 2 segments of up to 3 circuits";
 
 type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
 

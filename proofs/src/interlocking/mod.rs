@@ -43,6 +43,10 @@ pub const PATH: usize = match option_env!("ATC_PATH") {
 /// The points of a layout in the harnesses where points play a part of their own.
 pub const POINTS: usize = 4;
 
+/// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
+#[cfg(not(chosen))]
+pub const SMALLER: [&str; 4] = [atc::BOUND, pair::BOUND, route::BOUND, signal::BOUND];
+
 /// All harnesses of this room.
 #[cfg(not(chosen))]
 pub const ALL: &[Harness] = &[

@@ -4,7 +4,7 @@ use super::{PATH, any_circuits, any_positions, any_route_state, any_routes_layou
 use crate::Engine;
 use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, Sight, refuse_route};
 
-const BOUND: &str = match PATH {
+pub const BOUND: &str = match PATH {
     4 => "2 routes of up to 4 circuits, 32 circuits, 16 points",
     8 => "2 routes of up to 8 circuits, 32 circuits, 16 points",
     _ => "2 routes of another number of circuits than the 16 of the machine",

@@ -9,7 +9,7 @@ use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Phase, Route, RouteState};
 use atc_kernel::time::Ticks;
 
-const BOUND: &str = match PLACES {
+pub const BOUND: &str = match PLACES {
     16 => "1 route, 32 circuits, 16 points",
     8 => "1 route of up to 8 circuits, 32 circuits, 16 points",
     _ => "1 route of another number of circuits than the 16 of the machine",

@@ -7,7 +7,7 @@ use atc_kernel::interlocking::{CircuitSet, Phase, Route, RouteState, View, grant
 /// The places of a path: half of the machine's, since what is granted is a second path to go through.
 const PLACES: usize = if super::PLACES > 8 { 8 } else { super::PLACES };
 
-const BOUND: &str = match PLACES {
+pub const BOUND: &str = match PLACES {
     8 => "1 route of up to 8 circuits, 32 circuits, 16 points",
     _ => "1 route of another number of circuits than the 16 of the machine",
 };
