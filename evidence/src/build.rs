@@ -109,6 +109,22 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     case
 }
 
+/// Makes a case the one of this station: what it says of the machine is what it said before.
+pub fn at_station(case: &mut Case, station: &station::Checked) {
+    // Items about one thing may have been put together: what is about a former station goes, whatever else stands.
+    let former: Vec<_> = case.station.iter().flat_map(open::of_station).collect();
+    case.open_items.retain(|item| !former.iter().any(|one| one.text == item.text));
+    let station = station.case(&case.evidence, &case.conditions);
+    case.open_items.extend(open::of_station(&station));
+    case.open_items = open::grouped(std::mem::take(&mut case.open_items));
+    let concluded = station::conclusion(&station);
+    case.conclusions.retain(|one| one.node != concluded.node);
+    case.conclusions.push(concluded);
+    case.station = Some(station);
+    let required = if case.status.required.is_some() { Required::Proved } else { Required::NoDefect };
+    case.status = status(case, required);
+}
+
 /// Enters a user with the conditions that it uses.
 fn used(conditions: &mut [Condition], user: &str, uses: impl Fn(&str) -> bool) {
     for condition in conditions.iter_mut().filter(|condition| uses(&condition.id)) {

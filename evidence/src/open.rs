@@ -1,6 +1,6 @@
 //! Open items: everything that is not as it should be. They stand above every summary.
 
-use crate::case::{Case, Evidence, Kind, OpenItem, Severity, Station};
+use crate::case::{Case, DataCheck, Evidence, Finding, Kind, OpenItem, Severity, Station};
 use crate::inputs::measured;
 use crate::inputs::requirements::mismatch;
 use crate::plan::Plan;
@@ -54,12 +54,7 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
     for check in case.line.checks.iter().filter(|check| check.contains("NO")) {
         items.push(item(Severity::Stop, &case.line.name, check.clone()));
     }
-    for one in case.station.iter().flat_map(Station::broken) {
-        for found in &one.broken {
-            let right = if found.right.is_empty() { String::new() } else { format!("; {}", found.right) };
-            items.push(item(Severity::Stop, &found.at, format!("{}{right} [{}]", found.what, one.rule)));
-        }
-    }
+    items.extend(case.station.iter().flat_map(of_station));
     items.extend(needed::open(&case.needed_rules));
     for condition in case.conditions.iter().filter(|condition| condition.used_by.is_empty()) {
         let text = format!("The assumption \"{}\" is listed and used nowhere.", condition.id);
@@ -103,6 +98,15 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
         items.push(item(Severity::Open, measured::ENGINE, text));
     }
     grouped(items)
+}
+
+/// The rules that a station's layout breaks.
+pub fn of_station(station: &Station) -> Vec<OpenItem> {
+    let told = |rule: &DataCheck, found: &Finding| {
+        let right = if found.right.is_empty() { String::new() } else { format!("; {}", found.right) };
+        item(Severity::Stop, &found.at, format!("{}{right} [{}]", found.what, rule.rule))
+    };
+    station.broken().flat_map(|rule| rule.broken.iter().map(move |found| told(rule, found))).collect()
 }
 
 /// The worst first; the same text about many things is one item.

@@ -111,6 +111,46 @@ fn a_station_has_a_case_of_its_own_and_a_broken_rule_ends_it_badly() {
     assert!(!folder.path().join("other").exists(), "nothing half-written");
 }
 
+/// A new station costs no run: the case of one that was rendered for it is that of a run with it.
+#[test]
+fn a_case_is_rendered_for_a_station_as_it_is_run_for_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let layout = root().join("layouts/junction.toml");
+    let good = layout.to_str().expect("a path");
+    let bad = folder.path().join("bad.toml");
+    let text_of = std::fs::read_to_string(&layout).expect("there");
+    std::fs::write(&bad, format!("{text_of}\n[times]\nclear_ms = 1000\n")).expect("written");
+    let bad = bad.to_str().expect("a path");
+    let (plain, run, at) = (folder.path().join("plain"), folder.path().join("run"), folder.path().join("at"));
+    bare(&plain, &[]);
+    let rendered = |from: &Path, layout: &str| {
+        let (from, out) = (from.to_str().expect("a path"), at.to_str().expect("a path"));
+        safety_case(&["render", "--from", from, "--layout", layout, "--out", out])
+    };
+    let same = || {
+        let (one, other) = (json(&run), json(&at));
+        for field in ["station", "open_items", "conclusions", "status"] {
+            assert_eq!(one[field], other[field], "{field}");
+        }
+    };
+    bare(&run, &["--layout", good]);
+    assert_eq!(rendered(&plain, good).status.code(), Some(0));
+    same();
+    assert!(std::fs::read_to_string(at.join("station.html")).expect("written").contains("<svg"));
+    let broken = bare(&run, &["--layout", bad]);
+    assert_eq!(broken.status.code(), Some(1));
+    assert_eq!(rendered(&plain, bad).status.code(), Some(1));
+    same();
+    // And back: what the former station broke is gone.
+    bare(&run, &["--layout", good]);
+    assert_eq!(rendered(&at.clone(), good).status.code(), Some(0));
+    same();
+    let missing = rendered(&plain, "nowhere.toml");
+    assert_eq!(missing.status.code(), Some(2), "{}", text(&missing));
+    let in_place = safety_case(&["render", "--from", plain.to_str().expect("a path"), "--layout", good]);
+    assert_eq!(in_place.status.code(), Some(2), "a case is not turned into a station's in place");
+}
+
 /// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.
 fn line(result: &serde_json::Value) -> Option<String> {
     let place = &result["locations"][0]["physicalLocation"];

@@ -22,11 +22,14 @@ pub struct Cli {
 enum Command {
     /// Run the engines and write the case.
     Run(Box<Run>),
-    /// Write a case again from its case.json; results of other sources become stale.
+    /// Write a case again from its case.json, for a station if a layout is given; results of other sources become stale.
     Render {
         /// The folder of a case.
         #[arg(long)]
         from: PathBuf,
+        /// A station's layout (TOML, railML 3 or OSRD): the case becomes that of the station, and no engine runs.
+        #[arg(long, requires = "out")]
+        layout: Option<PathBuf>,
         /// Where to write it; without this, in place.
         #[arg(long)]
         out: Option<PathBuf>,
@@ -115,7 +118,9 @@ pub enum Require {
 pub fn main(cli: Cli) -> u8 {
     let result = match cli.command {
         Command::Run(options) => run::run(&options),
-        Command::Render { from, out, root } => render::render(&from, out.as_deref(), root.as_deref()),
+        Command::Render { from, layout, out, root } => {
+            render::render(&from, layout.as_deref(), out.as_deref(), root.as_deref())
+        }
         Command::Verify { folder, models, root } => render::verify(&folder, models, root.as_deref()),
         Command::Schema => {
             print!("{}", crate::output::schema());

@@ -1,12 +1,14 @@
 //! `safety-case render` and `safety-case verify`.
 
 use super::checkout;
+use crate::build::at_station;
 use crate::case::{Case, Kind, SCHEMA};
 use crate::error::{Fault, read};
 use crate::inputs::models;
 use crate::inputs::provenance::{self, now, sha256};
 use crate::output::{Folder, MARKER, SUMS};
 use crate::stale;
+use crate::station;
 use crate::terminal;
 use std::path::Path;
 
@@ -26,16 +28,20 @@ fn changed(case: &Case, root: &Path) -> Result<Vec<String>, Fault> {
     Ok(provenance::differences(&case.provenance, &now))
 }
 
-/// Writes a case again. What belongs to other sources becomes stale.
+/// Writes a case again, as that of a station if a layout is given. What belongs to other sources becomes stale.
 ///
 /// # Errors
-/// There is no case, or it cannot be written.
-pub fn render(from: &Path, out: Option<&Path>, root: Option<&Path>) -> Result<u8, Vec<Fault>> {
+/// There is no case, the layout cannot be read, or the case cannot be written.
+pub fn render(from: &Path, layout: Option<&Path>, out: Option<&Path>, root: Option<&Path>) -> Result<u8, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];
     let mut case = load(from).map_err(one)?;
+    let station = layout.map(station::read).transpose()?;
     let root = checkout(root).map_err(one)?;
     let changed = changed(&case, &root).map_err(one)?;
     stale::mark(&mut case, &changed);
+    if let Some(station) = &station {
+        at_station(&mut case, station);
+    }
     let folder = Folder::begin(out.unwrap_or(from)).map_err(one)?;
     folder.finish(&case).map_err(one)?;
     println!("{}", terminal::summary(&case));
