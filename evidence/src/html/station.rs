@@ -78,7 +78,7 @@ pub fn page(case: &Case, station: &Station) -> String {
                 (checks(station))
                 (confirm(station))
                 (conditions(case, station))
-                (theorems(station))
+                (theorems(case, station))
                 (signatures(case, station))
             }
         }
@@ -277,15 +277,28 @@ fn conditions(case: &Case, station: &Station) -> Markup {
     }
 }
 
-fn theorems(station: &Station) -> Markup {
+fn theorems(case: &Case, station: &Station) -> Markup {
+    let of = |id: &str| case.evidence.iter().find(|one| one.id == id);
     html! {
         h2 { "7 Generic theorems that it instantiates" }
         @if station.theorems.is_empty() {
             p.cannot { @if station.is_sound() { "There is no theorem on the interlocking." } @else { "None: they speak only of layouts that keep every rule." } }
         } @else {
             p { (station.theorems.iter().filter(|(_, verdict)| verdict.holds()).count()) " of " (station.theorems.len())
-                " have a good result in this run. What each says is in " a href="index.html#theorems" { "the case" } "." }
-            p { @for (id, verdict) in &station.theorems { (in_case(id)) " " (badge(*verdict)) " " } }
+                " have a good result. Their claims, one by one, are in " a href="index.html#theorems" { "the case" } "." }
+            table {
+                thead { tr { th { "Theorem" } th { "It says" } th style="width:22%" { "Proved for" } th { "Verdict" } } }
+                @for (id, verdict) in &station.theorems {
+                    tr {
+                        td.nowrap { (in_case(id)) }
+                        td { @if let Some(one) = of(id) { (one.statement) } }
+                        td.small { @if let Some(one) = of(id).filter(|_| verdict.holds()) {
+                            @if *verdict == Verdict::ProvedBounded { (one.detail) } @else { "every size" }
+                        } }
+                        td { (badge(*verdict)) }
+                    }
+                }
+            }
         }
     }
 }

@@ -22,6 +22,9 @@ use std::path::Path;
 /// The hazards of the interlocking and the ATC: their conditions are the station's.
 pub const HAZARDS: [&str; 4] = ["H-12", "H-13", "H-14", "H-15"];
 
+/// The assumption that what is proved of small layouts holds of large ones.
+const CARRIES: &str = "small-layouts-for-large";
+
 /// Where the harnesses of the interlocking stand.
 const HARNESSES: &str = "proofs/src/interlocking";
 
@@ -194,7 +197,15 @@ pub fn conclusion(station: &Station) -> Conclusion {
     let verdict = Verdict::worst(station.theorems.iter().map(|(_, verdict)| *verdict)).unwrap_or(Verdict::NotRun);
     let worst: Vec<_> = station.theorems.iter().filter(|(_, one)| *one == verdict).map(|(id, _)| id.clone()).collect();
     let worst = if worst.is_empty() { vec!["every theorem on the interlocking".to_owned()] } else { worst };
-    let said = verdict.conclusion("What is claimed of every layout", &worst, &[]);
+    let mut said = verdict.conclusion("What is claimed of every layout", &worst, &[]);
+    if verdict == Verdict::ProvedBounded {
+        let condition = station.conditions.iter().find(|one| one.id == CARRIES);
+        let condition = condition.map_or(String::new(), |one| format!(", and a condition ({})", one.number));
+        let routes = station.table.len();
+        said = format!(
+            "{said} That it carries to the {routes} routes of this station is an argument on paper{condition}."
+        );
+    }
     let sentence = format!(
         "{name}: the layout keeps all {} rules, so it is one of those that the theorems speak of. {said} {} values and reasons \
          are to be confirmed, and {} conditions to be fulfilled.",

@@ -86,6 +86,9 @@ fn the_conclusion_is_never_better_than_the_theorems() {
     assert_eq!(says(&both).verdict, Verdict::NotRun);
     assert!(says(&both).sentence.contains("harness:t_ilk_2 has not been run"), "{}", says(&both).sentence);
     assert_eq!(says(&both[..1]).verdict, Verdict::ProvedBounded);
+    let carries =
+        "Beyond them it is not proved. That it carries to the 8 routes of this station is an argument on paper.";
+    assert!(says(&both[..1]).sentence.contains(carries), "{}", says(&both[..1]).sentence);
     // Theorems of other parts say nothing of a station.
     let other = Evidence { at: Some("proofs/src/aspect/gap.rs:1".to_owned()), ..theorem("t_acc_1", Verdict::Proved) };
     assert_eq!(says(&[other]).verdict, Verdict::NotRun);
