@@ -132,7 +132,7 @@ fn models(case: &Case) -> Markup {
         }
         (super::faults::second_opinions(case))
         h4 { "Model by model" }
-        p { "The same hazard in another model is not drawn twice; every trace and chart is in " code { "traces/" } "." }
+        p { "The same hazard for want of the same condition is not drawn twice; every trace and chart is in " code { "traces/" } "." }
         @for model in &case.models { (details(case, model)) }
     }
 }
@@ -163,7 +163,7 @@ fn details(case: &Case, model: &Model) -> Markup {
             }
         }
         @for chart in &model.charts {
-            @let first = first(case, &chart.name);
+            @let first = first(case, model, &chart.name);
             @if first == Some(model.id.as_str()) || chart.svg.is_empty() {
                 figure {
                     figcaption { strong { (chart.name) } ": " (chart.caption) }
@@ -176,10 +176,15 @@ fn details(case: &Case, model: &Model) -> Markup {
     }
 }
 
-/// The first model with a chart of this property.
-fn first<'a>(case: &'a Case, name: &str) -> Option<&'a str> {
-    let with = |model: &&Model| model.charts.iter().any(|chart| chart.name == name && !chart.svg.is_empty());
-    case.models.iter().find(with).map(|model| model.id.as_str())
+/// The first model with a chart of this property where the same conditions exclude it.
+fn first<'a>(case: &'a Case, model: &Model, name: &str) -> Option<&'a str> {
+    let lifted = |model: &Model| -> Vec<String> {
+        let of = model.properties.iter().filter(|one| one.name == name);
+        of.flat_map(|one| one.excluded_by.iter().cloned()).collect()
+    };
+    let wanted = lifted(model);
+    let has = |other: &Model| other.charts.iter().any(|chart| chart.name == name && !chart.svg.is_empty());
+    case.models.iter().find(|other| has(other) && lifted(other) == wanted).map(|other| other.id.as_str())
 }
 
 fn tests(case: &Case) -> Markup {

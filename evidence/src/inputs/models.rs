@@ -145,7 +145,7 @@ pub fn chart(name: &str, text: &str, trace: &Trace) -> Chart {
     let view = View { title: Some(name.to_owned()), ..View::default() };
     let drawn = Record::parse(&shown).and_then(|record| chart::svg(&record, replies, &view));
     let record = if claimed { shown } else { trace.trace_jsonl() };
-    let mut caption = format!("{text}{}", truth::words(trace));
+    let mut caption = format!("{}.{}", text.trim_end_matches('.'), truth::words(trace));
     if claimed {
         caption.push_str(" Recorded: the display of the machine as claimed.");
     }
