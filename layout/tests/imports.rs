@@ -139,6 +139,126 @@ fn an_overlap_is_that_of_the_exit_and_runs_over_its_sections_or_to_its_limit() {
     );
 }
 
+/// The chainage file with a change, and its report.
+fn changed(from: &str, to: &str) -> Imported {
+    assert!(CHAINAGE.contains(from), "{from}");
+    imported(&CHAINAGE.replacen(from, to, 1))
+}
+
+fn reports(lines: &[String], start: &str) -> bool {
+    lines.iter().any(|line| line.starts_with(start))
+}
+
+#[test]
+fn a_net_element_may_have_more_coordinates_and_more_systems() {
+    let between = "<intrinsicCoordinate id=\"west1\"";
+    let bent = changed(
+        between,
+        "<intrinsicCoordinate id=\"w\" intrinsicCoord=\"0.9\"><linearCoordinate positioningSystemRef=\"km\" measure=\"10500\"/></intrinsicCoordinate><intrinsicCoordinate id=\"west1\"",
+    );
+    let lengths = |found: &Imported| -> Vec<u16> {
+        found.description.station.circuits.iter().take(2).map(|at| at.length_m.value).collect()
+    };
+    assert_eq!(lengths(&bent), [900, 80], "piece by piece");
+    let both = changed(
+        "<linearCoordinate positioningSystemRef=\"km\" measure=\"10000\"/>",
+        "<linearCoordinate positioningSystemRef=\"km\" measure=\"10000\"/><linearCoordinate positioningSystemRef=\"other\" measure=\"500\"/>",
+    );
+    assert_eq!(lengths(&both), [500, 400]);
+    let no_length = imported(&CHAINAGE.replacen(" id=\"west\" length=\"1000\"", " id=\"west\"", 1).replacen(
+        "measure=\"11000\"/></intrinsicCoordinate>",
+        "measure=\"11000\"/><linearCoordinate positioningSystemRef=\"other\" measure=\"9500\"/></intrinsicCoordinate>",
+        1,
+    ));
+    assert_eq!(lengths(&no_length), [500, 400], "systems are not mixed");
+    let turns = changed(
+        between,
+        "<intrinsicCoordinate id=\"w\" intrinsicCoord=\"0.9\"><linearCoordinate positioningSystemRef=\"km\" measure=\"11500\"/></intrinsicCoordinate><intrinsicCoordinate id=\"west1\"",
+    );
+    assert!(reports(&turns.report.lacking, "a place on a net element of: d0, d1, isA"), "{}", turns.report);
+}
+
+#[test]
+fn what_an_overlap_names_and_is_not_there_is_reported_and_not_passed_over() {
+    let ov2 = "<hasTvdSection ref=\"sE\"/></overlap>";
+    let ghost = changed(ov2, "<hasTvdSection ref=\"sE\"/><hasTvdSection ref=\"ghost\"/></overlap>").report;
+    assert!(reports(&ghost.lacking, "overlap ov2 for route A-B2: its section ghost has no place"), "{ghost}");
+    let switch =
+        changed("inPosition=\"left\"><refersToSwitch ref=\"p2\"/>", "inPosition=\"left\"><refersToSwitch ref=\"p9\"/>");
+    let why = "overlap ov2 for route A-B2: the switch p9 of a position does not exist";
+    assert!(reports(&switch.report.lacking, why), "{}", switch.report);
+    let word =
+        changed("inPosition=\"left\"><refersToSwitch ref=\"p2\"/>", "inPosition=\"off\"><refersToSwitch ref=\"p2\"/>")
+            .report;
+    assert!(reports(&word.lacking, "overlap ov2 for route A-B2: the position \"off\" of p2"), "{word}");
+    let both = changed(
+        "</relatedSwitchAndPosition></requiresSwitchInPosition><hasTvdSection ref=\"sE\"/>",
+        "</relatedSwitchAndPosition><relatedSwitchAndPosition inPosition=\"right\"><refersToSwitch ref=\"p2\"/></relatedSwitchAndPosition></requiresSwitchInPosition><hasTvdSection ref=\"sE\"/>",
+    );
+    assert!(
+        reports(&both.report.lacking, "overlap ov2 for route A-B2: p2 is to stand in both positions"),
+        "{}",
+        both.report
+    );
+    // Nothing says which leg: the limit does.
+    let free = imported(&CHAINAGE.replace("<requiresSwitchInPosition><relatedSwitchAndPosition inPosition=\"left\"><refersToSwitch ref=\"p2\"/></relatedSwitchAndPosition></requiresSwitchInPosition><hasTvdSection ref=\"sE\"/>", "<hasTvdSection ref=\"sE\"/><isLimitedBy ref=\"d6\"/>"));
+    assert_eq!(free.description.station.routes[1].overlap.len(), 1, "{}", free.report);
+    // One that is for routes that are not there is for no other.
+    let elsewhere = changed(
+        "<activeForApproachRoute ref=\"rA-B2\"/>",
+        "<activeForApproachRoute ref=\"gone\"/><relatedToTrackAsset ref=\"ilB1\"/>",
+    );
+    assert!(
+        reports(&elsewhere.report.lacking, "overlap ov3: it names no route that was taken"),
+        "{}",
+        elsewhere.report
+    );
+}
+
+#[test]
+fn a_route_that_is_not_what_its_parts_say_is_left_out_or_reported() {
+    let ghost =
+        changed("<hasTvdSection ref=\"sM\"/>", "<hasTvdSection ref=\"sM\"/><hasTvdSection ref=\"ghost\"/>").report;
+    assert!(reports(&ghost.lacking, "route rA-B1: its section ghost has no place; it is left out"), "{ghost}");
+    // No position of its switch: its exit tells the leg.
+    let leg = "<facingSwitchInPosition inPosition=\"right\"><refersToSwitch ref=\"p1\"/></facingSwitchInPosition><hasTvdSection ref=\"sW\"/><hasTvdSection ref=\"sL\"/>";
+    let by_exit = imported(
+        &CHAINAGE
+            .replace(leg, "<hasTvdSection ref=\"sW\"/>")
+            .replace("<refersTo ref=\"to2\"/>", "<refersTo ref=\"d3\"/>"),
+    );
+    let first = &by_exit.description.station.routes[1].path[0].points["1"];
+    assert_eq!(first.value, Position::Reverse, "{}", by_exit.report);
+    let contrary =
+        imported(&CHAINAGE.replace("<routeExit><refersTo ref=\"to2\"/>", "<routeExit><refersTo ref=\"to1\"/>"));
+    assert!(
+        reports(&contrary.report.defaulted, "route A-B2: its sections do not end at its exit"),
+        "{}",
+        contrary.report
+    );
+    let open = imported(
+        &CHAINAGE
+            .replace(leg, "<hasTvdSection ref=\"sW\"/>")
+            .replace("<routeExit><refersTo ref=\"to2\"/></routeExit>", ""),
+    );
+    assert!(reports(&open.report.defaulted, "route A-B2: the file leaves more than one way"), "{}", open.report);
+}
+
+#[test]
+fn times_are_read_in_every_form_or_reported() {
+    let whole = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"P0Y0M0DT0H2M0.5S\"");
+    assert_eq!(whole.description.station.routes[0].release_ms.as_ref().map(|at| at.value), Some(120_500));
+    let day = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"P1D\"");
+    assert_eq!(day.description.station.routes[0].release_ms.as_ref().map(|at| at.value), Some(86_400_000));
+    for wrong in ["P1M", "PT", "P", "45S", "PT-4S", "PT4X", "PT4S4S", "P4"] {
+        let report = changed("approachReleaseDelay=\"PT45S\"", &format!("approachReleaseDelay=\"{wrong}\"")).report;
+        let told = format!("route A-B1: approachReleaseDelay {wrong:?} is no time that can be read");
+        assert!(reports(&report.lacking, &told), "{wrong}: {report}");
+    }
+    let throw = changed("maxThrowTime=\"PT6S\"", "maxThrowTime=\"6\"").report;
+    assert!(reports(&throw.lacking, "switch sw1: its throw time \"6\" is no time that can be read"), "{throw}");
+}
+
 /// A station of our own in the form of OSRD: a line with a loop, cut by four detectors.
 const OSRD: &str = r#"{
   "track_sections": [{"id": "a", "length": 900.0}, {"id": "b", "length": 400.0}, {"id": "c", "length": 400.0}, {"id": "d", "length": 900.0}],

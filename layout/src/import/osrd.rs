@@ -259,7 +259,7 @@ fn routes(infra: &Infra, network: &Network, divided: &Divided, station: &mut Sta
             positions(run, &points).into_iter().filter(|(point, _)| known.contains(point)).collect();
         let exit = joints.get(run.exit_point.id.as_str()).copied();
         let look = |start: usize, first: usize| {
-            search(&graph, &Sought { start, first, exit, within: None, positions: &positions })
+            search(&graph, &Sought { start, first, exit, within: None, positions: &positions }).map(|found| found.way)
         };
         let found = match (start, rear, ahead, exit) {
             (Some(start), Some(rear), Some(first), Some(_)) if rear != first => {

@@ -13,10 +13,27 @@ pub struct Sought<'a> {
     pub first: usize,
     /// The joint where it ends, if it is known.
     pub exit: Option<usize>,
-    /// The circuits it runs over, if they are known.
-    pub within: Option<&'a BTreeSet<usize>>,
+    /// The circuits it runs over, if they are known: it leaves none out, or may end before the last ones.
+    pub within: Option<(&'a BTreeSet<usize>, Extent)>,
     /// Positions of points.
     pub positions: &'a BTreeMap<usize, Position>,
+}
+
+/// Whether a way runs over all circuits that it may run over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Over all of them.
+    All,
+    /// Over some of them.
+    Some,
+}
+
+/// A way that was found.
+pub struct Found {
+    /// The shortest way: circuits and the ways through them.
+    pub way: Vec<(usize, Way)>,
+    /// Whether nothing else that was looked at fits.
+    pub alone: bool,
 }
 
 /// The longest way that is looked for, in circuits.
@@ -25,48 +42,52 @@ const LONGEST: usize = 40;
 /// How many steps are looked at before a search is given up.
 const PATIENCE: usize = 20_000;
 
-/// The first way found: circuits and the ways through them. A way that covers all circuits of `within`, or ends at `exit`.
-pub fn search(graph: &Graph, sought: &Sought<'_>) -> Option<Vec<(usize, Way)>> {
-    let mut so_far = Vec::new();
-    let mut best: Option<Vec<(usize, Way)>> = None;
-    let mut patience = PATIENCE;
-    go(graph, sought, sought.start, sought.first, &mut so_far, &mut best, &mut patience);
-    best
+/// The shortest way that ends at `exit`, runs over the circuits of `within`, and keeps the positions: what is known of these.
+pub fn search(graph: &Graph, sought: &Sought<'_>) -> Option<Found> {
+    let mut looking = Looking { graph, sought, so_far: Vec::new(), best: None, found: 0, patience: PATIENCE };
+    looking.go(sought.start, sought.first);
+    let alone = looking.found == 1 && looking.patience > 0;
+    looking.best.map(|way| Found { way, alone })
 }
 
-fn go(
-    graph: &Graph,
-    sought: &Sought<'_>,
-    joint: usize,
-    circuit: usize,
-    so_far: &mut Vec<(usize, Way)>,
-    best: &mut Option<Vec<(usize, Way)>>,
-    patience: &mut usize,
-) {
-    let apart = sought.within.is_some_and(|within| !within.contains(&circuit));
-    if apart || so_far.len() >= LONGEST || *patience == 0 || so_far.iter().any(|(used, _)| *used == circuit) {
-        return;
-    }
-    *patience -= 1;
-    for way in graph.ways(circuit, joint) {
-        let opposed = |point: usize, position| sought.positions.get(&point).is_some_and(|given| *given != position);
-        if way.passed.iter().any(|passed| opposed(passed.point, passed.position)) {
-            continue;
+struct Looking<'a> {
+    graph: &'a Graph,
+    sought: &'a Sought<'a>,
+    so_far: Vec<(usize, Way)>,
+    best: Option<Vec<(usize, Way)>>,
+    found: usize,
+    patience: usize,
+}
+
+impl Looking<'_> {
+    fn go(&mut self, joint: usize, circuit: usize) {
+        let Sought { exit: wanted, within, positions, .. } = self.sought;
+        let apart = within.is_some_and(|(within, _)| !within.contains(&circuit));
+        let long = self.so_far.len() >= LONGEST;
+        if apart || long || self.patience == 0 || self.so_far.iter().any(|(used, _)| *used == circuit) {
+            return;
         }
-        let exit = way.exit;
-        so_far.push((circuit, way));
-        let ends = match (sought.exit, sought.within) {
-            (Some(wanted), _) => wanted == exit,
-            (None, Some(within)) => so_far.len() == within.len(),
-            (None, None) => true,
-        };
-        if ends {
-            if best.as_ref().is_none_or(|best| so_far.len() < best.len()) {
-                *best = Some(so_far.clone());
+        self.patience -= 1;
+        for way in self.graph.ways(circuit, joint) {
+            let opposed = |point: usize, position| positions.get(&point).is_some_and(|given| *given != position);
+            if way.passed.iter().any(|passed| opposed(passed.point, passed.position)) {
+                continue;
             }
-        } else if let Some(next) = graph.across(exit, circuit) {
-            go(graph, sought, exit, next, so_far, best, patience);
+            let exit = way.exit;
+            self.so_far.push((circuit, way));
+            let whole = match within {
+                Some((within, Extent::All)) => self.so_far.len() == within.len(),
+                Some((_, Extent::Some)) | None => true,
+            };
+            if whole && wanted.is_none_or(|wanted| wanted == exit) {
+                self.found += 1;
+                if self.best.as_ref().is_none_or(|best| self.so_far.len() < best.len()) {
+                    self.best = Some(self.so_far.clone());
+                }
+            } else if let Some(next) = self.graph.across(exit, circuit) {
+                self.go(exit, next);
+            }
+            self.so_far.pop();
         }
-        so_far.pop();
     }
 }

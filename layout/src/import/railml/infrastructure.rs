@@ -134,16 +134,15 @@ fn length(element: Node<'_, '_>) -> Option<f64> {
     if let Some(length) = number(element, "length").filter(|length| *length > 0.0) {
         return Some(length);
     }
-    let coordinates: Vec<Node<'_, '_>> =
-        element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate").collect();
-    let measures: Vec<f64> = coordinates
-        .iter()
-        .filter_map(|node| child(*node, "linearCoordinate").and_then(|at| number(at, "measure")))
-        .collect();
-    if let [first, .., last] = measures[..] {
-        return Some((last - first).abs()).filter(|length| *length > 0.0);
+    let given = measures(element);
+    if let Some((system, ..)) = given.first() {
+        let mut same = given.iter().filter(|(name, ..)| name == system).map(|(_, _, measure)| *measure);
+        if let (Some(first), Some(last)) = (same.next(), same.next_back()) {
+            return Some((last - first).abs()).filter(|length| *length > 0.0);
+        }
     }
-    let geometric = coordinates.iter().filter_map(|node| child(*node, "geometricCoordinate"));
+    let coordinates = element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate");
+    let geometric = coordinates.filter_map(|node| child(node, "geometricCoordinate"));
     let corners: Vec<(f64, f64)> = geometric.filter_map(|at| number(at, "x").zip(number(at, "y"))).collect();
     let run: f64 = corners.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
     (run > 0.0).then_some(run)
@@ -166,17 +165,20 @@ fn track_lengths<'a>(xml: &Xml<'a>) -> BTreeMap<&'a str, f64> {
     lengths
 }
 
-/// Linear coordinates of a net element: positioning system, share of its length, measure.
+/// Linear coordinates of a net element: positioning system, share of its length, measure; from its begin to its end.
 type Measures<'a> = Vec<(&'a str, f64, f64)>;
 
 fn measures<'a>(element: Node<'a, 'a>) -> Measures<'a> {
     let coordinates = element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate");
-    let given = coordinates.filter_map(|node| {
-        let linear = child(node, "linearCoordinate")?;
-        let system = linear.attribute("positioningSystemRef").unwrap_or_default();
-        Some((system, number(node, "intrinsicCoord")?, number(linear, "measure")?))
-    });
-    given.collect()
+    let given = coordinates.flat_map(|node| children(node, "linearCoordinate").map(move |linear| (node, linear)));
+    let mut given: Measures<'a> = given
+        .filter_map(|(node, linear)| {
+            let system = linear.attribute("positioningSystemRef").unwrap_or_default();
+            Some((system, number(node, "intrinsicCoord")?, number(linear, "measure")?))
+        })
+        .collect();
+    given.sort_by(|one, other| one.1.total_cmp(&other.1));
+    given
 }
 
 /// A place, and the metres from the begin of its net element as they are given: a place cannot be beyond its end.
@@ -203,13 +205,25 @@ fn spot(
     Some((Spot { edge, at: at.clamp(0.0, length), toward_end }, at))
 }
 
-/// Where on its net element a place with a linear coordinate is: between the coordinates that the element gives in that system.
+/// Where on its net element a place with a linear coordinate is: between those two of the element's own coordinates in that system that it
+/// lies between, or beyond the first or last. Nowhere where the chainage turns round on the element.
 fn share_of(location: Node<'_, '_>, measures: &Measures<'_>) -> Option<f64> {
     let linear = child(location, "linearCoordinate")?;
     let system = linear.attribute("positioningSystemRef").unwrap_or_default();
     let measure = number(linear, "measure")?;
-    let mut same = measures.iter().filter(|(name, ..)| *name == system);
-    let ((_, from, begin), (_, to, end)) = (same.next()?, same.next_back()?);
+    let mut same: Vec<(f64, f64)> = measures.iter().filter(|at| at.0 == system).map(|at| (at.1, at.2)).collect();
+    if let [.., (_, begin), (_, end)] = same[..]
+        && begin > end
+    {
+        // Downwards: looked at from the other side.
+        same.reverse();
+    }
+    if same.windows(2).any(|pair| pair[0].1 >= pair[1].1) {
+        return None;
+    }
+    let above = same.iter().position(|(_, at)| *at >= measure).unwrap_or(same.len());
+    let above = above.clamp(1, same.len().checked_sub(1)?.max(1));
+    let ((from, begin), (to, end)) = (*same.get(above - 1)?, *same.get(above)?);
     let share = from + (measure - begin) / (end - begin) * (to - from);
     share.is_finite().then_some(share)
 }
@@ -237,11 +251,14 @@ fn relations<'a>(xml: &Xml<'a>, edges: &BTreeMap<&str, usize>) -> Relations<'a> 
 }
 
 fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a>, report: &mut Report) {
-    let throw = |id: &str| {
+    let throw = |id: &str, report: &mut Report| {
         let il = xml.all("switchIL").find(|il| super::xml::reference(*il, "refersTo") == Some(id));
-        let throw =
-            il.and_then(|il| il.attribute("maxThrowTime").or(il.attribute("typicalThrowTime"))).and_then(duration);
-        (throw, il.and_then(|il| il.attribute("preferredPosition")))
+        let throw = il.and_then(|il| il.attribute("maxThrowTime").or(il.attribute("typicalThrowTime")));
+        let read = throw.and_then(duration);
+        if let (Some(text), None) = (throw, read) {
+            report.lacking.push(format!("switch {id}: its throw time {text:?} is no time that can be read"));
+        }
+        (read, il.and_then(|il| il.attribute("preferredPosition")))
     };
     let mut assumed = Vec::new();
     let mut used = BTreeSet::new();
@@ -268,7 +285,7 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
             report.lacking.push(format!("switch {id}: its ends belong to another switch or to one track"));
             continue;
         }
-        let (throw_ms, preferred) = throw(id);
+        let (throw_ms, preferred) = throw(id, report);
         let course = preferred.or(switch.attribute("continueCourse")).filter(|side| ["left", "right"].contains(side));
         if course.is_none() {
             assumed.push(id);

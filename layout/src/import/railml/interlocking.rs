@@ -10,7 +10,7 @@ use crate::at::At;
 use crate::form::{Element, Position, Route, Station};
 use crate::graph::Way;
 use crate::import::Report;
-use crate::import::search::{Sought, search};
+use crate::import::search::{Extent, Found, Sought, search};
 
 /// How far from its signal a route may begin without a remark, in metres.
 const NEAR: f64 = 1.0;
@@ -67,30 +67,59 @@ impl<'a> Reader<'a, '_> {
         self.station.circuits[number].name.value.clone()
     }
 
-    /// A position that the file gives for a switch, as that of a point.
-    fn position(&mut self, node: Node<'a, 'a>) -> Option<(usize, Position)> {
-        let node = child(node, "relatedSwitchAndPosition").unwrap_or(node);
-        let id = reference(node, "refersToSwitch").or_else(|| reference(node, "refersTo"))?;
-        let switch = self.xml.referred(id)?.attribute("id")?;
-        let Some((point, left_is_normal)) = self.placed.switches.get(switch) else {
-            self.report.skipped.push(format!("a position of {id}, which is no switch with a left and a right branch"));
-            return None;
-        };
-        let left = match node.attribute("inPosition")? {
-            "left" => true,
-            "right" => false,
-            _ => return None,
-        };
-        Some((*point, if left == *left_is_normal { Position::Normal } else { Position::Reverse }))
+    /// The positions that these elements give for switches, as those of points: one each, or several in wrappers.
+    fn positions_of(&mut self, given: Vec<Node<'a, 'a>>) -> Result<BTreeMap<usize, Position>, String> {
+        let mut found = BTreeMap::new();
+        for node in given {
+            let wrapped: Vec<Node<'a, 'a>> = children(node, "relatedSwitchAndPosition").collect();
+            for node in if wrapped.is_empty() { vec![node] } else { wrapped } {
+                let id = reference(node, "refersToSwitch")
+                    .or_else(|| reference(node, "refersTo"))
+                    .ok_or("a position of it names no switch")?;
+                let switch = self.xml.referred(id).and_then(|switch| switch.attribute("id"));
+                let switch = switch.ok_or_else(|| format!("the switch {id} of a position does not exist"))?;
+                let Some((point, left_is_normal)) = self.placed.switches.get(switch) else {
+                    self.report
+                        .skipped
+                        .push(format!("a position of {id}, which is no switch with a left and a right branch"));
+                    continue;
+                };
+                let left = match node.attribute("inPosition") {
+                    Some("left") => true,
+                    Some("right") => false,
+                    other => {
+                        return Err(format!(
+                            "the position {:?} of {id} is neither left nor right",
+                            other.unwrap_or("")
+                        ));
+                    }
+                };
+                let position = if left == *left_is_normal { Position::Normal } else { Position::Reverse };
+                if found.insert(*point, position).is_some_and(|before| before != position) {
+                    return Err(format!("{id} is to stand in both positions"));
+                }
+            }
+        }
+        Ok(found)
     }
 
-    fn positions(&mut self, node: Node<'a, 'a>, names: &[&'a str]) -> BTreeMap<usize, Position> {
-        let given: Vec<Node<'a, 'a>> = names.iter().flat_map(|name| children(node, name)).collect();
-        given.into_iter().filter_map(|given| self.position(given)).collect()
+    fn positions(&mut self, node: Node<'a, 'a>, names: &[&'a str]) -> Result<BTreeMap<usize, Position>, String> {
+        self.positions_of(names.iter().flat_map(|name| children(node, name)).collect())
     }
 
-    fn sections(&self, node: Node<'a, 'a>) -> BTreeSet<usize> {
-        references(node, "hasTvdSection").filter_map(|id| self.placed.sections.get(id).copied()).collect()
+    fn sections(&self, node: Node<'a, 'a>) -> Result<BTreeSet<usize>, String> {
+        let placed = |id| self.placed.sections.get(id).copied().ok_or_else(|| format!("its section {id} has no place"));
+        references(node, "hasTvdSection").map(placed).collect()
+    }
+
+    /// A time that an attribute gives; one that cannot be read is reported.
+    fn time(&mut self, node: Node<'a, 'a>, attribute: &str, about: &str) -> Option<u32> {
+        let text = node.attribute(attribute)?;
+        let read = duration(text);
+        if read.is_none() {
+            self.report.lacking.push(format!("{about}: {attribute} {text:?} is no time that can be read"));
+        }
+        read
     }
 
     fn route(&mut self, node: Node<'a, 'a>) -> Result<Route, String> {
@@ -98,42 +127,34 @@ impl<'a> Reader<'a, '_> {
             child(node, "routeEntry").and_then(|entry| reference(entry, "refersTo")).ok_or("it has no routeEntry")?;
         let entry_asset = self.xml.referred(entry).ok_or_else(|| format!("its routeEntry {entry} does not exist"))?;
         let signal_id = entry_asset.attribute("id").unwrap_or_default();
-        let sections = self.sections(node);
-        let positions = self.positions(node, &["facingSwitchInPosition", "trailingSwitchInPosition"]);
+        let sections = self.sections(node)?;
+        let mut positions = self.positions(node, &["facingSwitchInPosition", "trailingSwitchInPosition"])?;
         let exit =
             child(node, "routeExit").and_then(|exit| reference(exit, "refersTo")).and_then(|exit| self.exit(exit));
         if exit.is_none() && sections.is_empty() {
             return Err("it names neither sections nor an exit with a place".to_owned());
         }
-        let starts = self.starts(signal_id, &sections)?;
-        let within = if sections.is_empty() { None } else { Some(&sections) };
-        let mut found = None;
-        for (distance, joint, rear, first) in starts {
-            let ends = [None, exit].into_iter().filter(|exit| exit.is_some() || within.is_some());
-            let way = ends.filter_map(|exit| {
-                let sought = Sought { start: joint, first, exit, within, positions: &positions };
-                search(&self.placed.graph, &sought)
-            });
-            if let Some(way) = { way }.next() {
-                found = Some((distance, rear, way));
-                break;
-            }
-        }
-        let (distance, rear, way) = found.ok_or("no way leads from its signal over its sections with its switches")?;
         let name = Xml::name(node);
+        let (distance, rear, Found { way, alone }, remark) = self.way(signal_id, &sections, exit, &positions)?;
         if distance > NEAR {
             self.report.defaulted.push(format!("route {name}: it begins at the joint {distance:.0} m from its signal"));
         }
-        let mut path = self.path(&way);
-        for (point, position) in self.flank(node) {
-            let run_over = way.iter().flat_map(|(_, way)| &way.passed).any(|passed| passed.point == point);
-            if !run_over {
-                path[0].value.points.insert(self.station.points[point].name.value.clone(), At::derived(position));
-            }
+        if let Some((_, beside)) = exit.filter(|(_, beside)| *beside > NEAR) {
+            self.report.defaulted.push(format!("route {name}: it ends at the joint {beside:.0} m from its exit"));
         }
-        let time = |attribute: &str| node.attribute(attribute).and_then(duration).map(At::derived);
-        let release_ms = time("approachReleaseDelay");
-        if release_ms.is_none() {
+        if let Some(remark) = remark {
+            self.report.defaulted.push(format!("route {name}: {remark}"));
+        }
+        if !alone {
+            self.report
+                .defaulted
+                .push(format!("route {name}: the file leaves more than one way; the shortest is taken"));
+        }
+        let mut path = self.path(&way);
+        positions.extend(self.flank(node)?);
+        self.hold(&mut path, &way, &positions);
+        let release_ms = self.time(node, "approachReleaseDelay", &format!("route {name}")).map(At::derived);
+        if node.attribute("approachReleaseDelay").is_none() {
             self.report
                 .defaulted
                 .push(format!("route {name}: release time of [times]: it has no approachReleaseDelay"));
@@ -146,6 +167,47 @@ impl<'a> Reader<'a, '_> {
             release_ms,
             ..Route::default()
         })
+    }
+
+    /// The way of a route: how far from its signal it begins, the circuit in rear, the way, and what it does not keep of what is given.
+    #[allow(clippy::type_complexity, reason = "said above")]
+    fn way(
+        &self,
+        signal: &str,
+        sections: &BTreeSet<usize>,
+        exit: Option<(usize, f64)>,
+        positions: &BTreeMap<usize, Position>,
+    ) -> Result<(f64, usize, Found, Option<&'static str>), String> {
+        let exit = exit.map(|(joint, _)| joint);
+        let all = (!sections.is_empty()).then_some((sections, Extent::All));
+        let some = (!sections.is_empty()).then_some((sections, Extent::Some));
+        // All that is given, or all but one thing.
+        let mut looks = vec![(exit, all, None)];
+        if exit.is_some() && all.is_some() {
+            looks.push((None, all, Some("its sections do not end at its exit; it is taken to end with them")));
+            looks.push((exit, some, Some("not all of its sections lie between its signal and its exit")));
+        }
+        let starts = self.starts(signal, sections)?;
+        for (exit, within, remark) in looks {
+            for (distance, joint, rear, first) in &starts {
+                let sought = Sought { start: *joint, first: *first, exit, within, positions };
+                if let Some(found) = search(&self.placed.graph, &sought) {
+                    return Ok((*distance, *rear, found, remark));
+                }
+            }
+        }
+        Err("no way leads from its signal over its sections with its switches".to_owned())
+    }
+
+    /// Has the first place of a path hold the points that it is not run over.
+    fn hold(&self, path: &mut [At<Element>], way: &[(usize, Way)], positions: &BTreeMap<usize, Position>) {
+        let run_over: BTreeSet<usize> =
+            way.iter().flat_map(|(_, way)| &way.passed).map(|passed| passed.point).collect();
+        for (point, position) in positions.iter().filter(|(point, _)| !run_over.contains(point)) {
+            if let Some(first) = path.first_mut() {
+                first.value.points.insert(self.station.points[*point].name.value.clone(), At::derived(*position));
+            }
+        }
     }
 
     fn path(&self, way: &[(usize, Way)]) -> Vec<At<Element>> {
@@ -196,27 +258,26 @@ impl<'a> Reader<'a, '_> {
         u8::from(!sections.is_empty() && !sections.contains(&first)) + u8::from(sections.contains(&rear))
     }
 
-    /// The joint at the exit of a route: nearest to the signal, or that of a buffer stop or detector.
-    fn exit(&self, id: &str) -> Option<usize> {
+    /// The joint at the exit of a route, and how far from it in metres: nearest to the signal, or that of a buffer stop or detector.
+    fn exit(&self, id: &str) -> Option<(usize, f64)> {
         let asset = self.xml.referred(id)?.attribute("id")?;
         if let Some(name) = self.placed.borders.get(asset) {
-            return self.placed.joints.get(name).copied();
+            return self.placed.joints.get(name).map(|joint| (*joint, 0.0));
         }
         let spot = self.placed.signals.get(asset)?;
         let near = self.placed.network.cuts.iter().filter(|cut| cut.edge == spot.edge);
         let nearest = near.min_by(|a, b| (a.at - spot.at).abs().total_cmp(&(b.at - spot.at).abs()))?;
-        self.placed.joints.get(&nearest.name).copied()
+        self.placed.joints.get(&nearest.name).map(|joint| (*joint, (nearest.at - spot.at).abs()))
     }
 
     /// Positions of points that routeRelations ask for.
-    fn flank(&mut self, node: Node<'a, 'a>) -> BTreeMap<usize, Position> {
-        let relations: Vec<Node<'a, 'a>> =
-            references(node, "additionalRelation").filter_map(|id| self.xml.id(id)).collect();
-        let mut found = BTreeMap::new();
-        for required in relations.into_iter().flat_map(|relation| children(relation, "requiredSwitchPosition")) {
-            found.extend(self.position(required));
+    fn flank(&mut self, node: Node<'a, 'a>) -> Result<BTreeMap<usize, Position>, String> {
+        let mut required = Vec::new();
+        for id in references(node, "additionalRelation") {
+            let relation = self.xml.id(id).ok_or_else(|| format!("its relation {id} does not exist"))?;
+            required.extend(children(relation, "requiredSwitchPosition"));
         }
-        found
+        self.positions_of(required)
     }
 
     /// Gives routes their overlaps: the one that a route's exit names before one that names the route, and that before one that
@@ -238,8 +299,9 @@ impl<'a> Reader<'a, '_> {
             let named =
                 references(node, "activeForApproachRoute").filter_map(|id| self.names.get(id)).map(|at| (1, *at));
             let mut found: Vec<(u8, usize)> = of_exits.chain(named).collect();
-            if found.is_empty() {
-                let at = reference(node, "relatedToTrackAsset").and_then(|id| self.exit(id));
+            let names_routes = references(node, "activeForApproachRoute").next().is_some();
+            if found.is_empty() && !names_routes {
+                let at = reference(node, "relatedToTrackAsset").and_then(|id| self.exit(id)).map(|(joint, _)| joint);
                 let ends = (0..routes.len())
                     .filter(|route| at.is_some() && self.end_of(&routes[*route]).map(|end| end.0) == at);
                 found.extend(ends.map(|route| (2, route)));
@@ -262,45 +324,66 @@ impl<'a> Reader<'a, '_> {
                 }
                 None => {}
             }
-            let positions = self.positions(node, &["requiresSwitchInPosition"]);
-            match self.overlap(node, &routes[number], &positions) {
+            let about = format!("overlap {id} for route {name}");
+            match self.overlap(node, &routes[number], &about) {
                 Ok(path) => {
-                    let timer = node.descendants().find_map(|timer| timer.attribute("timerValue").and_then(duration));
+                    let timer = node.descendants().find(|timer| timer.attribute("timerValue").is_some());
+                    let timer = timer.map(|timer| self.time(timer, "timerValue", &about));
                     if timer.is_none() {
                         self.report
                             .defaulted
                             .push(format!("route {name}: stay time of [times]: overlap {id} has no release timer"));
                     }
                     routes[number].overlap = path;
-                    routes[number].stay_ms = timer.map(At::derived);
+                    routes[number].stay_ms = timer.flatten().map(At::derived);
                     given.insert(number, id);
                 }
-                Err(why) => self.report.lacking.push(format!("overlap {id} for route {name}: {why}")),
+                Err(why) => self.report.lacking.push(format!("{about}: {why}; it is left out")),
             }
         }
     }
 
-    /// The way of an overlap from the end of a route: over its sections, or to what limits it if it names none.
-    fn overlap(
-        &self,
-        node: Node<'a, 'a>,
-        route: &Route,
-        positions: &BTreeMap<usize, Position>,
-    ) -> Result<Vec<At<Element>>, &'static str> {
-        let sections = self.sections(node);
-        let limit = references(node, "isLimitedBy").find_map(|id| self.exit(id));
-        let within = if sections.is_empty() { None } else { Some(&sections) };
-        if within.is_none() && limit.is_none() {
-            return Err("it names neither sections nor a limit with a place");
+    /// The way of an overlap from the end of a route: over its sections, and to what limits it.
+    fn overlap(&mut self, node: Node<'a, 'a>, route: &Route, about: &str) -> Result<Vec<At<Element>>, String> {
+        let positions = self.positions(node, &["requiresSwitchInPosition"])?;
+        let sections = self.sections(node)?;
+        let mut limits = Vec::new();
+        for id in references(node, "isLimitedBy") {
+            limits.push(self.exit(id).ok_or_else(|| format!("its limit {id} has no place"))?);
         }
-        let way = self.end_of(route).and_then(|(joint, last)| {
-            let first = self.placed.graph.across(joint, last)?;
-            let exit = if within.is_none() { limit } else { None };
-            search(&self.placed.graph, &Sought { start: joint, first, exit, within, positions })
+        if sections.is_empty() && limits.is_empty() {
+            return Err("it names neither sections nor a limit".to_owned());
+        }
+        let (joint, last) = self.end_of(route).ok_or("the end of the route is not known")?;
+        let first = self.placed.graph.across(joint, last).ok_or("the tracks end with the route")?;
+        let within = (!sections.is_empty()).then_some((&sections, Extent::All));
+        let mut ends: Vec<Option<(usize, f64)>> = limits.iter().copied().map(Some).collect();
+        if within.is_some() {
+            ends.push(None);
+        }
+        let mut ways = ends.into_iter().filter_map(|limit| {
+            let exit = limit.map(|(joint, _)| joint);
+            let sought = Sought { start: joint, first, exit, within, positions: &positions };
+            search(&self.placed.graph, &sought).map(|found| (found, limit))
         });
-        let way =
-            way.ok_or("no way leads from the end of the route over its sections, or to its limit, with its switches")?;
-        Ok(self.path(&way))
+        let (Found { way, alone }, limit) = ways
+            .next()
+            .ok_or("no way leads from the end of the route over its sections, or to its limit, with its switches")?;
+        if limit.is_none() && !limits.is_empty() {
+            self.report
+                .defaulted
+                .push(format!("{about}: its sections do not end at its limit; they are taken as they are"));
+        }
+        let beside = limit.map_or(0.0, |(_, beside)| beside);
+        if beside > NEAR {
+            self.report.defaulted.push(format!("{about}: it ends at the joint {beside:.0} m from its limit"));
+        }
+        if !alone {
+            self.report.defaulted.push(format!("{about}: the file leaves more than one way; the shortest is taken"));
+        }
+        let mut path = self.path(&way);
+        self.hold(&mut path, &way, &positions);
+        Ok(path)
     }
 
     /// The joint at the end of a route, and its last circuit.

@@ -142,33 +142,34 @@ pub fn number(node: Node<'_, '_>, name: &str) -> Option<f64> {
     node.attribute(name)?.trim().parse::<f64>().ok().filter(|number| number.is_finite())
 }
 
-/// A time like `PT4S`, `PT1M30S` or `PT0.5S` in ms, rounded up; days, hours, minutes and seconds.
+/// A time like `PT4S`, `P1D`, `PT1M30S` or `P0Y0M0DT0H2M0.5S` in ms, rounded up. Years and months, which have no length of their own,
+/// must be 0.
 pub fn duration(text: &str) -> Option<u32> {
-    let (days, time) = text.trim().strip_prefix('P')?.split_once('T')?;
-    let mut seconds = match days.strip_suffix('D') {
-        Some(days) => days.parse::<f64>().ok()? * 86_400.0,
-        None if days.is_empty() => 0.0,
-        None => return None,
-    };
-    let mut figure = String::new();
-    for letter in time.chars() {
-        let unit = match letter {
-            'H' => 3600.0,
-            'M' => 60.0,
-            'S' => 1.0,
-            _ => {
-                figure.push(letter);
-                continue;
-            }
-        };
-        seconds += figure.parse::<f64>().ok()? * unit;
-        figure.clear();
+    let text = text.trim().strip_prefix('P')?;
+    let (days, time) = text.split_once('T').unwrap_or((text, ""));
+    if text.is_empty() || text.ends_with('T') {
+        return None;
     }
+    let days = figures(days, &[('Y', None), ('M', None), ('D', Some(86_400.0))])?;
+    let seconds = days + figures(time, &[('H', Some(3600.0)), ('M', Some(60.0)), ('S', Some(1.0))])?;
     let ms = (seconds * 1000.0).ceil();
-    if !figure.is_empty() || !(0.0..=4e9).contains(&ms) {
+    if !(0.0..=4e9).contains(&ms) {
         return None;
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is in the range of the type")]
     let ms = ms as u32;
     Some(ms)
+}
+
+/// Figures with units, each at most once and in this order, in seconds; a unit without a length takes 0 alone.
+fn figures(mut text: &str, units: &[(char, Option<f64>)]) -> Option<f64> {
+    let mut seconds = 0.0;
+    for (unit, length) in units {
+        let Some((figure, rest)) = text.split_once(*unit) else { continue };
+        let plain = !figure.is_empty() && figure.chars().all(|letter| letter.is_ascii_digit() || letter == '.');
+        let figure = figure.parse::<f64>().ok().filter(|figure| plain && (length.is_some() || *figure == 0.0))?;
+        seconds += figure * length.unwrap_or(0.0);
+        text = rest;
+    }
+    text.is_empty().then_some(seconds)
 }
