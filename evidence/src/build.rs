@@ -59,7 +59,9 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     second::enter(&second_opinions, &mut evidence);
     engines.push(second::engine(&second_opinions));
     let (killed, stale) = results.mutants.as_ref().map_or((None, false), |(all, stale)| (Some(all), *stale));
-    evidence.extend(mutants::evidence(&plan.mutants, killed, stale));
+    let mut rejected = mutants::evidence(&plan.mutants, killed, stale);
+    mutants::only_by_what_holds(&mut rejected, &evidence);
+    evidence.extend(rejected);
     let (targets, measurements) = measured::evidence(&results.measured);
     engines.push(measured::engine(&targets, &measurements));
     evidence.extend(targets);

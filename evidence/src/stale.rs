@@ -85,6 +85,10 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     }
     for (id, theorem) in case.station.iter_mut().flat_map(|station| &mut station.theorems) {
         *theorem = verdict(id).unwrap_or(Verdict::NotRun);
+        // What held the layout against the rules was another checker.
+        if changed.iter().any(|folder| folder == "layout") {
+            *theorem = (*theorem).max(Verdict::Stale);
+        }
     }
     for rule in &mut case.needed_rules {
         rule.verdict = worst(&rule.mutants);

@@ -149,6 +149,10 @@ fn a_case_is_rendered_for_a_station_as_it_is_run_for_it() {
     assert_eq!(missing.status.code(), Some(2), "{}", text(&missing));
     let in_place = safety_case(&["render", "--from", plain.to_str().expect("a path"), "--layout", good]);
     assert_eq!(in_place.status.code(), Some(2), "a case is not turned into a station's in place");
+    let plain = plain.to_str().expect("a path");
+    let in_place = safety_case(&["render", "--from", plain, "--layout", good, "--out", plain]);
+    assert_eq!(in_place.status.code(), Some(2));
+    assert!(text(&in_place).contains("name another folder") && !Path::new(plain).join("station.html").exists());
 }
 
 /// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.

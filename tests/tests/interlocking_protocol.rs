@@ -254,17 +254,28 @@ fn a_plan_in_the_kernels_own_terms_is_run_as_it_stands() {
 
 #[test]
 fn wrong_plans() {
-    let wrong: [(Change<'_>, &str); 10] = [
+    let wrong: [(Change<'_>, &str); 15] = [
+        (&|it| it["speeds_km_h"] = json!([45, 90]), "speeds_km_h must begin with 0"),
+        (&|it| it["speeds_km_h"] = json!([0, 90, 45]), "and not fall"),
+        (&|it| it["routes"][0]["speed_code"] = json!(8), "route in: speed_code is 8; it is 0 to 7"),
+        (&|it| it["routes"] = json!(vec![it["routes"][0].clone(); 65]), "routes has more than 64 entries"),
+        (
+            &|it| it["routes"][0]["path"] = json!(vec![it["routes"][0]["path"][1].clone(); 17]),
+            "route in: path has more than 16 entries",
+        ),
         (&|it| it["cycle_ms"] = json!(0), "cycle_ms is 0"),
-        (&|it| it["segments"] = json!([{"name": "S", "circuits": [], "throat": []}]), "segment S has 0 circuits"),
+        (
+            &|it| it["segments"] = json!([{"name": "S", "circuits": [], "throat": []}]),
+            "segment S: circuits has 0 circuits",
+        ),
         (&|it| it["clear_cycles"] = json!(0), "the plan breaks a rule: "),
         (&|it| it["routes"][0]["path"][0]["points"] = json!({}), "place 0 of route in breaks a rule: "),
-        (&|it| it["routes"][0]["path"] = json!([]), "route in has 0 circuits; it has 1 to 16"),
+        (&|it| it["routes"][0]["path"] = json!([]), "route in: path has 0 circuits; it has 1 to 16"),
         (
             &|it| it["routes"][0]["entry"] = json!(["X"]),
-            "entry names circuit \"X\"; the circuits of this layout are W, A",
+            "route in: entry names circuit \"X\"; the circuits of this layout are W, A",
         ),
-        (&|it| it["routes"][0]["path"][0]["points"] = json!({"Q": "normal"}), "path names point \"Q\""),
+        (&|it| it["routes"][0]["path"][0]["points"] = json!({"Q": "normal"}), "route in: path names point \"Q\""),
         (&|it| it["circuits"][1]["name"] = json!("W"), "two circuits have the name \"W\""),
         (&|it| it["braking_m"] = json!([0, 1, 2, 3, 4, 5, 6, 7, 8]), "braking_m has more than 8 entries"),
         (&|it| it["points"] = json!(vec![json!({"name": "P", "detectors": []}); 2]), "two points have the name"),

@@ -36,6 +36,12 @@ pub fn render(from: &Path, layout: Option<&Path>, out: Option<&Path>, root: Opti
     let one = |fault: Fault| vec![fault];
     let mut case = load(from).map_err(one)?;
     let station = layout.map(station::read).transpose()?;
+    let place = |path: &Path| path.canonicalize().ok();
+    let first = station.is_some() && case.station.is_none();
+    if let Some(out) = out.filter(|out| first && place(out).is_some_and(|out| Some(out) == place(from))) {
+        let text = "the case of a station would take the place of the one that it is made from; name another folder";
+        return Err(vec![Fault::new(&out.display(), text)]);
+    }
     let root = checkout(root).map_err(one)?;
     let changed = changed(&case, &root).map_err(one)?;
     stale::mark(&mut case, &changed);

@@ -97,12 +97,23 @@ const STYLE: &str = "
 @media print { @page { size: A4 landscape; margin: 12mm; } details { display: block; } }
 ";
 
+/// Whether a prover has shown it.
+fn is_proved(verdict: Verdict) -> bool {
+    verdict <= Verdict::ProvedBounded
+}
+
 fn head(case: &Case, station: &Station) -> Markup {
     let conclusion = conclusion(station);
-    let (colour, words) = match (station.is_sound(), conclusion.verdict.holds()) {
-        (true, true) => ("amber", "Every rule is kept. To be confirmed and signed."),
-        (true, false) => ("red", "Not to be signed: every rule is kept, but the theorems are not shown in this run."),
-        (false, _) => ("red", "Not to be signed: the layout is refused."),
+    let complete = case.status.complete && case.status.exit_code == 0;
+    let (colour, words) = match (station.is_sound(), is_proved(conclusion.verdict), complete) {
+        (true, true, true) => ("amber", "Every rule is kept. To be confirmed and signed."),
+        (true, true, false) => {
+            ("red", "Not to be signed: every rule is kept, but the safety case is not complete, or not good.")
+        }
+        (true, false, _) => {
+            ("red", "Not to be signed: every rule is kept, but the theorems are not proved in this run.")
+        }
+        (false, ..) => ("red", "Not to be signed: the layout is refused."),
     };
     let count = |origin| station.confirm.iter().filter(|one| one.origin == origin).count();
     html! {
@@ -284,16 +295,18 @@ fn theorems(case: &Case, station: &Station) -> Markup {
         @if station.theorems.is_empty() {
             p.cannot { @if station.is_sound() { "There is no theorem on the interlocking." } @else { "None: they speak only of layouts that keep every rule." } }
         } @else {
-            p { (station.theorems.iter().filter(|(_, verdict)| verdict.holds()).count()) " of " (station.theorems.len())
-                " have a good result. Their claims, one by one, are in " a href="index.html#theorems" { "the case" } "." }
+            p { (station.theorems.iter().filter(|(_, verdict)| is_proved(*verdict)).count()) " of " (station.theorems.len())
+                " are proved. Their claims, one by one, are in " a href="index.html#theorems" { "the case" } "." }
             table {
                 thead { tr { th { "Theorem" } th { "It says" } th style="width:22%" { "Proved for" } th { "Verdict" } } }
                 @for (id, verdict) in &station.theorems {
                     tr {
                         td.nowrap { (in_case(id)) }
                         td { @if let Some(one) = of(id) { (one.statement) } }
-                        td.small { @if let Some(one) = of(id).filter(|_| verdict.holds()) {
-                            @if *verdict == Verdict::ProvedBounded { (one.detail) } @else { "every size" }
+                        td.small { @match verdict {
+                            Verdict::Proved => "every size",
+                            Verdict::ProvedBounded => @if let Some(one) = of(id) { (one.detail) },
+                            _ => "not proved",
                         } }
                         td { (badge(*verdict)) }
                     }
@@ -316,9 +329,10 @@ fn signatures(case: &Case, station: &Station) -> Markup {
     ];
     html! {
         h2 { "8 Signatures" }
-        p { "They hold for the layout with the SHA-256 " code { (station.sha256) } " and the sources " code { (case.provenance.sources_sha256) }
+        p { "They hold for the layout with the SHA-256 " code { (station.sha256) } ", the sources of kernel and proofs " code { (case.provenance.sources_sha256) }
+            @if let Some(checker) = case.provenance.folders.get("layout") { " and the checks of layouts " code { (checker) } }
             ", under the conditions above, and for nothing else." }
-        @if !conclusion(station).verdict.holds() { p { span.badge.failed { "not to be signed" } " See the top of this page." } }
+        @if !(is_proved(conclusion(station).verdict) && case.status.complete && case.status.exit_code == 0) { p { span.badge.failed { "not to be signed" } " See the top of this page." } }
         table.sign {
             thead { tr { th { "Role" } th { "Name" } th { "Date" } th { "Signature" } } }
             @for role in roles { tr { td { (role) } td {} td {} td {} } }

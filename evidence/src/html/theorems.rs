@@ -94,8 +94,8 @@ fn mutants(case: &Case) -> Markup {
     html! {
         h3 #mutants { "4.4 Wrong kernels" }
         p { "Each is the kernel with one fault put in on purpose. A theorem that does not notice is too weak. "
-            em { "tested" } " means: rejected; " em { "failed" } " means: it survived. The right kernel, compiled as the wrong ones are, has passed the \
-             same harness before; otherwise nothing is called rejected." }
+            em { "tested" } " means: rejected; " em { "failed" } " means: it survived. The right kernel must \
+             pass the same harness: by its proof, and where a harness is smaller for wrong kernels, at that size too; otherwise nothing is called rejected." }
         @if of(case, Kind::Mutant).next().is_none() { p.cannot { "No wrong kernel is listed." } }
         table {
             thead { tr { th { "Wrong kernel" } th { "What is wrong" } th { "Breaks" } th { "Verdict" } th { "Rejected by (claims)" } th.num { "Time" } } }

@@ -83,6 +83,21 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
         .collect()
 }
 
+/// A harness that does not hold of the right kernel shows nothing by rejecting a wrong one.
+pub fn only_by_what_holds(mutants: &mut [Evidence], harnesses: &[Evidence]) {
+    for one in mutants.iter_mut().filter(|one| one.verdict == Verdict::Tested) {
+        let broken = |name: &&str| {
+            let harness = harnesses.iter().find(|harness| harness.id == format!("harness:{name}"));
+            harness.is_none_or(|harness| harness.verdict.is_defect())
+        };
+        let broken: Option<String> = killers(one).find(|name| broken(name)).map(ToOwned::to_owned);
+        if let Some(name) = broken {
+            one.verdict = Verdict::Undecided;
+            one.reason = Some(format!("{name} rejects it, and does not hold of the right kernel"));
+        }
+    }
+}
+
 fn judge(result: &MutantResult) -> (Verdict, Option<String>) {
     let given = result.reason.clone().unwrap_or_else(|| "no reason given".to_owned());
     match result.verdict {
@@ -103,7 +118,8 @@ pub fn killers(evidence: &Evidence) -> impl Iterator<Item = &str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Catalogue, evidence};
+    use super::{Catalogue, evidence, only_by_what_holds};
+    use crate::case::{Evidence, Kind};
     use crate::verdict::Verdict;
     use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
 
@@ -136,5 +152,20 @@ mod tests {
         assert_eq!(verdict(Error, true, false), Verdict::Undecided);
         assert_eq!(verdict(Killed, true, true), Verdict::Stale);
         assert_eq!(verdict(Survived, false, true), Verdict::Failed);
+    }
+    #[test]
+    fn a_harness_that_does_not_hold_rejects_nothing() {
+        let after = |harnesses: &[Evidence]| {
+            let killed_by = vec!["t (Claim)".to_owned()];
+            let mut mutants = [Evidence { killed_by, ..Evidence::bare(Kind::Mutant, "m", Verdict::Tested) }];
+            only_by_what_holds(&mut mutants, harnesses);
+            mutants[0].verdict
+        };
+        let harness = |verdict| [Evidence::bare(Kind::Harness, "t", verdict)];
+        assert_eq!(after(&harness(Verdict::ProvedBounded)), Verdict::Tested);
+        for bad in [Verdict::Failed, Verdict::Vacuous, Verdict::Undecided] {
+            assert_eq!(after(&harness(bad)), Verdict::Undecided);
+        }
+        assert_eq!(after(&[]), Verdict::Undecided);
     }
 }

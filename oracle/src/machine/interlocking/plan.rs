@@ -131,10 +131,24 @@ impl PlanConfig {
     /// # Errors
     /// What there is no room for, a name that stands twice or for nothing, and the first rule that the plan breaks.
     pub(super) fn layout(&self) -> Result<(Box<Station>, Names, [u16; kernel::MAX_CODES]), String> {
-        let names = self.names()?;
         if self.cycle_ms == 0 {
             return Err("cycle_ms is 0; a cycle lasts 1 ms or more".to_owned());
         }
+        if self.speeds_km_h.first() != Some(&0) || !self.speeds_km_h.is_sorted() {
+            return Err("speeds_km_h must begin with 0, the speed of code 0, and not fall".to_owned());
+        }
+        // Before names are looked up: one that is listed beyond the room there is would be unknown.
+        for (field, count, most) in [
+            ("circuits", self.circuits.len(), kernel::MAX_CIRCUITS),
+            ("points", self.points.len(), 32),
+            ("segments", self.segments.len(), 8),
+            ("routes", self.routes.len(), 64),
+        ] {
+            if count > most {
+                return Err(too_many(field, most));
+            }
+        }
+        let names = self.names()?;
         let mut speeds = [0; kernel::MAX_CODES];
         let mut plan = Box::new(Plan::EMPTY);
         fill(&mut speeds, self.speeds_km_h.iter().copied(), "speeds_km_h")?;
@@ -142,15 +156,16 @@ impl PlanConfig {
         fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
         plan.clear = self.clear_cycles;
         plan.turn = Ticks(self.turn_cycles);
-        let points = self.points.iter().map(|point| circuits(&names, &point.detectors, "detectors"));
-        let points =
-            points.map(|set| set.map(|detectors| kernel::Point { detectors })).collect::<Result<Vec<_>, _>>()?;
-        fill(&mut plan.points, points, "points")?;
-        let segments =
-            self.segments.iter().map(|segment| segment_of(&names, segment)).collect::<Result<Vec<_>, _>>()?;
-        fill(&mut plan.segments, segments, "segments")?;
-        let routes = self.routes.iter().map(|route| route_of(&names, route)).collect::<Result<Vec<_>, _>>()?;
-        fill(&mut plan.routes, routes, "routes")?;
+        for (place, point) in plan.points.iter_mut().zip(&self.points) {
+            let detectors = circuits(&names, &point.detectors, "detectors");
+            place.detectors = detectors.map_err(|why| format!("point {}: {why}", point.name))?;
+        }
+        for (place, segment) in plan.segments.iter_mut().zip(&self.segments) {
+            *place = segment_of(&names, segment).map_err(|why| format!("segment {}: {why}", segment.name))?;
+        }
+        for (place, route) in plan.routes.iter_mut().zip(&self.routes) {
+            *place = route_of(&names, route).map_err(|why| format!("route {}: {why}", route.name))?;
+        }
         let layout = Layout::with_what_proofs_need(*plan).map_err(|broken| sentence(broken, &names))?;
         Ok((Box::new(layout), names, speeds))
     }
@@ -183,10 +198,13 @@ fn fill<T>(places: &mut [T], values: impl IntoIterator<Item = T>, field: &str) -
     let most = places.len();
     let mut places = places.iter_mut();
     for value in values {
-        *places.next().ok_or_else(|| format!("{field} has more than {most} entries; there is room for {most}"))? =
-            value;
+        *places.next().ok_or_else(|| too_many(field, most))? = value;
     }
     Ok(())
+}
+
+fn too_many(field: &str, most: usize) -> String {
+    format!("{field} has more than {most} entries; there is room for {most}")
 }
 
 fn circuits(names: &Names, list: &[String], field: &str) -> Result<CircuitSet, String> {
@@ -219,16 +237,19 @@ fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, St
 fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> {
     let mut made = Segment { throat: circuits(names, &form.throat, "throat")?, ..Segment::NONE };
     let listed = form.circuits.iter().map(|name| circuits(names, std::slice::from_ref(name), "circuits"));
-    fill(&mut made.circuits, listed.collect::<Result<Vec<_>, _>>()?, "the circuits of a segment")?;
-    made.length = length_of(form.circuits.len(), "segment", &form.name)?;
+    fill(&mut made.circuits, listed.collect::<Result<Vec<_>, _>>()?, "circuits")?;
+    made.length = length_of(form.circuits.len(), "circuits")?;
     Ok(made)
 }
 
 fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String> {
+    if form.speed_code > SpeedCode::MOST.0 {
+        return Err(format!("speed_code is {}; it is 0 to {}", form.speed_code, SpeedCode::MOST.0));
+    }
     let mut made = kernel::Route {
         entry: circuits(names, &form.entry, "entry")?,
         approach: circuits(names, &form.approach, "approach")?,
-        length: length_of(form.path.len(), "route", &form.name)?,
+        length: length_of(form.path.len(), "path")?,
         overlap: element(names, &form.overlap, "overlap")?,
         beyond: circuits(names, &form.beyond, "beyond")?,
         continuing: routes(names, &form.continuing, "continuing")?,
@@ -242,14 +263,14 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
         ..kernel::Route::NONE
     };
     let path = form.path.iter().map(|at| element(names, at, "path")).collect::<Result<Vec<_>, _>>()?;
-    fill(&mut made.path, path, "the path of a route")?;
+    fill(&mut made.path, path, "path")?;
     Ok(made)
 }
 
 /// In a plan of the kernel a length of 0 means that there is no such thing; what is listed is there.
-fn length_of(circuits: usize, kind: &str, name: &str) -> Result<u8, String> {
+fn length_of(circuits: usize, field: &str) -> Result<u8, String> {
     let length = u8::try_from(circuits).ok().filter(|length| *length > 0);
-    length.ok_or_else(|| format!("{kind} {name} has {circuits} circuits; it has 1 to 16"))
+    length.ok_or_else(|| format!("{field} has {circuits} circuits; it has 1 to 16"))
 }
 
 /// The rule that is broken, and where.
