@@ -14,10 +14,10 @@ use atc_kernel::time::Ticks;
 
 const ROUTES: usize = 2;
 /// 2 for a wrong kernel: what a short path rejects, a long one does.
-const PATH: usize = if cfg!(chosen) { 2 } else { 3 };
+const PATH: usize = if cfg!(chosen) { 2 } else { 4 };
 const SEGMENTS: usize = 2;
 
-pub const BOUND: &str = "2 routes of up to 3 circuits, 32 circuits, 2 segments of up to 3 circuits";
+pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 2 segments of up to 4 circuits";
 
 type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
 

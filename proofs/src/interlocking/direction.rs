@@ -3,9 +3,12 @@
 use super::{any_input, any_layout, any_state};
 use atc_kernel::interlocking::{Layout, Phase, Request, State, Travel};
 
-const ROUTES: usize = 1;
-const PATH: usize = 2;
+/// Smaller for a wrong kernel: what a small layout rejects, a large one does.
+const ROUTES: usize = if cfg!(chosen) { 1 } else { 2 };
+const PATH: usize = if cfg!(chosen) { 2 } else { 4 };
 const SEGMENTS: usize = 2;
+
+pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 2 segments of up to 4 circuits";
 
 /// Whether a held route needs the direction of segment `it` towards the station, and whether one needs the other.
 fn needs(layout: &Layout<ROUTES, PATH, 1, SEGMENTS>, state: &State<ROUTES, SEGMENTS>, it: usize) -> (bool, bool) {
@@ -26,7 +29,7 @@ harness! {
     theorem "T-ILK-9";
     requirements ["ILK-17", "ILK-18", "ILK-19", "ILK-20"];
     assumptions [];
-    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 2 segments of up to 2 circuits";
+    bound BOUND;
     cases 2;
     claims {
         One: "a segment has at most one direction",

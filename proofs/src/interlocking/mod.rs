@@ -45,7 +45,8 @@ pub const POINTS: usize = 4;
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 4] = [atc::BOUND, pair::BOUND, route::BOUND, signal::BOUND];
+pub const SMALLER: [&str; 7] =
+    [atc::BOUND, direction::BOUND, pair::BOUND, point::BOUND, route::BOUND, signal::BOUND, works::BOUND];
 
 /// All harnesses of this room.
 #[cfg(not(chosen))]
