@@ -112,7 +112,10 @@ impl Verdict {
             [one] => format!(" The bound is: {one}."),
             [..] if bounds.len() <= 3 => format!(" The bounds are: {}.", bounds.join("; ")),
             [..] => {
-                format!(" What was proved within bounds has {} of them: they are listed after page one.", bounds.len())
+                format!(
+                    " The proofs that hold within bounds have {} different ones, listed after page one.",
+                    bounds.len()
+                )
             }
         };
         match self {

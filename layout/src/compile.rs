@@ -55,6 +55,40 @@ impl Names {
     }
 }
 
+impl Names {
+    /// What a plan with these names breaks, and where, in a sentence.
+    pub fn broken<const R: usize, const P: usize, const N: usize, const S: usize>(
+        &self,
+        broken: Broken,
+        plan: &Plan<R, P, N, S>,
+    ) -> String {
+        let of =
+            |list: &[String], number: u8| list.get(usize::from(number)).cloned().unwrap_or_else(|| number.to_string());
+        let route = |number: u8| of(&self.routes, number);
+        let segment = |number: u8| of(&self.segments, number);
+        let about = match broken.place {
+            Place::Plan => "the layout".to_owned(),
+            Place::Route(number) => format!("route {}", route(number)),
+            Place::Overlap(number) => format!("the overlap of route {}", route(number)),
+            Place::Path(number, place) => {
+                let circuits = plan.routes.get(usize::from(number)).map(|route| route.circuit_at(place));
+                let there = |(at, _): &(usize, &String)| circuits.is_some_and(|set| set.meets(CircuitSet::nth(*at)));
+                let named: Vec<&str> =
+                    self.circuits.iter().enumerate().filter(there).map(|(_, name)| name.as_str()).collect();
+                let circuit =
+                    if named.is_empty() { format!("place {}", u16::from(place) + 1) } else { named.join("+") };
+                format!("{circuit} of route {}", route(number))
+            }
+            Place::Routes(one, other) => format!("routes {} and {}", route(one), route(other)),
+            Place::Point(number) => format!("point {}", of(&self.points, number)),
+            Place::Segment(number) => format!("segment {}", segment(number)),
+            Place::Segments(one, other) => format!("segments {} and {}", segment(one), segment(other)),
+            Place::Circuit(number) => format!("circuit {}", of(&self.circuits, number)),
+        };
+        format!("{about} breaks a rule: {}", Rule::Plan(broken.rule).text())
+    }
+}
+
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Compiled<R, P, N, S> {
     /// The layout for the kernel.
     ///
@@ -80,11 +114,12 @@ pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
         return Err(Errors::new(source, problems));
     }
     let plan = Box::new(plan::<R, P, N, S>(&model));
-    plan.check(&mut |broken| problems.push(of_plan(broken, &model)));
+    let names = Names::of(station, &model);
+    plan.check(&mut |broken| problems.push(of_plan(broken, &plan, &names, &model)));
     if !problems.is_empty() {
         return Err(Errors::new(source, problems));
     }
-    Ok(Compiled { plan, names: Names::of(station, &model), derived: model.notes.clone(), model })
+    Ok(Compiled { plan, names, derived: model.notes.clone(), model })
 }
 
 fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model, problems: &mut Vec<Problem>) {
@@ -190,34 +225,23 @@ fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
 }
 
 /// A broken rule of the plan in the words of the file.
-fn of_plan(broken: Broken, model: &Model) -> Problem {
-    let route = |number: u8| &model.routes[usize::from(number)];
-    let segment = |number: u8| &model.segments[usize::from(number)];
-    let (about, span) = match broken.place {
-        Place::Plan => ("the layout".to_owned(), 0..0),
-        Place::Route(number) => (format!("route {}", route(number).name), route(number).span.clone()),
-        Place::Overlap(number) => (format!("the overlap of route {}", route(number).name), route(number).span.clone()),
-        Place::Path(number, place) => {
-            let place = &route(number).path[usize::from(place)];
-            (format!("{} of route {}", model.circuits[place.circuit].name, route(number).name), place.span.clone())
+fn of_plan<const R: usize, const P: usize, const N: usize, const S: usize>(
+    broken: Broken,
+    plan: &Plan<R, P, N, S>,
+    names: &Names,
+    model: &Model,
+) -> Problem {
+    let of = |number: u8| usize::from(number);
+    let span = match broken.place {
+        Place::Plan => 0..0,
+        Place::Route(number) | Place::Overlap(number) | Place::Routes(number, _) => {
+            model.routes[of(number)].span.clone()
         }
-        Place::Routes(one, other) => {
-            (format!("routes {} and {}", route(one).name, route(other).name), route(one).span.clone())
-        }
-        Place::Point(number) => {
-            let point = &model.points[usize::from(number)];
-            (format!("point {}", point.name), point.span.clone())
-        }
-        Place::Segment(number) => (format!("segment {}", segment(number).name), segment(number).span.clone()),
-        Place::Segments(one, other) => {
-            (format!("segments {} and {}", segment(one).name, segment(other).name), segment(one).span.clone())
-        }
-        Place::Circuit(number) => {
-            let circuit = &model.circuits[usize::from(number)];
-            (format!("circuit {}", circuit.name), circuit.span.clone())
-        }
+        Place::Path(number, place) => model.routes[of(number)].path[of(place)].span.clone(),
+        Place::Point(number) => model.points[of(number)].span.clone(),
+        Place::Segment(number) | Place::Segments(number, _) => model.segments[of(number)].span.clone(),
+        Place::Circuit(number) => model.circuits[of(number)].span.clone(),
     };
     let rule = Rule::Plan(broken.rule);
-    let what = format!("{about} breaks a rule: {}", rule.text());
-    Problem::new(rule, &span, what, crate::rule::remedy(broken.rule))
+    Problem::new(rule, &span, names.broken(broken, plan), crate::rule::remedy(broken.rule))
 }

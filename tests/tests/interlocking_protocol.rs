@@ -268,8 +268,8 @@ fn wrong_plans() {
             &|it| it["segments"] = json!([{"name": "S", "circuits": [], "throat": []}]),
             "segment S: circuits has 0 circuits",
         ),
-        (&|it| it["clear_cycles"] = json!(0), "the plan breaks a rule: "),
-        (&|it| it["routes"][0]["path"][0]["points"] = json!({}), "place 0 of route in breaks a rule: "),
+        (&|it| it["clear_cycles"] = json!(0), "the layout breaks a rule: "),
+        (&|it| it["routes"][0]["path"][0]["points"] = json!({}), "A of route in breaks a rule: "),
         (&|it| it["routes"][0]["path"] = json!([]), "route in: path has 0 circuits; it has 1 to 16"),
         (
             &|it| it["routes"][0]["entry"] = json!(["X"]),

@@ -97,6 +97,11 @@ const STYLE: &str = "
 @media print { @page { size: A4 landscape; margin: 12mm; } details { display: block; } }
 ";
 
+/// Whether all evidence has a result and none is bad.
+fn is_good(case: &Case) -> bool {
+    case.status.complete && case.status.exit_code == 0
+}
+
 /// Whether a prover has shown it.
 fn is_proved(verdict: Verdict) -> bool {
     verdict <= Verdict::ProvedBounded
@@ -104,8 +109,7 @@ fn is_proved(verdict: Verdict) -> bool {
 
 fn head(case: &Case, station: &Station) -> Markup {
     let conclusion = conclusion(station);
-    let complete = case.status.complete && case.status.exit_code == 0;
-    let (colour, words) = match (station.is_sound(), is_proved(conclusion.verdict), complete) {
+    let (colour, words) = match (station.is_sound(), is_proved(conclusion.verdict), is_good(case)) {
         (true, true, true) => ("amber", "Every rule is kept. To be confirmed and signed."),
         (true, true, false) => {
             ("red", "Not to be signed: every rule is kept, but the safety case is not complete, or not good.")
@@ -332,7 +336,7 @@ fn signatures(case: &Case, station: &Station) -> Markup {
         p { "They hold for the layout with the SHA-256 " code { (station.sha256) } ", the sources of kernel and proofs " code { (case.provenance.sources_sha256) }
             @if let Some(checker) = case.provenance.folders.get("layout") { " and the checks of layouts " code { (checker) } }
             ", under the conditions above, and for nothing else." }
-        @if !(is_proved(conclusion(station).verdict) && case.status.complete && case.status.exit_code == 0) { p { span.badge.failed { "not to be signed" } " See the top of this page." } }
+        @if !(is_proved(conclusion(station).verdict) && is_good(case)) { p { span.badge.failed { "not to be signed" } " See the top of this page." } }
         table.sign {
             thead { tr { th { "Role" } th { "Name" } th { "Date" } th { "Signature" } } }
             @for role in roles { tr { td { (role) } td {} td {} td {} } }

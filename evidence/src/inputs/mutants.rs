@@ -83,17 +83,17 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
         .collect()
 }
 
-/// A harness that does not hold of the right kernel shows nothing by rejecting a wrong one.
+/// A harness that is not proved of the right kernel shows nothing by rejecting a wrong one.
 pub fn only_by_what_holds(mutants: &mut [Evidence], harnesses: &[Evidence]) {
     for one in mutants.iter_mut().filter(|one| one.verdict == Verdict::Tested) {
         let broken = |name: &&str| {
             let harness = harnesses.iter().find(|harness| harness.id == format!("harness:{name}"));
-            harness.is_none_or(|harness| harness.verdict.is_defect())
+            harness.is_none_or(|harness| harness.verdict > Verdict::ProvedBounded)
         };
         let broken: Option<String> = killers(one).find(|name| broken(name)).map(ToOwned::to_owned);
         if let Some(name) = broken {
             one.verdict = Verdict::Undecided;
-            one.reason = Some(format!("{name} rejects it, and does not hold of the right kernel"));
+            one.reason = Some(format!("{name} rejects it, and is not proved of the right kernel"));
         }
     }
 }
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(verdict(Survived, false, true), Verdict::Failed);
     }
     #[test]
-    fn a_harness_that_does_not_hold_rejects_nothing() {
+    fn a_harness_that_is_not_proved_rejects_nothing() {
         let after = |harnesses: &[Evidence]| {
             let killed_by = vec!["t (Claim)".to_owned()];
             let mut mutants = [Evidence { killed_by, ..Evidence::bare(Kind::Mutant, "m", Verdict::Tested) }];
@@ -163,7 +163,7 @@ mod tests {
         };
         let harness = |verdict| [Evidence::bare(Kind::Harness, "t", verdict)];
         assert_eq!(after(&harness(Verdict::ProvedBounded)), Verdict::Tested);
-        for bad in [Verdict::Failed, Verdict::Vacuous, Verdict::Undecided] {
+        for bad in [Verdict::Failed, Verdict::Vacuous, Verdict::Undecided, Verdict::NotRun, Verdict::Tested] {
             assert_eq!(after(&harness(bad)), Verdict::Undecided);
         }
         assert_eq!(after(&[]), Verdict::Undecided);

@@ -26,7 +26,7 @@ pub const CBMC: [&str; 11] = [
 ];
 
 /// How long [`Solver::Auto`] waits for the first solver.
-const FIRST: Duration = Duration::from_secs(20);
+pub const FIRST: Duration = Duration::from_secs(20);
 
 /// Bytes of constant data that a harness may have.
 const DATA: u32 = 768;
@@ -158,6 +158,16 @@ pub enum Silence {
     Broken(String),
 }
 
+impl Silence {
+    /// It in words, of this harness.
+    pub fn of(self, harness: &str) -> String {
+        match self {
+            Self::Late => format!("{harness}: no answer in time"),
+            Self::Broken(reason) => format!("{harness}: {reason}"),
+        }
+    }
+}
+
 /// What holds in one case of a harness, and what can be reached; each with the time that it took.
 pub type Halves = (Result<(Answer, Duration), Silence>, Result<(Answer, Duration), Silence>);
 
@@ -178,6 +188,27 @@ pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, hard: bool) -
     // An incremental solver finds the many reachable points fastest.
     let reach = ask(tools, folder, &Question { ask: Ask::Reach, solver: Solver::Minisat, ..*question });
     (proof.map(|(answer, took)| (answer, took + waited)), reach)
+}
+
+/// Asks CBMC what holds: of MiniSat within `first`, and of Kissat if that has no answer by then; of Kissat at once without `first`. A
+/// solver that is named is asked alone.
+///
+/// # Errors
+/// As [`ask`].
+pub fn ask_in_turn(
+    tools: &Tools,
+    folder: &Path,
+    question: &Question,
+    first: Option<Duration>,
+) -> Result<(Answer, Duration), Silence> {
+    if let Some(first) = first.filter(|_| question.solver == Solver::Auto) {
+        let quick = Question { solver: Solver::Minisat, limit: question.limit.min(first), ..*question };
+        match ask(tools, folder, &quick) {
+            Err(Silence::Late) => {}
+            answer => return answer,
+        }
+    }
+    ask(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question })
 }
 
 /// Asks CBMC once; [`Solver::Auto`] is MiniSat here. `folder` is what [`Compiled::to_c`] made.

@@ -4,16 +4,16 @@
 //! at the size at which they reject; the others are the very harnesses of the proofs.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use atc_proofs::Harness;
 
+use crate::Options;
 use crate::campaign::{HARD, in_parallel};
-use crate::cbmc::{Answer, Question, Silence, ask};
+use crate::cbmc::{Answer, FIRST, Question, ask_in_turn};
 use crate::compile::{Compiled, STACK, compile};
 use crate::report::Control;
 use crate::tools::Tools;
-use crate::{Options, Solver};
 
 /// Judges the right kernel by those of the harnesses that are smaller for wrong kernels.
 ///
@@ -47,30 +47,14 @@ pub fn is_smaller(harness: &Harness) -> bool {
 
 fn judge(tools: &Tools, compiled: &Compiled, harness: &Harness, options: &Options) -> Result<(), String> {
     let folder = compiled.to_c(tools, harness.name, STACK)?;
+    let first = (!HARD.contains(&harness.name)).then_some(FIRST);
     for case in 0..harness.cases {
-        let solver = if HARD.contains(&harness.name) { options.solver.at_once(tools) } else { options.solver };
-        let asked = Question { case: (case, harness.cases), ..Question::proof(harness.name, solver, options.limit) };
-        passes(harness, &answer(tools, &folder, &asked)?)?;
+        let case = (case, harness.cases);
+        let question = Question { case, ..Question::proof(harness.name, options.solver, options.limit) };
+        let answer = ask_in_turn(tools, &folder, &question, first);
+        passes(harness, &answer.map_err(|silence| silence.of(harness.name))?.0)?;
     }
     Ok(())
-}
-
-/// As for a proof: MiniSat for some time, then Kissat.
-fn answer(tools: &Tools, folder: &Path, question: &Question) -> Result<Answer, String> {
-    const FIRST: Duration = Duration::from_secs(20);
-    let told = |silence| match silence {
-        Silence::Late => format!("{}: no answer in time", question.harness),
-        Silence::Broken(reason) => format!("{}: {reason}", question.harness),
-    };
-    if question.solver == Solver::Auto {
-        let quick = Question { solver: Solver::Minisat, limit: question.limit.min(FIRST), ..*question };
-        match ask(tools, folder, &quick) {
-            Err(Silence::Late) => {}
-            given => return given.map(|(answer, _)| answer).map_err(told),
-        }
-    }
-    let rest = Question { solver: question.solver.at_once(tools), ..*question };
-    ask(tools, folder, &rest).map(|(answer, _)| answer).map_err(told)
 }
 
 /// Every claim holds, and nothing else fails.

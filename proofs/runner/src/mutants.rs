@@ -2,7 +2,7 @@
 //! kernel must fail on it.
 
 use crate::campaign::{Options, flags, in_parallel};
-use crate::cbmc::{Answer, Question, Silence, Solver, ask};
+use crate::cbmc::{Question, ask_in_turn};
 use crate::compile::{STACK, compile};
 use crate::control::{controls, is_smaller};
 use crate::process::only_run;
@@ -159,16 +159,14 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
         let mut claims: Vec<String> = Vec::new();
         let mut counterexample = None;
         let folder = compiled.to_c(tools, harness.name, STACK)?;
+        let first = (!SLOW.contains(&harness.name)).then_some(FIRST);
         for case in 0..harness.cases {
             let question = Question {
                 case: (case, harness.cases),
                 ..Question::proof(harness.name, options.solver, options.limit)
             };
-            let answer = match reject(tools, &folder, &question) {
-                Ok((answer, _)) => answer,
-                Err(Silence::Late) => return Err(format!("{}: no answer in time", harness.name)),
-                Err(Silence::Broken(reason)) => return Err(format!("{}: {reason}", harness.name)),
-            };
+            let answer = ask_in_turn(tools, &folder, &question, first);
+            let (answer, _) = answer.map_err(|silence| silence.of(harness.name))?;
             let names = harness.claims.iter().enumerate();
             claims.extend(
                 names
@@ -199,17 +197,7 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
 pub const SLOW: [&str; 5] = ["t_per_4", "t_per_4_fix", "t_per_7", "per_machine", "t_pos_1"];
 
 /// What is wrong is found more easily than that nothing is: MiniSat gets some time, and Kissat what that leaves.
-fn reject(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
-    const FIRST: Duration = Duration::from_secs(40);
-    let kissat = Question { solver: question.solver.at_once(tools), ..*question };
-    if question.solver != Solver::Auto || SLOW.contains(&question.harness) {
-        return ask(tools, folder, &kissat);
-    }
-    match ask(tools, folder, &Question { solver: Solver::Minisat, limit: question.limit.min(FIRST), ..*question }) {
-        Err(Silence::Late) => ask(tools, folder, &kissat),
-        answer => answer,
-    }
-}
+const FIRST: Duration = Duration::from_secs(40);
 
 fn copy(from: &Path, to: &PathBuf) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{}: {error}", from.display());

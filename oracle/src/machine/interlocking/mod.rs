@@ -62,6 +62,18 @@ fn places(names: &[String], list: &[String], field: &str, kind: &str) -> Result<
     Ok(found)
 }
 
+/// The set of those that a list names, each at most once.
+fn set<T>(
+    names: &[String],
+    list: &[String],
+    field: &str,
+    kind: &str,
+    empty: T,
+    or: impl Fn(T, usize) -> T,
+) -> Result<T, String> {
+    Ok(places(names, list, field, kind)?.into_iter().map(usize::from).fold(empty, or))
+}
+
 /// The names of those numbers that are in the set.
 fn named(names: &[String], is_in: impl Fn(usize) -> bool) -> BTreeSet<String> {
     names.iter().enumerate().filter(|(number, _)| is_in(*number)).map(|(_, name)| name.clone()).collect()
@@ -89,8 +101,8 @@ impl Interlocked {
     }
 
     fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
-        let places = places(&self.names.circuits, list, field, "circuit")?;
-        Ok(places.into_iter().fold(CircuitSet::EMPTY, |set, place| set.or(CircuitSet::nth(place.into()))))
+        let or = |all: CircuitSet, number| all.or(CircuitSet::nth(number));
+        set(&self.names.circuits, list, field, "circuit", CircuitSet::EMPTY, or)
     }
 
     fn circuits_of(&self, set: CircuitSet) -> BTreeSet<String> {
@@ -117,13 +129,14 @@ impl Interlocked {
                 detected = detected.or(Positions::of(point, *position));
             }
         }
-        let segments = places(&self.names.segments, &step.consent, "consent", "segment")?;
+        let or = |all: SegmentSet, number| all.or(SegmentSet::nth(number));
+        let consent = set(&self.names.segments, &step.consent, "consent", "segment", SegmentSet::EMPTY, or)?;
         Ok(kernel::Input {
             occupied: self.circuits(&step.occupied, "occupied")?,
             detected,
             request: step.request.as_ref().map(|request| self.request(request)).transpose()?,
             orders: self.orders(&step.orders)?,
-            consent: segments.into_iter().fold(SegmentSet::EMPTY, |set, place| set.or(SegmentSet::nth(place.into()))),
+            consent,
         })
     }
 

@@ -2,15 +2,14 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    self as kernel, Broken, CircuitSet, Element, Layout, Place, PointSet, Positions, RouteSet, Segment, SegmentSet,
-    SpeedCode, Station,
+    self as kernel, CircuitSet, Element, Layout, PointSet, Positions, RouteSet, Segment, SegmentSet, SpeedCode, Station,
 };
 use atc_kernel::time::Ticks;
 use atc_layout::{Names, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ByName, Side, place, places};
+use super::{ByName, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
 /// engineering are not, so that a trace on a bad layout, which ends in an accident, can be replayed. Not for a real station.
@@ -166,7 +165,8 @@ impl PlanConfig {
         for (place, route) in plan.routes.iter_mut().zip(&self.routes) {
             *place = route_of(&names, route).map_err(|why| format!("route {}: {why}", route.name))?;
         }
-        let layout = Layout::with_what_proofs_need(*plan).map_err(|broken| sentence(broken, &names))?;
+        let layout = Layout::with_what_proofs_need(*plan)
+            .map_err(|broken| format!("{} [{}]", names.broken(broken, &plan), Rule::Plan(broken.rule).name()))?;
         Ok((Box::new(layout), names, speeds))
     }
 
@@ -208,18 +208,15 @@ fn too_many(field: &str, most: usize) -> String {
 }
 
 fn circuits(names: &Names, list: &[String], field: &str) -> Result<CircuitSet, String> {
-    let numbers = places(&names.circuits, list, field, "circuit")?;
-    Ok(numbers.into_iter().fold(CircuitSet::EMPTY, |set, number| set.or(CircuitSet::nth(number.into()))))
+    set(&names.circuits, list, field, "circuit", CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)))
 }
 
 fn routes(names: &Names, list: &[String], field: &str) -> Result<RouteSet, String> {
-    let numbers = places(&names.routes, list, field, "route")?;
-    Ok(numbers.into_iter().fold(RouteSet::EMPTY, |set, number| set.or(RouteSet::nth(number.into()))))
+    set(&names.routes, list, field, "route", RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number)))
 }
 
 fn segments(names: &Names, list: &[String], field: &str) -> Result<SegmentSet, String> {
-    let numbers = places(&names.segments, list, field, "segment")?;
-    Ok(numbers.into_iter().fold(SegmentSet::EMPTY, |set, number| set.or(SegmentSet::nth(number.into()))))
+    set(&names.segments, list, field, "segment", SegmentSet::EMPTY, |all, number| all.or(SegmentSet::nth(number)))
 }
 
 fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, String> {
@@ -271,24 +268,4 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
 fn length_of(circuits: usize, field: &str) -> Result<u8, String> {
     let length = u8::try_from(circuits).ok().filter(|length| *length > 0);
     length.ok_or_else(|| format!("{field} has {circuits} circuits; it has 1 to 16"))
-}
-
-/// The rule that is broken, and where.
-fn sentence(broken: Broken, names: &Names) -> String {
-    let of = |list: &[String], number: u8| list.get(usize::from(number)).cloned().unwrap_or_else(|| number.to_string());
-    let route = |number: u8| format!("route {}", of(&names.routes, number));
-    let segment = |number: u8| format!("segment {}", of(&names.segments, number));
-    let about = match broken.place {
-        Place::Plan => "the plan".to_owned(),
-        Place::Route(number) => route(number),
-        Place::Overlap(number) => format!("the overlap of {}", route(number)),
-        Place::Path(number, place) => format!("place {place} of {}", route(number)),
-        Place::Routes(one, other) => format!("{} with {}", route(one), route(other)),
-        Place::Point(number) => format!("point {}", of(&names.points, number)),
-        Place::Segment(number) => segment(number),
-        Place::Segments(one, other) => format!("{} with {}", segment(one), segment(other)),
-        Place::Circuit(number) => format!("circuit {}", of(&names.circuits, number)),
-    };
-    let rule = Rule::Plan(broken.rule);
-    format!("{about} breaks a rule: {} [{}]", rule.text(), rule.name())
 }
