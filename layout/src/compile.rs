@@ -174,7 +174,7 @@ fn segment_set(segment: Option<usize>) -> SegmentSet {
 fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model) -> Plan<R, P, N, S> {
     let mut plan = Plan::EMPTY;
     for (place, route) in plan.routes.iter_mut().zip(&model.routes) {
-        *place = route_of(route);
+        *place = Route { cab_signalled: model.values.cab_signalled, ..route_of(route) };
     }
     for (place, point) in plan.points.iter_mut().zip(&model.points) {
         place.detectors = circuits(point.detectors.iter().copied());
@@ -195,6 +195,9 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
     plan.braking = model.values.braking;
     plan.clear = model.values.clear;
     plan.turn = model.values.turn;
+    plan.loss = model.values.loss;
+    plan.residual = model.values.residual;
+    plan.standstill = model.values.standstill;
     plan
 }
 

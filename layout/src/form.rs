@@ -22,6 +22,9 @@ pub struct Station {
     /// The length of the longest train, in metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_train_m: Option<At<u16>>,
+    /// Whether every train acts on telegrams alone: no driver acts on what he sees of an optical signal.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub cab_signalled: bool,
     /// Times for the whole station.
     #[serde(default)]
     pub times: Times,
@@ -55,6 +58,11 @@ pub struct Station {
     /// The routes.
     #[serde(default, rename = "route")]
     pub routes: Vec<Route>,
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+const fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 /// A track circuit. One with points in it has no `left` and `right` of its own: its points name the joints.

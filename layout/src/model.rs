@@ -202,6 +202,14 @@ pub struct Values {
     pub cycle_ms: u32,
     /// T_clear, in cycles.
     pub clear: u8,
+    /// The longest loss of shunt, in cycles.
+    pub loss: u8,
+    /// The longest residual running.
+    pub residual: Ticks,
+    /// The longest time to a stand.
+    pub standstill: Ticks,
+    /// Whether every train acts on telegrams alone.
+    pub cab_signalled: bool,
     /// The time for which a permission must have been withdrawn before a segment turns.
     pub turn: Ticks,
     /// The age of a telegram, in ms.
@@ -221,6 +229,10 @@ impl Default for Values {
         Self {
             cycle_ms: 0,
             clear: 0,
+            loss: 0,
+            residual: Ticks(0),
+            standstill: Ticks(0),
+            cab_signalled: false,
             turn: Ticks(0),
             telegram_age_ms: 0,
             speeds_kmh: [0; MAX_CODES],

@@ -104,6 +104,9 @@ const fn of_plan(rule: Kernel) -> &'static str {
     match rule {
         Kernel::PathTooLong => "a path or a segment has no more circuits than there is room for",
         Kernel::NoTime => "every time is one cycle or more",
+        Kernel::ClearShort => "T_clear is longer than the longest tolerated loss of shunt",
+        Kernel::ReleaseShort => "the release time covers the residual running and the longest loss of shunt",
+        Kernel::StayShort => "the stay time covers the standstill time, the longest loss of shunt and a cycle",
         Kernel::PointBothWays => "a route needs no point both ways, over path, flank and overlap together",
         Kernel::PointNotPositioned => "a point whose detector is among the circuits of a place is positioned there",
         Kernel::ConflictOneWay => "declared conflicts go both ways",
@@ -142,6 +145,7 @@ pub const fn remedy(rule: Kernel) -> &'static str {
     match rule {
         Kernel::PathTooLong => "divide it",
         Kernel::NoTime => "give a longer time or a shorter cycle",
+        Kernel::ClearShort | Kernel::ReleaseShort | Kernel::StayShort => "give a longer time",
         Kernel::PointBothWays => {
             "run the overlap over the leg that the flank or the path leaves, or give a reason instead of the flank"
         }

@@ -19,10 +19,14 @@ pub struct Times {
     pub drive_ms: At<u32>,
     /// The longest time of a point's stroke.
     pub throw_ms: At<u32>,
-    /// How long a route stays locked after it was withdrawn with a train coming.
+    /// How long a route stays locked after it was withdrawn with a train coming: at least `residual_ms` and `shunt_loss_ms`.
     pub release_ms: At<u32>,
-    /// How long a train must have stood on the last circuit before the overlap is given up.
+    /// The longest time for which a train still passes a signal after its authority was taken away.
+    pub residual_ms: At<u32>,
+    /// How long a train must have stood on the last circuit before the overlap is given up: longer than `standstill_ms` and `shunt_loss_ms`.
     pub stay_ms: At<u32>,
+    /// The longest time in which a train comes to a stand once it is wholly on the last circuit of its route.
+    pub standstill_ms: At<u32>,
     /// For how long the neighbour's permission must have been withdrawn before plain line turns: longer than `telegram_age_ms`.
     pub turn_ms: At<u32>,
     /// The age up to which a train acts on a telegram.
@@ -38,7 +42,9 @@ impl Default for Times {
             drive_ms: At::derived(10_000),
             throw_ms: At::derived(7_000),
             release_ms: At::derived(60_000),
+            residual_ms: At::derived(45_000),
             stay_ms: At::derived(30_000),
+            standstill_ms: At::derived(15_000),
             turn_ms: At::derived(5_000),
             telegram_age_ms: At::derived(1_000),
         }

@@ -59,6 +59,8 @@ pub struct Way {
     pub stay: u16,
     /// The speed code.
     pub speed: u8,
+    /// Whether its trains act on telegrams alone.
+    pub cab: bool,
 }
 
 /// A segment of plain line.
@@ -171,5 +173,6 @@ fn route<const P: usize>(way: &Way) -> Route<P> {
         release: Ticks(way.release),
         stay: Ticks(way.stay),
         speed: SpeedCode(way.speed),
+        cab_signalled: way.cab,
     }
 }

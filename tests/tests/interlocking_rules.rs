@@ -95,6 +95,26 @@ fn times_of_no_cycle() {
 }
 
 #[test]
+fn times_that_do_not_cover_a_train() {
+    let released = station().routes[1].release;
+    breaks(Rule::ReleaseShort, &[Place::Route(1)], |plan| {
+        plan.residual = released;
+        plan.routes.iter_mut().for_each(|route| route.release = Ticks(released.0 + 1));
+        plan.routes[1].release = Ticks(released.0 - 1);
+    });
+    breaks(Rule::StayShort, &[Place::Route(2)], |plan| {
+        plan.standstill = Ticks(3);
+        plan.routes.iter_mut().for_each(|route| route.stay = Ticks(4));
+        plan.routes[2].stay = Ticks(3);
+    });
+    breaks(Rule::ClearShort, &[Place::Plan], |plan| {
+        plan.loss = plan.clear;
+        plan.routes.iter_mut().for_each(|route| route.stay = Ticks(1 + u16::from(plan.clear)));
+        plan.routes.iter_mut().for_each(|route| route.release = Ticks(u16::from(plan.clear)));
+    });
+}
+
+#[test]
 fn paths_that_are_too_long() {
     // There is no room for a fourth place, so nothing else can be wrong with it.
     let all = broken(|plan| plan.segments[1].length = 4);

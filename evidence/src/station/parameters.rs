@@ -35,7 +35,9 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         of_routes("Drive time", &times.drive_ms, |route| route.drive.0, "down"),
         row("Longest stroke of a point", format!("{} ms", longest_stroke(model)), "", &times.throw_ms.span),
         of_routes("Release time", &times.release_ms, |route| route.release.0, "up"),
+        kept("Residual running", &times.residual_ms, model.values.residual.0.into(), "up"),
         of_routes("Stay time", &times.stay_ms, |route| route.stay.0, "up"),
+        kept("Time to a stand", &times.standstill_ms, model.values.standstill.0.into(), "up"),
         kept("Turn time of plain line", &times.turn_ms, model.values.turn.0.into(), "up"),
         row("Oldest telegram", format!("{} ms", times.telegram_age_ms), "", &times.telegram_age_ms.span),
         row(
@@ -121,7 +123,9 @@ fn defaults(station: &Station) -> Vec<(&'static str, String)> {
         ("times.drive_ms", &times.drive_ms),
         ("times.throw_ms", &times.throw_ms),
         ("times.release_ms", &times.release_ms),
+        ("times.residual_ms", &times.residual_ms),
         ("times.stay_ms", &times.stay_ms),
+        ("times.standstill_ms", &times.standstill_ms),
         ("times.turn_ms", &times.turn_ms),
         ("times.telegram_age_ms", &times.telegram_age_ms),
     ]

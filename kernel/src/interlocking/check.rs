@@ -43,6 +43,12 @@ pub enum Rule {
     PathTooLong,
     /// Needed: every time is one cycle or more.
     NoTime,
+    /// Engineering: a circuit counts as clear only after more cycles than a train may be lost for.
+    ClearShort,
+    /// Needed: the release time covers the residual running and the longest loss.
+    ReleaseShort,
+    /// Needed: the stay time covers the standstill time, the longest loss and one cycle more.
+    StayShort,
     /// Needed: a route does not need a point both ways, over its path, flank and overlap together.
     PointBothWays,
     /// Needed: a point whose detector is among the circuits of a place, or of an overlap, is positioned there.
@@ -141,6 +147,11 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         }
         let timed = route.drive.0 > 0 && route.release.0 > 0 && route.stay.0 > 0;
         require(report, timed, Rule::NoTime, place);
+        let loss = u32::from(self.loss);
+        let run_out = u32::from(route.release.0) >= u32::from(self.residual.0) + loss;
+        require(report, run_out, Rule::ReleaseShort, place);
+        let standing = route.stay.0 == 0 || u32::from(route.stay.0) > u32::from(self.standstill.0) + loss;
+        require(report, standing, Rule::StayShort, place);
         let needed = route.held_from(0).positions.or(route.overlap.positions);
         require(report, !needed.opposes(needed), Rule::PointBothWays, place);
         let mut before = CircuitSet::EMPTY;
@@ -191,6 +202,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
     pub fn check_engineering(&self, report: &mut impl FnMut(Broken)) {
         //= spec/interlocking.md#lay-2-what-engineering-asks-for
         //# The constructor MUST reject a layout in which a rule of engineering is broken that its data can show.
+        require(report, self.clear == 0 || self.clear > self.loss, Rule::ClearShort, Place::Plan);
         let mut there = (RouteSet::EMPTY, SegmentSet::EMPTY);
         for (number, route) in self.routes.iter().enumerate() {
             there.0 = there.0.or(RouteSet::nth(number).only_if(route.exists()));

@@ -68,6 +68,8 @@ pub struct Route<const P: usize> {
     pub stay: Ticks,
     /// The highest speed code on the route.
     pub speed: SpeedCode,
+    /// Whether every train that uses the route acts on telegrams alone, and not on what a driver sees of the signal.
+    pub cab_signalled: bool,
 }
 
 impl<const P: usize> Route<P> {
@@ -87,6 +89,7 @@ impl<const P: usize> Route<P> {
         release: Ticks(0),
         stay: Ticks(0),
         speed: SpeedCode::STOP,
+        cab_signalled: false,
     };
 
     /// Whether there is such a route.
@@ -174,6 +177,12 @@ pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> 
     pub clear: u8,
     /// For how long the neighbour's permission must have been withdrawn before a segment turns: longer than telegrams live.
     pub turn: Ticks,
+    /// For how many cycles in a row an occupied circuit may at most not be reported: less than `clear`.
+    pub loss: u8,
+    /// For how long a train may run on after its authority was taken away.
+    pub residual: Ticks,
+    /// For how long a train may still slide once it is wholly in the last circuit of a route.
+    pub standstill: Ticks,
 }
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, N, S> {
@@ -186,6 +195,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         braking: [Metres(u16::MAX); MAX_CODES],
         clear: 0,
         turn: Ticks(0),
+        loss: 0,
+        residual: Ticks(0),
+        standstill: Ticks(0),
     };
 }
 

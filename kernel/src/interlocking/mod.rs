@@ -28,7 +28,7 @@ pub use check::{Broken, Place, Rule};
 pub use direction::{Directions, Needs, Travel};
 pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, Plan, Point, Route, Segment, SpeedCode, Station};
 pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
-pub use route::{Phase, RouteState};
+pub use route::{Phase, Rear, RouteState};
 pub use set::{
     CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,
 };
@@ -113,7 +113,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let needs = Needs::of(self, &state.routes);
         let mut circuits = direction::open_line(self, &state.directions, (occupied, needs));
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
-            *held = held.reserve(route, signal::ready(route, *held, view));
+            *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             circuits = circuits.or(held.circuits(route));
         }
         state.works = state.works.confirm(circuits, occupied);

@@ -21,6 +21,17 @@ pub enum Phase {
     Releasing,
 }
 
+/// How far the rear of a route has been swept: where a train may still be that has, or had, the authority to enter it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rear {
+    /// On the approach, or at the entry.
+    Approach,
+    /// At the entry.
+    Entry,
+    /// Nowhere: whoever may enter has entered.
+    Swept,
+}
+
 /// What is remembered of one route. The held part of its path is always a suffix: the places from `tail` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RouteState {
@@ -32,8 +43,11 @@ pub struct RouteState {
     pub head: u8,
     /// Whether the overlap is held.
     pub overlap: bool,
-    /// How long the phase has lasted: of provisional and releasing only, otherwise 0.
+    /// How long the phase has lasted: of provisional, and of in use and releasing up to the release time; otherwise 0. A withdrawal that is
+    /// repeated starts it anew.
     pub time: Ticks,
+    /// Where a train may still be that may enter.
+    pub rear: Rear,
     /// Whether the route has been set since it was reserved: only then a train may use it.
     pub proved: bool,
     /// For how long the train has stood on the last circuit, as far as that matters for the overlap.
@@ -42,8 +56,16 @@ pub struct RouteState {
 
 impl RouteState {
     /// Nothing is held.
-    pub const IDLE: Self =
-        Self { phase: Phase::Idle, tail: 0, head: 0, overlap: false, proved: false, time: Ticks(0), stood: Ticks(0) };
+    pub const IDLE: Self = Self {
+        phase: Phase::Idle,
+        tail: 0,
+        head: 0,
+        overlap: false,
+        time: Ticks(0),
+        rear: Rear::Entry,
+        proved: false,
+        stood: Ticks(0),
+    };
 
     /// Reserved provisionally, in this cycle.
     pub const RESERVED: Self = Self { phase: Phase::Provisional, overlap: true, ..Self::IDLE };
@@ -88,17 +110,22 @@ impl RouteState {
     /// Whether this is a state of `route` that the machine can be in.
     pub fn is_valid<const P: usize>(&self, route: &Route<P>) -> bool {
         let untouched = self.tail == 0 && self.head == 0 && self.overlap && self.stood.0 == 0;
+        let unproved = untouched && !self.proved && self.rear == Rear::Entry;
         let ordered = self.tail <= self.head && self.head <= route.length && (self.tail < route.length || self.overlap);
+        let swept = self.rear == Rear::Swept;
+        // Nothing is released before the rear is swept, and it is when the release time has passed.
+        let followed = ordered && self.proved && (swept || self.tail == 0 && self.time < route.release);
+        let seen = self.rear == Rear::Approach || self.rear == Rear::Entry && route.cab_signalled;
         let timed = match self.phase {
             Phase::Idle => *self == Self::IDLE,
-            Phase::Provisional => untouched && !self.proved && self.time < route.drive,
-            Phase::Failed => untouched && !self.proved && self.time.0 == 0,
-            Phase::Set => untouched && self.proved && self.time.0 == 0,
-            Phase::InUse => ordered && self.proved && self.time.0 == 0,
-            Phase::Releasing => ordered && (untouched || self.proved) && self.time < route.release,
+            Phase::Provisional => unproved && self.time < route.drive,
+            Phase::Failed => unproved && self.time.0 == 0,
+            Phase::Set => untouched && self.proved && seen && self.time.0 == 0,
+            Phase::InUse => followed && self.time <= route.release,
+            Phase::Releasing => (unproved || followed) && self.time <= route.release,
         };
-        let standing = self.stood.0 == 0
-            || self.overlap && self.head == route.length && self.tail < route.length && self.stood < route.stay;
+        let arrived = swept && self.head == route.length && self.tail + 1 == route.length;
+        let standing = self.stood.0 == 0 || self.overlap && arrived && self.stood <= route.stay;
         timed && standing && (route.exists() || self.phase == Phase::Idle)
     }
 
@@ -113,16 +140,52 @@ impl RouteState {
         //# Occupation of any circuit of a set route's path MUST end its proceed aspect for good.
         if self.phase == Phase::Set && self.path(route).circuits.meets(occupied) {
             self.phase = Phase::InUse;
+        } else if self.phase != Phase::Set {
+            let more = Ticks(self.time.0.saturating_add(1));
+            self.time = if more < route.release { more } else { route.release };
         }
         if self.proved {
+            self.sweep(route, occupied);
             self.enter(route, occupied);
             self.leave(route, occupied);
             self.stand(route, occupied);
         }
-        self.expire(route, occupied);
+        //= spec/interlocking.md#ilk-13-release-time
+        //# A withdrawn route MUST grant nothing until it is requested anew, and be released as soon as all that it still holds is clear once its release time has passed.
+        let over = self.phase == Phase::Releasing && self.time >= route.release;
+        let expired = over && !self.circuits(route).meets(occupied);
         //= spec/interlocking.md#ilk-11-idle
         //# A route MUST become idle when the last place of its path is released and its overlap is not held.
-        if self.is_held() && self.tail >= route.length && !self.overlap { Self::IDLE } else { self }
+        let left = self.is_held() && self.tail >= route.length && !self.overlap;
+        if expired || left { Self::IDLE } else { self }
+    }
+
+    /// Where a train may be that may enter while the route is set, if it was at `self.rear` before.
+    #[inline]
+    fn counted_on<const P: usize>(&self, route: &Route<P>, occupied: CircuitSet) -> Rear {
+        //= spec/interlocking.md#ilk-21-rear
+        //# While a route is set, its rear MUST be the approach, but the entry where every train is cab-signalled and the approach but the entry, since it was last clear, has not been occupied while the entry was clear.
+        let waiting = route.approach.without(route.entry).meets(occupied);
+        let granted = self.rear == Rear::Approach || !route.entry.meets(occupied);
+        if route.cab_signalled && !(waiting && granted) { Rear::Entry } else { Rear::Approach }
+    }
+
+    /// The rear of the route is swept behind its last train.
+    #[inline]
+    fn sweep<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+        if self.phase == Phase::Set {
+            self.rear = self.counted_on(route, occupied);
+            return;
+        }
+        //= spec/interlocking.md#ilk-22-swept
+        //# The rear of a route that is not set any more MUST go from the approach to the entry only while the approach but the entry is clear, and be swept only while the entry is clear, or when the release time has passed since the route came into use or was withdrawn.
+        if self.rear == Rear::Approach && !route.approach.without(route.entry).meets(occupied) {
+            self.rear = Rear::Entry;
+        }
+        let clear = self.rear == Rear::Entry && !route.entry.meets(occupied);
+        if clear || self.time >= route.release {
+            self.rear = Rear::Swept;
+        }
     }
 
     /// The train's head goes on by one place.
@@ -140,10 +203,10 @@ impl RouteState {
     #[inline]
     fn leave<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
         //= spec/interlocking.md#ilk-10-release
-        //# A place of a path MUST be released behind a train only when all places before it are released, it was entered, it is clear, and the next place was entered or, after the last one, a circuit beyond is occupied.
+        //# A place of a path MUST be released behind a train only when the rear of the route is swept, all places before it are released, it was entered, it is clear, and the next place was entered or, after the last one, a circuit beyond is occupied.
         let is_last = self.tail + 1 >= route.length;
         let gone_on = if is_last { route.beyond.meets(occupied) } else { self.tail + 1 < self.head };
-        let entered = self.tail < self.head;
+        let entered = self.tail < self.head && self.rear == Rear::Swept;
         if entered && gone_on && !route.circuit_at(self.tail).meets(occupied) {
             self.tail += 1;
         }
@@ -153,29 +216,18 @@ impl RouteState {
     #[inline]
     fn stand<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
         //= spec/interlocking.md#ilk-14-overlap
-        //# An overlap MUST be held until the last circuit, entered in order, has been occupied without a break for the stay time, or the train has left the path and the overlap is clear.
-        let arrived = self.head == route.length && self.tail < route.length && route.last().meets(occupied);
-        self.stood = Ticks(if self.overlap && arrived { self.stood.0.saturating_add(1) } else { 0 });
-        let left = self.tail >= route.length && !route.overlap.circuits.meets(occupied);
-        if self.stood >= route.stay || left {
+        //# An overlap MUST be held until it is clear and the train has left the path, or the rear is swept, every place before the last is released, and the last, entered in order, has been occupied since without a break for the stay time.
+        let alone = self.rear == Rear::Swept && self.tail + 1 == route.length;
+        // Before the only place of a path is the entry: the train has come in once that is clear.
+        let begun = self.tail > 0 || self.stood.0 > 0 || !route.entry.meets(occupied);
+        let arrived = alone && begun && self.head == route.length && route.last().meets(occupied);
+        let more = Ticks(self.stood.0.saturating_add(1));
+        let longer = if more < route.stay { more } else { route.stay };
+        self.stood = if self.overlap && arrived { longer } else { Ticks(0) };
+        let gone = self.tail >= route.length || self.stood >= route.stay;
+        if gone && !route.overlap.circuits.meets(occupied) {
             self.overlap = false;
             self.stood = Ticks(0);
-        }
-    }
-
-    /// The release time of a withdrawn route passes.
-    #[inline]
-    fn expire<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
-        if self.phase != Phase::Releasing {
-            return;
-        }
-        //= spec/interlocking.md#ilk-13-release-time
-        //# When the release time of a withdrawn route has passed, the route MUST be released if what it still holds is clear, and otherwise be in use again, or failed if it was never set.
-        self.time = Ticks(self.time.0.saturating_add(1));
-        if self.time >= route.release {
-            let clear = !self.circuits(route).meets(occupied);
-            let again = if self.proved { Phase::InUse } else { Phase::Failed };
-            *self = if clear { Self::IDLE } else { Self { phase: again, time: Ticks(0), ..*self } };
         }
     }
 
@@ -197,7 +249,7 @@ impl RouteState {
     /// The reservation after the points have been looked at: `ready` if all is detected, clear and unblocked.
     #[inline]
     #[must_use]
-    pub fn reserve<const P: usize>(self, route: &Route<P>, ready: bool) -> Self {
+    pub fn reserve<const P: usize>(self, route: &Route<P>, occupied: CircuitSet, ready: bool) -> Self {
         if self.phase != Phase::Provisional {
             return self;
         }
@@ -205,7 +257,7 @@ impl RouteState {
         //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear and unblocked, and failed when that has not come about within the drive time.
         let time = Ticks(self.time.0.saturating_add(1));
         if ready {
-            Self { phase: Phase::Set, proved: true, time: Ticks(0), ..self }
+            Self { phase: Phase::Set, proved: true, time: Ticks(0), rear: self.counted_on(route, occupied), ..self }
         } else if time >= route.drive {
             Self { phase: Phase::Failed, time: Ticks(0), ..self }
         } else {

@@ -40,6 +40,11 @@ pub fn ticks(what: &str, time: &At<u32>, rounding: Rounding, cycle: Cycle, probl
     }
 }
 
+/// A time in cycles, rounded up, that may be none.
+fn at_most(what: &str, time: &At<u32>, cycle: Cycle, problems: &mut Vec<Problem>) -> Ticks {
+    if time.value == 0 { Ticks(0) } else { ticks(what, time, Rounding::Permits, cycle, problems) }
+}
+
 /// The values for the whole station.
 pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle) {
     let times = &station.times;
@@ -55,10 +60,18 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         u8::MAX
     });
     let turn = ticks("turn_ms", &times.turn_ms, Rounding::Permits, cycle, problems);
+    let loss = at_most("shunt_loss_ms", &times.shunt_loss_ms, cycle, problems);
+    let residual = at_most("residual_ms", &times.residual_ms, cycle, problems);
+    let standstill = at_most("standstill_ms", &times.standstill_ms, cycle, problems);
     let (speeds_kmh, braking) = codes(station, problems);
     let values = Values {
         cycle_ms: cycle.length().0,
         clear,
+        // More than that is more than any T_clear.
+        loss: u8::try_from(loss.0).unwrap_or(u8::MAX),
+        residual,
+        standstill,
+        cab_signalled: station.cab_signalled,
         turn,
         telegram_age_ms: times.telegram_age_ms.value,
         speeds_kmh,

@@ -156,6 +156,7 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                     "release_cycles": route.release.0,
                     "stay_cycles": route.stay.0,
                     "speed_code": route.speed.0,
+                    "cab_signalled": route.cab_signalled,
                 })
             })
             .collect();
@@ -181,6 +182,9 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
             "cycle_ms": CYCLE_MS,
             "clear_cycles": plan.clear,
             "turn_cycles": plan.turn.0,
+            "loss_cycles": plan.loss,
+            "residual_cycles": plan.residual.0,
+            "standstill_cycles": plan.standstill.0,
             "speeds_km_h": (0..).take(MAX_CODES).map(|code| speed_km_h(SpeedCode(code))).collect::<Vec<_>>(),
             "braking_m": plan.braking.iter().map(|braking| braking.0).collect::<Vec<_>>(),
             "circuits": circuits.collect::<Vec<_>>(),

@@ -97,7 +97,7 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
         *state = state.follow(route, sight.occupied);
     }
     let (route, mine, now) = (&plan.routes[it], followed[it], after.routes[it]);
-    let end = |state: RouteState| state.reserve(route, ready(route, state, view));
+    let end = |state: RouteState| state.reserve(route, sight.occupied, ready(route, state, view));
     let is_it = |number: u8| usize::from(number) == it;
     let asked = matches!(input.request, Some(Request::Set(asked)) if is_it(asked.number()));
     let withdrawn =

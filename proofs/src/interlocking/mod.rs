@@ -13,13 +13,14 @@ mod route;
 mod signal;
 mod table;
 mod track;
+mod train;
 mod works;
 
 use crate::engine::{any_byte, any_flag, any_u32};
 use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
     CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, Orders, Phase, Plan, Point, PointId, PointSet,
-    Position, Positions, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, SpeedCode,
+    Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, SpeedCode,
     State, Track, Travel, Works,
 };
 use atc_kernel::time::Ticks;
@@ -45,8 +46,8 @@ pub const POINTS: usize = 4;
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 7] =
-    [atc::BOUND, direction::BOUND, pair::BOUND, point::BOUND, route::BOUND, signal::BOUND, works::BOUND];
+pub const SMALLER: [&str; 8] =
+    [atc::BOUND, direction::BOUND, pair::BOUND, point::BOUND, route::BOUND, signal::BOUND, train::BOUND, works::BOUND];
 
 /// All harnesses of this room.
 #[cfg(not(chosen))]
@@ -82,6 +83,9 @@ pub const ALL: &[Harness] = &[
     atc::t_atc_4::HARNESS,
     atc::t_atc_4_each::HARNESS,
     layout::t_lay_2::HARNESS,
+    train::t_ilk_train::HARNESS,
+    train::t_ilk_train_release::HARNESS,
+    train::t_ilk_train_overlap::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
@@ -134,6 +138,7 @@ fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Rout
         release: Ticks(e.word("release time (cycles)", 1..=3)),
         stay: Ticks(e.word("stay time (cycles)", 1..=3)),
         speed: SpeedCode(any_byte(e, "speed code", 0..=3)),
+        cab_signalled: any_flag(e, "all trains are cab-signalled (odd: yes)"),
     }
 }
 
@@ -163,6 +168,9 @@ fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, 
         segments,
         clear: any_byte(e, "clear (cycles)", 1..=2),
         turn: Ticks(e.word("turn time (cycles)", 1..=2)),
+        loss: any_byte(e, "longest loss of shunt (cycles)", 0..=0),
+        residual: Ticks(e.word("residual running (cycles)", 0..=1)),
+        standstill: Ticks(e.word("standstill time (cycles)", 0..=1)),
         ..Plan::EMPTY
     }
 }
@@ -210,15 +218,21 @@ fn any_route_state<E: Engine + ?Sized>(e: &mut E) -> RouteState {
     let overlap = e.word("overlap is held (odd: yes)", 1..=1) & 1 == 1;
     let time = Ticks(e.word("time in the phase (cycles)", 0..=1));
     let stood = Ticks(e.word("stood (cycles)", 0..=0));
+    let rear = match e.word("rear (0 approach, 1 entry, else swept)", 0..=2) {
+        0 => Rear::Approach,
+        1 => Rear::Entry,
+        _ => Rear::Swept,
+    };
     let never_set = any_flag(e, "withdrawn before it was set (odd: yes)");
     match phase {
         Phase::Idle => RouteState::IDLE,
         Phase::Provisional => RouteState { time, ..RouteState::RESERVED },
         Phase::Failed => RouteState { phase, ..RouteState::RESERVED },
-        Phase::Set => RouteState { phase, proved: true, ..RouteState::RESERVED },
-        Phase::InUse => RouteState { phase, tail, head, overlap, proved: true, time: Ticks(0), stood },
+        Phase::Set => RouteState { phase, proved: true, rear, ..RouteState::RESERVED },
         Phase::Releasing if never_set => RouteState { phase, time, ..RouteState::RESERVED },
-        Phase::Releasing => RouteState { phase, tail, head, overlap, proved: true, time, stood },
+        Phase::InUse | Phase::Releasing => {
+            RouteState { phase, tail, head, overlap, proved: true, time, rear, stood }
+        }
     }
 }
 

@@ -6,8 +6,7 @@
 use super::{PLACES, any_circuits, any_route_state, any_routes_layout, bit, held, kept};
 use crate::Engine;
 use crate::engine::any_flag;
-use atc_kernel::interlocking::{CircuitSet, Phase, Route, RouteState};
-use atc_kernel::time::Ticks;
+use atc_kernel::interlocking::{CircuitSet, Phase, Rear, Route, RouteState};
 
 pub const BOUND: &str = match PLACES {
     16 => "1 route, 32 circuits, 16 points",
@@ -50,19 +49,41 @@ impl Scene {
     fn overlap_occupied(&self, state: RouteState) -> bool {
         kept(&self.route, state).circuits.bits() & self.occupied.bits() != 0
     }
+
+    fn entry_occupied(&self) -> bool {
+        self.route.entry.bits() & self.occupied.bits() != 0
+    }
+
+    /// Whether the approach but the entry is occupied.
+    fn is_awaited(&self) -> bool {
+        self.route.approach.bits() & !self.route.entry.bits() & self.occupied.bits() != 0
+    }
+
+    /// Whether a release time that runs is over.
+    fn is_over(&self) -> bool {
+        let runs = self.before.phase == Phase::InUse || self.before.phase == Phase::Releasing;
+        runs && self.before.time.0 >= self.route.release.0.wrapping_sub(1)
+    }
+
+    /// Whether the rear is swept by the end of the cycle: it was, nobody can be there, or the time is over.
+    fn is_swept(&self) -> bool {
+        let ended = self.before.phase != Phase::Set || self.path_occupied(self.before);
+        let clear = !self.entry_occupied() && (self.before.rear == Rear::Entry || !self.is_awaited());
+        ended && (self.before.rear == Rear::Swept || clear || self.is_over())
+    }
 }
 
 harness! {
     /// A train is followed in the order of the path, and what it has not left behind stays locked.
     t_ilk_5(e)
     theorem "T-ILK-5";
-    requirements ["ILK-9", "ILK-10", "ILK-11"];
+    requirements ["ILK-9", "ILK-10", "ILK-11", "ILK-22"];
     assumptions [];
     bound BOUND;
     cases 1;
     claims {
         Entered: "the head goes on by at most one place, and only to an occupied one with the one before it (or the entry) occupied",
-        Released: "the tail goes on by at most one place: one that was entered, is clear, and behind one that was entered or, at the end, a circuit beyond that is occupied",
+        Released: "the tail goes on by at most one place: one that was entered, is clear, and behind one that was entered or, at the end, a circuit beyond that is occupied; and only once the rear is swept",
         Unproved: "a route that was never set follows no train",
         Idle: "a route becomes idle only when its whole path and its overlap are released, or its release time is over and all that it held is clear",
         Only: "nothing is held after the cycle that was not held before it",
@@ -93,7 +114,7 @@ harness! {
         } else {
             head >= before.tail + 2
         };
-        let released = was_held && before.tail < head && !scene.is_occupied(before.tail) && gone_on;
+        let released = was_held && before.tail < head && !scene.is_occupied(before.tail) && gone_on && scene.is_swept();
         e.claim(Claim::Released as u32, idle || after.tail == before.tail || after.tail == before.tail + 1 && released);
         let still = after.head == 0 && after.tail == 0 && after.overlap;
         e.claim(Claim::Unproved as u32, before.proved || idle || still);
@@ -102,8 +123,7 @@ harness! {
         // The last place may be released in this very cycle, and the overlap with it.
         let last = before.tail + 1 >= route.length && released || before.tail == route.length;
         let kept_clear = route.overlap.circuits.bits() & scene.occupied.bits() == 0;
-        let stood = before.stood.0 + 1 >= route.stay.0;
-        let left = last && (!before.overlap || kept_clear || stood);
+        let left = last && (!before.overlap || kept_clear);
         let remaining_clear = over && (all_clear || released && !scene.overlap_occupied(before));
         e.claim(Claim::Idle as u32, !(was_held && idle) || left || remaining_clear);
         let circuit = bit(e.word("a circuit that stands for all (number)", 0..=15));
@@ -168,15 +188,15 @@ harness! {
     bound BOUND;
     cases 1;
     claims {
-        Overlap: "an overlap is given up only when the last place, entered in order, has been occupied for the stay time, when the path is released and the overlap is clear, or when the release time is over",
-        Stood: "the time of standing goes on by one while the train stands on the last place, and starts again when that clears",
+        Overlap: "an overlap is given up only when it is clear, and the path is released, or the last place, entered in order, has been occupied for the stay time since every earlier one was released; or when the release time is over",
+        Stood: "the time of standing goes on by one up to the stay time while the train stands on the last place, with every earlier one released and the rear swept, and starts again when that clears",
         Locked: "a withdrawn route stays withdrawn and locked, its time going on by one, until the release time is over or its train has left it",
-        Back: "a withdrawn route that is not clear when its release time is over is in use, or failed if it was never set",
+        Used: "the time of a route in use goes on by one up to the release time, from the cycle in which it came into use",
     }
     covers {
         Given: "an overlap is given up while the train stands",
         Again: "the time of standing starts again",
-        Back: "a withdrawn route is in use again",
+        Longer: "a withdrawn route with a train in it stays withdrawn when its release time is over",
     }
     {
         let Some(scene) = any_scene(e) else { return };
@@ -191,24 +211,28 @@ harness! {
             scene.is_occupied(before.head - 1)
         };
         let arrived = before.head == route.length || before.head + 1 == route.length && last_occupied && previous;
-        let stands = follows && before.overlap && arrived && before.tail < route.length && last_occupied;
+        let begun = after.tail > 0 || before.stood.0 > 0 || !scene.entry_occupied();
+        let alone = after.tail == route.length.wrapping_sub(1) && scene.is_swept() && begun;
+        let stands = follows && before.overlap && arrived && alone && last_occupied;
         let given = before.overlap && !after.overlap && !idle;
-        let long = stands && before.stood.0 + 1 >= route.stay.0;
+        let long = stands && before.stood.0 >= route.stay.0.wrapping_sub(1);
         let kept_clear = route.overlap.circuits.bits() & scene.occupied.bits() == 0;
         let gone = follows && after.tail == route.length && kept_clear;
-        e.claim(Claim::Overlap as u32, !given || long || gone);
-        let counts = if after.overlap && stands { before.stood.0 + 1 } else { 0 };
+        e.claim(Claim::Overlap as u32, !given || kept_clear && (long || gone));
+        let longer = if before.stood.0 < route.stay.0 { before.stood.0 + 1 } else { before.stood.0 };
+        let counts = if after.overlap && stands { longer } else { 0 };
         e.claim(Claim::Stood as u32, idle || after.stood.0 == counts);
         let withdrawn = before.phase == Phase::Releasing;
-        let over = withdrawn && before.time.0 + 1 >= route.release.0;
-        let goes_on = after.phase == Phase::Releasing && after.time == Ticks(before.time.0 + 1);
+        let over = withdrawn && scene.is_over();
+        let later = if before.time.0 < route.release.0 { before.time.0 + 1 } else { before.time.0 };
+        let goes_on = after.phase == Phase::Releasing && after.time.0 == later;
         let left = before.proved && before.tail + 1 >= route.length && before.head >= before.tail;
-        e.claim(Claim::Locked as u32, !withdrawn || over || goes_on || idle && left);
-        let back = after.phase == if before.proved { Phase::InUse } else { Phase::Failed };
-        e.claim(Claim::Back as u32, !over || idle || back && after.time.0 == 0);
+        e.claim(Claim::Locked as u32, !withdrawn || goes_on || idle && (over || left));
+        let used = if before.phase == Phase::Set { 0 } else { later };
+        e.claim(Claim::Used as u32, after.phase != Phase::InUse || after.time.0 == used);
         e.cover(Cover::Given as u32, given && long);
         e.cover(Cover::Again as u32, before.stood.0 > 0 && !idle && after.overlap && after.stood.0 == 0);
-        e.cover(Cover::Back as u32, over && after.phase == Phase::InUse);
+        e.cover(Cover::Longer as u32, over && after.phase == Phase::Releasing);
     }
 }
 
@@ -240,7 +264,7 @@ harness! {
         let early = before.phase == Phase::Provisional || before.phase == Phase::Failed;
         let once = path_clear && (early || before.phase == Phase::Set && !near);
         e.claim(Claim::Once as u32, (after.phase == Phase::Idle) == once);
-        let same = after.tail == before.tail && after.head == before.head && after.overlap == before.overlap && after.proved == before.proved;
+        let same = after.tail == before.tail && after.head == before.head && after.overlap == before.overlap && after.proved == before.proved && after.rear == before.rear;
         e.claim(Claim::Otherwise as u32, once || after.phase == Phase::Releasing && after.time.0 == 0 && same);
         e.claim(Claim::Valid as u32, after.is_valid(route));
         e.cover(Cover::Set as u32, before.phase == Phase::Set && once);
@@ -253,7 +277,7 @@ harness! {
     /// Reservation: only after detection; a point that does not arrive makes the route fail; and a route with all in place advances.
     t_ilk_2(e)
     theorem "T-ILK-2";
-    requirements ["ILK-5"];
+    requirements ["ILK-5", "ILK-21"];
     assumptions [];
     bound BOUND;
     cases 1;
@@ -261,6 +285,7 @@ harness! {
         Set: "a provisional route becomes set in the cycle in which all is ready, and in no other",
         Failed: "a provisional route that is not ready when the drive time is over has failed, and not before",
         Others: "a route in any other phase stays as it is",
+        Rear: "the rear of a route that becomes set is the approach, or the entry where all trains are cab-signalled and none waits on the approach while the entry is clear",
         Valid: "the state stays valid",
     }
     covers {
@@ -272,7 +297,7 @@ harness! {
         let Some(scene) = any_scene(e) else { return };
         let (route, before) = (&scene.route, scene.before);
         let ready = any_flag(e, "all is ready (odd: yes)");
-        let after = before.reserve(route, ready);
+        let after = before.reserve(route, scene.occupied, ready);
         let provisional = before.phase == Phase::Provisional;
         let late = before.time.0 + 1 >= route.drive.0;
         e.claim(Claim::Set as u32, !provisional || (after.phase == Phase::Set) == ready);
@@ -280,6 +305,9 @@ harness! {
         let same = after.phase == before.phase && after.time == before.time && after.proved == before.proved;
         let held = after.tail == before.tail && after.head == before.head && after.overlap == before.overlap;
         e.claim(Claim::Others as u32, held && (provisional || same));
+        let waits = !route.cab_signalled || scene.is_awaited() && !scene.entry_occupied();
+        let rear = if waits { Rear::Approach } else { Rear::Entry };
+        e.claim(Claim::Rear as u32, !(provisional && ready) || after.rear == rear);
         e.claim(Claim::Valid as u32, after.is_valid(route));
         e.cover(Cover::Set as u32, provisional && after.phase == Phase::Set);
         e.cover(Cover::Failed as u32, provisional && after.phase == Phase::Failed);

@@ -95,7 +95,7 @@ harness! {
             let view = View { occupied, ..view };
             let state = state.follow(&route, occupied);
             let all_there = ready(&route, state, view);
-            shows_proceed(&route, state.reserve(&route, all_there), view)
+            shows_proceed(&route, state.reserve(&route, occupied, all_there), view)
         };
         let fewer = shown(view.occupied);
         let all = shown(CircuitSet::from_bits(view.occupied.bits() | more.bits()));

@@ -9,7 +9,7 @@ mod witness;
 use std::collections::BTreeMap;
 
 use atc_kernel::interlocking::{
-    Input, Layout, Orders, Output, Phase, PointId, Refusal, Request, RouteId, RouteState, SegmentId, SpeedCode, State,
+    Input, Layout, Orders, Output, Phase, PointId, Rear, Refusal, Request, RouteId, RouteState, SegmentId, SpeedCode, State,
     Travel,
 };
 use atc_kernel::time::Ticks;
@@ -18,7 +18,7 @@ use proptest::prelude::*;
 
 use stations::{Dice, Station};
 use traffic::World;
-use witness::{Ask, Held, Place, Read, Said, Set, Stage, Telegram, Witness};
+use witness::{Ask, Behind, Held, Place, Read, Said, Set, Stage, Telegram, Witness};
 
 /// Room for the random stations.
 type Small = Layout<9, 6, 24, 2>;
@@ -61,7 +61,7 @@ fn in_kernel_form(held: &Held) -> RouteState {
         Stage::Provisional(time) => (Phase::Provisional, time),
         Stage::Failed => (Phase::Failed, 0),
         Stage::Set => (Phase::Set, 0),
-        Stage::InUse => (Phase::InUse, 0),
+        Stage::InUse(time) => (Phase::InUse, time),
         Stage::Releasing(time) => (Phase::Releasing, time),
     };
     RouteState {
@@ -71,6 +71,11 @@ fn in_kernel_form(held: &Held) -> RouteState {
         overlap: held.overlap,
         proved: held.once_set,
         time: Ticks(time),
+        rear: match held.behind {
+            Behind::Approach => Rear::Approach,
+            Behind::Entry => Rear::Entry,
+            Behind::Nothing => Rear::Swept,
+        },
         stood: Ticks(held.stood),
     }
 }
@@ -146,6 +151,9 @@ impl Reached {
             let name = |held: &Held| format!("{:?}", held.stage).replace(|c: char| !c.is_alphabetic(), "");
             if name(old) != name(new) {
                 self.note(format!("{} to {}", name(old), name(new)));
+            }
+            if old.behind != new.behind && old.once_set && new.is_held() {
+                self.note(format!("rear {:?} to {:?}", old.behind, new.behind));
             }
             if old.overlap && !new.overlap && new.is_held() {
                 self.note("overlap given up");
@@ -246,7 +254,8 @@ fn the_sessions_are_lively() {
         "InUse to Idle",
         "InUse to Releasing",
         "Releasing to Idle",
-        "Releasing to InUse",
+        "rear Approach to Entry",
+        "rear Entry to Nothing",
         "overlap given up",
         "released behind a train",
         "open over 1 to 3 circuits",

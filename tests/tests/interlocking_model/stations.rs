@@ -202,6 +202,7 @@ impl Station {
             }
         }
         let behind = self.ahead(entry, !rightward).iter().take(2).copied();
+        let cab = dice.below(2) == 0;
         Way {
             entry,
             approach: [entry].into_iter().chain(behind).collect(),
@@ -214,6 +215,7 @@ impl Station {
             release: dice.between(1, 8),
             stay: dice.between(1, 5),
             speed: u8::try_from(1 + dice.below(self.sketch.braking.len() - 1)).expect("small"),
+            cab,
             ..Way::default()
         }
     }

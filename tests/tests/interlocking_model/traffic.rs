@@ -135,7 +135,7 @@ impl World {
             6 | 7 if !held.is_empty() => {
                 let early = held.iter().find(|route| matches!(device.routes[**route].stage, Stage::Provisional(_)));
                 let route = *early.filter(|_| dice.one_in(2)).unwrap_or(dice.pick(&held));
-                if matches!(device.routes[route].stage, Stage::Set | Stage::InUse | Stage::Releasing(_))
+                if matches!(device.routes[route].stage, Stage::Set | Stage::InUse(_) | Stage::Releasing(_))
                     && !dice.one_in(6)
                 {
                     return None;

@@ -10,7 +10,7 @@ mod authority;
 mod held;
 mod refusal;
 
-pub use held::{Held, Place, Stage};
+pub use held::{Behind, Held, Place, Stage};
 
 pub type Set = BTreeSet<usize>;
 
@@ -265,6 +265,10 @@ impl Witness {
             if let Stage::Provisional(time) = self.routes[route].stage {
                 let sound = self.sound(sketch, route, occupied, firm);
                 self.routes[route].once_set = sound;
+                if sound {
+                    self.routes[route].stage = Stage::Set;
+                    self.routes[route].look_back(way, occupied);
+                }
                 self.routes[route].stage = if sound {
                     Stage::Set
                 } else if time + 1 >= way.drive {

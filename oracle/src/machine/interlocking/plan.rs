@@ -26,6 +26,15 @@ pub struct PlanConfig {
     pub clear_cycles: u8,
     /// For how many cycles the neighbour's permission must have been withdrawn before a segment turns.
     pub turn_cycles: u16,
+    /// For how many cycles in a row an occupied circuit may at most not be reported: less than `clear_cycles`.
+    #[serde(default)]
+    pub loss_cycles: u8,
+    /// For how many cycles a train may run on after its authority was taken away.
+    #[serde(default)]
+    pub residual_cycles: u16,
+    /// For how many cycles a train may still slide once it is wholly on the last circuit of a route.
+    #[serde(default)]
+    pub standstill_cycles: u16,
     /// The speed of each code from 0 (stop), in km/h; at most 8.
     pub speeds_km_h: Vec<u16>,
     /// The braking distance from each of these speeds, in metres.
@@ -120,6 +129,9 @@ pub struct RouteForm {
     /// The highest speed code.
     #[schemars(range(max = 7))]
     pub speed_code: u8,
+    /// Whether every train that uses it acts on telegrams alone, not on what a driver sees of the signal.
+    #[serde(default)]
+    pub cab_signalled: bool,
 }
 
 type Plan = kernel::Plan<64, 16, 32, 8>;
@@ -155,6 +167,9 @@ impl PlanConfig {
         fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
         plan.clear = self.clear_cycles;
         plan.turn = Ticks(self.turn_cycles);
+        plan.loss = self.loss_cycles;
+        plan.residual = Ticks(self.residual_cycles);
+        plan.standstill = Ticks(self.standstill_cycles);
         for (place, point) in plan.points.iter_mut().zip(&self.points) {
             let detectors = circuits(&names, &point.detectors, "detectors");
             place.detectors = detectors.map_err(|why| format!("point {}: {why}", point.name))?;
@@ -257,6 +272,7 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
         release: Ticks(form.release_cycles),
         stay: Ticks(form.stay_cycles),
         speed: SpeedCode(form.speed_code),
+        cab_signalled: form.cab_signalled,
         ..kernel::Route::NONE
     };
     let path = form.path.iter().map(|at| element(names, at, "path")).collect::<Result<Vec<_>, _>>()?;

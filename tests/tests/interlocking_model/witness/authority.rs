@@ -33,7 +33,7 @@ impl Witness {
         if proceed.contains(&route) {
             return Some(Leave { train: way.entry, circuits: way.circuits(), whole: true, speed: way.speed });
         }
-        if held.stage != Stage::InUse {
+        if !matches!(held.stage, Stage::InUse(_)) {
             return None;
         }
         let kept: Vec<_> = held.kept(way).collect();

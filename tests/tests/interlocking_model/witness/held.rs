@@ -19,8 +19,19 @@ pub enum Stage {
     Provisional(u16),
     Failed,
     Set,
-    InUse,
+    InUse(u16),
     Releasing(u16),
+}
+
+/// The circuits before a route where a train may still be that may enter it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Behind {
+    /// Any of the approach.
+    Approach,
+    /// The entry.
+    Entry,
+    /// None.
+    Nothing,
 }
 
 /// A route.
@@ -32,12 +43,13 @@ pub struct Held {
     pub places: Vec<Place>,
     pub overlap: bool,
     pub stood: u16,
+    pub behind: Behind,
 }
 
 impl Held {
     pub(super) fn idle(way: &Way) -> Self {
         let places = vec![Place::Ahead; way.path.len()];
-        Self { stage: Stage::Idle, once_set: false, places, overlap: false, stood: 0 }
+        Self { stage: Stage::Idle, once_set: false, places, overlap: false, stood: 0, behind: Behind::Entry }
     }
 
     pub fn is_held(&self) -> bool {
@@ -72,25 +84,40 @@ impl Held {
 
     /// The train moves on by at most one place at either end, and time passes.
     pub(super) fn follow(&mut self, way: &Way, occupied: &Set) {
-        if !matches!(self.stage, Stage::Set | Stage::InUse | Stage::Releasing(_)) {
-            return;
-        }
-        if self.stage == Stage::Set && meets(&self.path(way), occupied) {
-            self.stage = Stage::InUse;
-        }
+        self.stage = match self.stage {
+            Stage::Set if meets(&self.path(way), occupied) => Stage::InUse(0),
+            Stage::InUse(time) => Stage::InUse((time + 1).min(way.release)),
+            Stage::Releasing(time) => Stage::Releasing((time + 1).min(way.release)),
+            Stage::Set => Stage::Set,
+            Stage::Idle | Stage::Provisional(_) | Stage::Failed => return,
+        };
         if self.once_set {
+            self.look_back(way, occupied);
             self.follow_train(way, occupied);
         }
-        if let Stage::Releasing(time) = self.stage {
-            self.stage = match time + 1 {
-                now if now < way.release => Stage::Releasing(now),
-                _ if !meets(&self.circuits(way), occupied) => Stage::Idle,
-                _ if self.once_set => Stage::InUse,
-                _ => Stage::Failed,
-            };
-        }
-        if self.stage == Stage::Idle || self.is_behind() && !self.overlap {
+        let over = self.stage == Stage::Releasing(way.release) && !meets(&self.circuits(way), occupied);
+        if over || self.is_behind() && !self.overlap {
             *self = Self::idle(way);
+        }
+    }
+
+    /// Where trains may be that may still come in: seen while the route is set, and swept after that.
+    pub(super) fn look_back(&mut self, way: &Way, occupied: &Set) {
+        let waits = way.approach.iter().any(|circuit| *circuit != way.entry && occupied.contains(circuit));
+        let at_signal = occupied.contains(&way.entry);
+        match self.stage {
+            Stage::InUse(time) | Stage::Releasing(time) => {
+                if !waits && self.behind == Behind::Approach {
+                    self.behind = Behind::Entry;
+                }
+                if time == way.release || !at_signal && self.behind == Behind::Entry {
+                    self.behind = Behind::Nothing;
+                }
+            }
+            _ if !way.cab => self.behind = Behind::Approach,
+            _ if !waits => self.behind = Behind::Entry,
+            _ if !at_signal => self.behind = Behind::Approach,
+            _ => {}
         }
     }
 
@@ -107,7 +134,8 @@ impl Held {
             }
         }
         let first = self.places.iter().position(|place| *place != Place::Released);
-        if let Some(first) = first.filter(|first| self.places[*first] == Place::Entered) {
+        let swept = self.behind == Behind::Nothing;
+        if let Some(first) = first.filter(|first| swept && self.places[*first] == Place::Entered) {
             let gone_on = match self.places.get(first + 1) {
                 Some(next) => *next == Place::Entered,
                 None => meets(&way.beyond, occupied),
@@ -116,9 +144,12 @@ impl Held {
                 self.places[first] = Place::Released;
             }
         }
-        let standing = self.places.last() == Some(&Place::Entered) && occupied.contains(&way.last());
-        self.stood = if standing && self.overlap { self.stood + 1 } else { 0 };
-        if self.stood >= way.stay || self.is_behind() && !meets(&way.overlap.0, occupied) {
+        let only_last = self.places.iter().rev().skip(1).all(|place| *place == Place::Released);
+        let came_in = way.path.len() > 1 || self.stood > 0 || !occupied.contains(&way.entry);
+        let there = self.places.last() == Some(&Place::Entered) && occupied.contains(&way.last());
+        let standing = swept && only_last && came_in && there && self.overlap;
+        self.stood = if standing { (self.stood + 1).min(way.stay) } else { 0 };
+        if (self.stood >= way.stay || self.is_behind()) && !meets(&way.overlap.0, occupied) {
             self.overlap = false;
             self.stood = 0;
         }

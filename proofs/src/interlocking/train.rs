@@ -1,0 +1,392 @@
+//! One route and one train (T-ILK-10): nothing is released in front of the train, or under it, whatever else is reported occupied.
+//!
+//! The train is a ghost. The kernel sees nothing of it but the circuits in which it is reported; every other circuit may be reported
+//! occupied at any time, for any duration, and any other train is nothing else than that. So one ghost stands for any number of trains.
+//!
+//! What [`holds`] says of ghost and route is the invariant: it is assumed before one cycle of the whole device, and claimed after it.
+
+use super::{any_input, any_layout, any_route_state, held, kept};
+use crate::Engine;
+use crate::engine::{any_byte, any_flag};
+use atc_kernel::interlocking::{
+    CircuitSet, Directions, Epoch, Input, Layout, MAX_CIRCUITS, Output, Phase, Plan, Rear, Request, Route, RouteState,
+    SegmentSet, SpeedCode, State, Track, Works,
+};
+
+/// The places of the path: what one train does to a route repeats from place to place.
+const LENGTH: usize = if cfg!(chosen) { 2 } else { 3 };
+
+pub const BOUND: &str = match LENGTH {
+    3 => "1 route of up to 3 circuits, 32 circuits",
+    _ => "1 route of up to 2 circuits, 32 circuits",
+};
+
+/// Where an end of the train is: outside is 0; the places of the path are `FIRST`, `FIRST` + 1, and so on.
+/// On the approach, but not at the entry.
+const APPROACH: u8 = 1;
+const ENTRY: u8 = 2;
+const FIRST: u8 = 3;
+
+/// The train, and what it does not know of itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Train {
+    /// Where its front is.
+    front: u8,
+    /// Where its tail is.
+    tail: u8,
+    /// Whether it may pass the route's signal.
+    authority: bool,
+    /// For how many cycles more it passes it without.
+    run: u16,
+    /// For how many cycles more the circuit of its front may not be reported.
+    late: u8,
+    /// For how many cycles more it may slide out of the last circuit.
+    moving: u16,
+    /// Whether it slid into the overlap.
+    slid: bool,
+}
+
+/// The route, as far as the ghost's world goes by it, and the times that the layout promises.
+struct Ground {
+    last: u8,
+    /// Where a train is that has left the path.
+    over: u8,
+    approach: CircuitSet,
+    entry: CircuitSet,
+    path: [CircuitSet; LENGTH],
+    overlap: CircuitSet,
+    cab: bool,
+    loss: u8,
+    residual: u16,
+    standstill: u16,
+    release: u16,
+}
+
+impl Ground {
+    fn of(plan: &Plan<1, LENGTH, 0, 0>) -> Self {
+        let route = &plan.routes[0];
+        Self {
+            last: FIRST.wrapping_add(route.length).wrapping_sub(1),
+            over: FIRST.wrapping_add(route.length),
+            approach: CircuitSet::from_bits(route.approach.bits() & !route.entry.bits()),
+            entry: route.entry,
+            path: core::array::from_fn(|place| route.path[place].circuits),
+            overlap: route.overlap.circuits,
+            cab: route.cab_signalled,
+            loss: plan.loss,
+            residual: plan.residual.0,
+            standstill: plan.standstill.0,
+            release: route.release.0,
+        }
+    }
+}
+
+impl Train {
+    /// Any train.
+    fn any<E: Engine + ?Sized>(e: &mut E) -> Self {
+        Self {
+            front: any_byte(e, "the train's front (0 outside, 1 approach, 2 entry, 3 first place ...)", 0..=6),
+            tail: any_byte(e, "the train's tail", 0..=3),
+            authority: any_flag(e, "it has authority (odd: yes)"),
+            run: e.word("it runs on for (cycles)", 0..=1),
+            late: any_byte(e, "its front is unreported for (cycles)", 0..=0),
+            moving: e.word("it slides for (cycles)", 0..=1),
+            slid: any_flag(e, "it slid into the overlap (odd: yes)"),
+        }
+    }
+
+    /// Whether it may still pass the signal.
+    const fn is_live(&self) -> bool {
+        self.authority || self.run > 0
+    }
+
+    /// Whether the route is there for it: it may pass the signal, or has.
+    const fn counts(&self) -> bool {
+        self.is_live() || self.front >= FIRST
+    }
+
+    /// The first and the last position where it is reported. Where its front is not reported, the one behind still is, though the tail
+    /// may just have left it: a circuit does not count as clear as soon as that.
+    const fn seen(&self) -> (u8, u8) {
+        if self.late == 0 {
+            return (self.tail, self.front);
+        }
+        let behind = self.front.wrapping_sub(1);
+        (if self.tail < behind { self.tail } else { behind }, behind)
+    }
+
+    /// Whether this is a train that there can be.
+    const fn is_one(&self, ground: &Ground) -> bool {
+        let ordered = self.tail <= self.front && self.front <= ground.over + 1 && (self.late == 0 || self.front > 0);
+        let sliding = !self.slid || self.front >= ground.over && self.tail <= ground.over && !ground.overlap.is_empty();
+        let inside = !self.is_live() || self.front <= ENTRY;
+        ordered && sliding && inside && self.late <= ground.loss && self.run <= ground.residual && self.moving <= ground.standstill
+    }
+
+    /// Whether it is reported where it must be.
+    fn is_reported(&self, ground: &Ground, occupied: CircuitSet) -> bool {
+        let (first, last) = self.seen();
+        let there = |position: u8| first <= position && position <= last;
+        let mut reported = !there(ENTRY) || occupied.contains(ground.entry);
+        reported &= !there(APPROACH) || ground.approach.is_empty() || occupied.meets(ground.approach);
+        reported &= !there(ground.over) || !self.slid || occupied.meets(ground.overlap);
+        for (position, circuit) in (FIRST..).zip(&ground.path) {
+            reported &= !there(position) || position >= ground.over || occupied.contains(*circuit);
+        }
+        reported
+    }
+
+    /// What it does in a cycle, before the device reads.
+    fn moves<E: Engine + ?Sized>(mut self, e: &mut E, ground: &Ground) -> Self {
+        let (on, up) = (any_flag(e, "its front goes on (odd: yes)"), any_flag(e, "its tail goes on (odd: yes)"));
+        let onward = any_flag(e, "it has authority beyond the route (odd: yes)");
+        let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
+        e.assume(late <= ground.loss);
+        let slides = (self.tail < ground.last || self.moving > 0) && !ground.overlap.is_empty();
+        let may = match self.front {
+            ENTRY => self.is_live(),
+            front => front <= ground.over && (front != ground.last || onward || slides),
+        };
+        let whole = self.tail == ground.last && self.front == ground.last;
+        if on && may && self.late == 0 {
+            self.slid |= self.front == ground.last && !onward;
+            self.front += 1;
+            self.late = late;
+            self.moving = 0;
+            if self.front >= FIRST {
+                self.authority = false;
+                self.run = 0;
+            }
+        } else {
+            // It may be reported earlier, and stand earlier.
+            self.late = if self.late > 0 && late < self.late { late } else { self.late.saturating_sub(1) };
+            self.moving = self.moving.saturating_sub(1);
+        }
+        if up && self.tail < self.front {
+            self.tail += 1;
+            self.slid &= self.tail <= ground.over;
+        }
+        if !whole && self.tail == ground.last && self.front == ground.last {
+            self.moving = ground.standstill;
+        }
+        self
+    }
+
+    /// What it learns at the end of the cycle: `lets_in` if the route's signal or telegram lets in who heeds it.
+    fn informed<E: Engine + ?Sized>(mut self, e: &mut E, ground: &Ground, lets_in: bool, occupied: CircuitSet) -> Self {
+        let heeds = any_flag(e, "it heeds the signal (odd: yes)");
+        let telegram = !ground.cab || !occupied.meets(ground.entry);
+        let near = self.front == ENTRY || self.front == APPROACH && !ground.approach.is_empty() && telegram;
+        let authority = lets_in && heeds && near && self.late == 0;
+        self.run = if authority {
+            0
+        } else if self.authority {
+            ground.residual
+        } else {
+            self.run.saturating_sub(1)
+        };
+        self.authority = authority;
+        self
+    }
+}
+
+/// The invariant: what is so of the train and the route at the end of every cycle.
+fn holds(train: &Train, ground: &Ground, state: &RouteState) -> bool {
+    if !train.counts() {
+        return true;
+    }
+    let (first, last) = train.seen();
+    let gone = first >= ground.over;
+    let followed = state.proved && matches!(state.phase, Phase::InUse | Phase::Releasing);
+    let time = u32::from(state.time.0);
+    let (residual, loss) = (u32::from(ground.residual), u32::from(ground.loss));
+    let (run, late) = (u32::from(train.run), u32::from(train.late));
+    // Who has authority is reported somewhere on the approach.
+    let near = train.front >= APPROACH && last >= APPROACH && (last > APPROACH || !ground.approach.is_empty());
+    let mut holds = !train.is_live() || near;
+    holds &= followed || gone || state.phase == Phase::Set && last <= ENTRY;
+    holds &= !followed || state.tail == 0 || first >= FIRST && state.tail <= first - FIRST;
+    let rear = match state.rear {
+        Rear::Approach => true,
+        Rear::Entry => last >= ENTRY,
+        Rear::Swept => last >= FIRST,
+    };
+    holds &= rear || !followed && state.phase != Phase::Set;
+    if followed {
+        let running = !train.authority && (train.run == 0 || run + time <= residual);
+        holds &= !train.is_live() || running;
+        holds &= train.front != FIRST || late == 0 || late + time <= residual + loss;
+        let stands = first == ground.last && !train.slid && (train.front > ground.last || train.moving == 0);
+        holds &= state.overlap || gone || stands;
+        let stood = u32::from(state.stood.0);
+        let standstill = u32::from(ground.standstill);
+        let whole = train.tail == ground.last && train.front == ground.last;
+        holds &= stood == 0 || first >= ground.last;
+        holds &= !whole || train.moving == 0 || u32::from(train.moving) + stood <= standstill + 1;
+        let unreported = train.slid && train.front == ground.over && late > 0;
+        holds &= !unreported || stood + late <= standstill + 1 + loss;
+    }
+    holds && (!train.slid || followed && state.overlap)
+}
+
+/// Any state of a device with one route, whose circuits count as occupied as the input says.
+fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
+    State {
+        track: Track::INITIAL,
+        routes: [any_route_state(e)],
+        directions: Directions { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, withdrawn: [] },
+        works: Works {
+            blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
+            confirmed: CircuitSet::EMPTY,
+            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+        },
+        epoch: Epoch(0),
+    }
+}
+
+/// One cycle of a device with one route and one train.
+struct Scene {
+    ground: Ground,
+    route: Route<LENGTH>,
+    before: RouteState,
+    after: RouteState,
+    /// The train after its move, with what it knew before it.
+    train: Train,
+    /// The train at the end of the cycle.
+    informed: Train,
+    output: Output<1>,
+    request: Option<Request>,
+}
+
+fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
+    let layout: Layout<1, LENGTH, 0, 0> = any_layout(e)?;
+    let plan = layout.plan();
+    let route = plan.routes[0];
+    let ground = Ground::of(plan);
+    // Rules of the constructor that are engineering's: LAY-2.
+    let path = route.held_from(0).circuits;
+    let apart = !route.approach.meets(path.or(ground.overlap)) && !path.meets(ground.overlap);
+    let engineered = route.exists() && ground.entry.is_one() && route.approach.contains(ground.entry) && apart;
+    e.assume(engineered);
+    let device = any_device(e);
+    let before = device.routes[0];
+    let train = Train::any(e);
+    let valid = before.is_valid(&route) && train.is_one(&ground) && holds(&train, &ground, &before);
+    e.assume(valid);
+    if !engineered || !valid {
+        return None;
+    }
+    let train = train.moves(e, &ground);
+    let input: Input = any_input(e);
+    e.assume(train.is_reported(&ground, input.occupied));
+    let (after, output) = layout.interlock(device, input);
+    let (_, _, contents) = output.table.parts();
+    let granted = contents.grants[0].train.meets(ground.entry) && !contents.grants[0].circuits.is_empty();
+    let lets_in = output.proceed.bits() & 1 == 1 || granted;
+    let informed = train.informed(e, &ground, lets_in, input.occupied);
+    let after = after.routes[0];
+    Some(Scene { ground, route, before, after, train, informed, output, request: input.request })
+}
+
+/// Whether the place is held by the route.
+fn holds_place(route: &Route<LENGTH>, state: RouteState, place: u8) -> bool {
+    let mut there = CircuitSet::EMPTY;
+    for (number, element) in (0_u8..).zip(&route.path) {
+        if number == place && number < route.length {
+            there = element.circuits;
+        }
+    }
+    held(route, state).circuits.bits() & there.bits() != 0
+}
+
+harness! {
+    /// No place of a route's path is released in front of a train that has authority over it or still runs without, nor under a train:
+    /// whatever else is reported occupied, and though the train is lost for less time than a circuit needs to count as clear.
+    t_ilk_train_release(e)
+    theorem "T-ILK-10";
+    requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-21", "ILK-22"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Behind: "a place that the route held and holds no more is behind the train's tail, if the train has entered or may still enter",
+        Nothing: "a route that is withdrawn lets nobody in, before it is requested anew",
+    }
+    covers {
+        Behind: "a place is released behind the train, and it is not the last one",
+        Running: "a train runs on into a route that was withdrawn",
+        Timed: "the rear is swept by the release time while the entry is occupied",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { ground, route, before, after, train, .. } = &scene;
+        let place = any_byte(e, "a place that stands for all (number)", 0..=2);
+        let released = holds_place(route, *before, place) && !holds_place(route, *after, place);
+        let behind = train.tail >= FIRST && train.tail - FIRST > place;
+        e.claim(Claim::Behind as u32, !released || !train.counts() || behind);
+        let withdrawn = before.phase == Phase::Releasing;
+        let anew = matches!(scene.request, Some(Request::Set(_))) && scene.output.answer == Some(Ok(()));
+        let lets_in = scene.output.proceed.bits() != 0 || !scene.output.table.parts().2.grants[0].circuits.is_empty();
+        e.claim(Claim::Nothing as u32, !withdrawn || anew || !lets_in);
+        e.cover(Cover::Behind as u32, released && behind && train.front <= ground.last);
+        e.cover(Cover::Running as u32, withdrawn && train.front == FIRST && train.tail == ENTRY);
+        let swept = before.rear == Rear::Entry && after.rear == Rear::Swept && after.time.0 == ground.release;
+        e.cover(Cover::Timed as u32, swept && train.counts() && train.tail == ENTRY);
+    }
+}
+
+harness! {
+    /// An overlap is given up only when the train has slid out of it, stands in the last circuit, or goes on with authority beyond.
+    t_ilk_train_overlap(e)
+    theorem "T-ILK-10";
+    requirements ["ILK-14"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Stands: "an overlap that was held and is not any more has no train that may slide into it, or slid into it and has not left it",
+    }
+    covers {
+        Stands: "an overlap is given up in front of a train that stands",
+        Slid: "a train slides into an overlap that is held",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { ground, route, before, after, train, .. } = &scene;
+        let had = before.phase != Phase::Idle && before.overlap;
+        let given = had && !(after.phase != Phase::Idle && after.overlap);
+        let stands = train.tail == ground.last && train.front == ground.last && train.moving == 0;
+        let goes_on = train.front >= ground.over && !train.slid;
+        e.claim(Claim::Stands as u32, !given || !train.counts() || stands || goes_on);
+        e.cover(Cover::Stands as u32, given && stands && !kept(route, *before).circuits.is_empty());
+        e.cover(Cover::Slid as u32, !given && train.slid);
+    }
+}
+
+harness! {
+    /// Induction: what the theorems about a route and its train assume of them holds at the end of every cycle again.
+    t_ilk_train(e)
+    theorem "T-ILK-10";
+    requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-14", "ILK-21", "ILK-22"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    claims {
+        Holds: "the invariant of the train and the route",
+        Valid: "and the train is one that there can be",
+    }
+    covers {
+        Entered: "a train enters a route in use",
+        Late: "its front is not reported in the first place",
+        Let: "a train is let in that was not",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { ground, after, informed, train, .. } = &scene;
+        e.claim(Claim::Holds as u32, holds(informed, ground, after));
+        e.claim(Claim::Valid as u32, informed.is_one(ground));
+        e.cover(Cover::Entered as u32, after.phase == Phase::InUse && train.front == FIRST);
+        e.cover(Cover::Late as u32, train.front == FIRST && train.late > 0);
+        e.cover(Cover::Let as u32, informed.authority && !train.authority);
+    }
+}

@@ -1,0 +1,122 @@
+//! A device of the passing loop, stepped by names.
+
+use atc_kernel::interlocking::{
+    CircuitSet, Input, Movement, Orders, Output, Phase, PointId, Position, Positions, Refusal, Request, RouteId,
+    SegmentId, SegmentSet, State, Station, Travel,
+};
+use atc_kernel::Machine;
+use atc_layout::{Description, Names};
+
+const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
+
+/// All circuits, from west to east.
+pub const ALL: [&str; 8] = ["W2", "W1", "P1T", "1T", "2T", "P2T", "E1", "E2"];
+
+/// A device and what it said last.
+pub struct Session {
+    layout: Box<Station>,
+    names: Names,
+    state: Box<State<64, 8>>,
+    said: Box<Output<64>>,
+    /// Where the points are detected.
+    pub detected: Positions,
+    /// The segments where the neighbour permits this station to send.
+    pub consent: SegmentSet,
+}
+
+fn number(names: &[String], name: &str) -> u8 {
+    let place = names.iter().position(|own| own == name).unwrap_or_else(|| panic!("no {name}"));
+    u8::try_from(place).expect("a small number")
+}
+
+impl Session {
+    /// The passing loop with these lines added to its file; unblocked, all points normal, and quiet until it may be used.
+    pub fn new(lines: &str) -> Self {
+        let description = Description::from_toml("loop", &format!("{LOOP}\n{lines}\n")).expect("a layout");
+        let compiled = description.compile().expect("a layout without problems");
+        let layout = compiled.layout();
+        let points = |point: u8| Positions::of(PointId::new(point).expect("a point"), Position::Normal);
+        let mut session = Self {
+            names: compiled.names.clone(),
+            state: Box::new(layout.initial()),
+            said: Box::new(<Station as Machine>::SAFE),
+            layout,
+            detected: points(0).or(points(1)),
+            consent: SegmentSet::EMPTY,
+        };
+        let orders = Orders { unblock: CircuitSet::ALL, lift: CircuitSet::ALL, ..Orders::default() };
+        session.step(&[], None, orders);
+        session
+    }
+
+    /// So many quiet cycles with these circuits occupied.
+    pub fn wait(&mut self, cycles: usize, occupied: &[&str]) {
+        for _ in 0..cycles {
+            self.step(occupied, None, Orders::default());
+        }
+    }
+
+    /// One cycle with a request; whether it was accepted.
+    pub fn ask(&mut self, request: Request, occupied: &[&str]) -> Result<(), Refusal> {
+        self.step(occupied, Some(request), Orders::default());
+        self.said.answer.expect("an answer")
+    }
+
+    fn step(&mut self, occupied: &[&str], request: Option<Request>, orders: Orders) {
+        let occupied = self.circuits(occupied);
+        let input = Input { occupied, detected: self.detected, request, orders, consent: self.consent };
+        let (state, said) = self.layout.cycle(*self.state, input);
+        (*self.state, *self.said) = (state, said);
+    }
+
+    pub fn circuits(&self, names: &[&str]) -> CircuitSet {
+        names.iter().fold(CircuitSet::EMPTY, |all, name| {
+            all.or(CircuitSet::nth(number(&self.names.circuits, name).into()))
+        })
+    }
+
+    fn route(&self, name: &str) -> RouteId {
+        RouteId::new(number(&self.names.routes, name)).expect("a route")
+    }
+
+    pub fn set(&self, route: &str) -> Request {
+        Request::Set(self.route(route))
+    }
+
+    pub fn withdraw(&self, route: &str) -> Request {
+        Request::Withdraw(self.route(route))
+    }
+
+    pub fn drive(&self, point: &str, position: Position) -> Request {
+        Request::Drive(PointId::new(number(&self.names.points, point)).expect("a point"), position)
+    }
+
+    pub fn turn(&self, segment: &str, travel: Travel) -> Request {
+        Request::Turn(SegmentId::new(number(&self.names.segments, segment)).expect("a segment"), travel)
+    }
+
+    pub fn phase(&self, route: &str) -> Phase {
+        self.state.routes[usize::from(number(&self.names.routes, route))].phase
+    }
+
+    pub fn proceed(&self, route: &str) -> bool {
+        self.said.proceed.has(self.route(route))
+    }
+
+    pub fn drives(&self) -> Positions {
+        self.said.drives
+    }
+
+    /// The telegram of a circuit.
+    pub fn telegram(&self, circuit: &str) -> Movement {
+        let all = self.layout.telegrams(&self.said.table, self.state.epoch);
+        all[usize::from(number(&self.names.circuits, circuit))]
+    }
+
+    /// Whether a route holds the circuit.
+    pub fn holds(&self, circuit: &str) -> bool {
+        let it = self.circuits(&[circuit]);
+        let routes = self.layout.plan().routes.iter().zip(&self.state.routes);
+        routes.into_iter().any(|(route, state)| state.circuits(route).meets(it))
+    }
+}
