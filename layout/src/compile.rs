@@ -195,6 +195,8 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
     plan.braking = model.values.braking;
     plan.clear = model.values.clear;
     plan.turn = model.values.turn;
+    plan.start = model.values.start;
+    plan.settle = model.values.settle;
     plan.loss = model.values.loss;
     plan.residual = model.values.residual;
     plan.standstill = model.values.standstill;

@@ -202,6 +202,10 @@ pub struct Values {
     pub cycle_ms: u32,
     /// T_clear, in cycles.
     pub clear: u8,
+    /// The time after a start.
+    pub start: Ticks,
+    /// The settling time of points, in cycles.
+    pub settle: u8,
     /// The longest loss of shunt, in cycles.
     pub loss: u8,
     /// The longest residual running.
@@ -229,6 +233,8 @@ impl Default for Values {
         Self {
             cycle_ms: 0,
             clear: 0,
+            start: Ticks(0),
+            settle: 0,
             loss: 0,
             residual: Ticks(0),
             standstill: Ticks(0),

@@ -45,6 +45,8 @@ pub enum Rule {
     ClearUnderShunt,
     /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
     TurnUnderTelegram,
+    /// After a start nothing moves until every release time and the turn time have passed, or the file says why not.
+    StartTooShort,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
     /// Circuits beyond the end of a route adjoin it.
@@ -91,6 +93,9 @@ impl Rule {
             Self::FoulingUndeclared => "routes over circuits that foul each other exclude each other",
             Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
+            Self::StartTooShort => {
+                "after a start nothing moves until release and turn times have passed, or the file says why not"
+            }
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",

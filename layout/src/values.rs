@@ -19,6 +19,13 @@ pub struct Times {
     pub drive_ms: At<u32>,
     /// The longest time of a point's stroke.
     pub throw_ms: At<u32>,
+    /// How long after a start nothing moves, is confirmed or turned: at least every release time and the turn time.
+    pub start_ms: At<u32>,
+    /// Why a shorter time after a start is enough: every train is known to stand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_protected: Option<At<String>>,
+    /// How long a point must stand detected after it was driven before it counts as detected: as long as a stroke may take to show.
+    pub settle_ms: At<u32>,
     /// How long a route stays locked after it was withdrawn with a train coming: at least `residual_ms` and `shunt_loss_ms`.
     pub release_ms: At<u32>,
     /// The longest time for which a train still passes a signal after its authority was taken away.
@@ -41,6 +48,9 @@ impl Default for Times {
             shunt_loss_ms: At::derived(1_000),
             drive_ms: At::derived(10_000),
             throw_ms: At::derived(7_000),
+            start_ms: At::derived(60_000),
+            start_protected: None,
+            settle_ms: At::derived(1_000),
             release_ms: At::derived(60_000),
             residual_ms: At::derived(45_000),
             stay_ms: At::derived(30_000),

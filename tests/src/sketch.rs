@@ -26,6 +26,10 @@ pub struct Sketch {
     pub braking: Vec<u16>,
     /// For how many cycles a circuit must be reported clear.
     pub clear: u8,
+    /// For how many cycles after a start nothing moves.
+    pub start: u16,
+    /// For how many cycles a point must be detected, undriven, before it counts as detected.
+    pub settle: u8,
     /// For how many cycles a permission must have been withdrawn before a segment turns.
     pub turn: u16,
 }
@@ -139,7 +143,7 @@ impl Sketch {
         for (number, way) in self.routes.iter().enumerate() {
             plan.routes[number] = route(way);
         }
-        Plan { clear: self.clear, turn: Ticks(self.turn), ..plan }
+        Plan { clear: self.clear, start: Ticks(self.start), settle: self.settle, turn: Ticks(self.turn), ..plan }
     }
 }
 

@@ -187,6 +187,7 @@ const fn refused(refusal: Refusal) -> char {
     match refusal {
         Refusal::Unknown => '?',
         Refusal::AlreadyHeld => 'h',
+        Refusal::Starting => '*',
         Refusal::NotHeld => 'n',
         Refusal::Conflict => 'c',
         Refusal::PathHeld => 'p',

@@ -24,7 +24,10 @@ fn layout() -> Value {
         |name: &str, left: &str, right: &str| json!({"name": name, "length_m": 600, "left": left, "right": right});
     json!({
         "name": "Fork",
-        "times": {"cycle_ms": 1000, "clear_ms": 2000, "drive_ms": 8000, "turn_ms": 3000},
+        "times": {
+            "cycle_ms": 1000, "clear_ms": 2000, "drive_ms": 8000, "turn_ms": 3000, "settle_ms": 0,
+            "start_ms": 0, "start_protected": "no train has run before",
+        },
         "speed": {"line_kmh": 45},
         "circuit": [
             circuit("L", "k", "l"), circuit("W", "l", "m"), {"name": "A", "length_m": 100},

@@ -7,6 +7,9 @@ use crate::time::Ticks;
 /// The most track circuits of a station.
 pub const MAX_CIRCUITS: usize = 64;
 
+/// The most points of a station.
+pub const MAX_POINTS: usize = 32;
+
 /// The most speed codes: 0 is stop, 1 to 7 are speeds.
 pub const MAX_CODES: usize = 8;
 
@@ -177,6 +180,10 @@ pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> 
     pub clear: u8,
     /// For how long the neighbour's permission must have been withdrawn before a segment turns: longer than telegrams live.
     pub turn: Ticks,
+    /// For how long after a start nothing moves, is confirmed or turned: as long as a train may count on what was before.
+    pub start: Ticks,
+    /// For how many cycles in a row a point must be detected, undriven, before it counts as detected: as long as a stroke may take to show.
+    pub settle: u8,
     /// For how many cycles in a row an occupied circuit may at most not be reported: less than `clear`.
     pub loss: u8,
     /// For how long a train may run on after its authority was taken away.
@@ -195,6 +202,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         braking: [Metres(u16::MAX); MAX_CODES],
         clear: 0,
         turn: Ticks(0),
+        start: Ticks(0),
+        settle: 0,
         loss: 0,
         residual: Ticks(0),
         standstill: Ticks(0),

@@ -26,7 +26,8 @@ mod works;
 pub use atc::{MAX_LINKS, Movement, begins, connect, movement, telegram};
 pub use check::{Broken, Place, Rule};
 pub use direction::{Directions, Needs, Travel};
-pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, Plan, Point, Route, Segment, SpeedCode, Station};
+pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station};
+pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
 pub use route::{Phase, Rear, RouteState};
 pub use set::{
@@ -39,6 +40,7 @@ pub use track::Track;
 pub use works::{Orders, Works};
 
 use crate::Machine;
+use crate::time::Ticks;
 use direction::Turned;
 use point::Demand;
 
@@ -95,6 +97,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     pub fn interlock(&self, mut state: State<R, S>, input: Input) -> (State<R, S>, Output<R>) {
         let plan = self.plan();
         let (occupied, detected) = (input.occupied, plausible(input.detected));
+        let starting = state.is_starting(self);
+        if starting {
+            state.started = Ticks(state.started.0.saturating_add(1));
+        }
         state.works = state.works.obey(input.orders);
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.follow(route, occupied);
@@ -103,20 +109,32 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let directions = (state.directions.toward, state.directions.away);
         let closed = direction::closed(self, state.works.blocked);
         let sight = Sight { occupied, blocked: state.works.blocked, closed, detected, under, directions };
-        let (alone, answer) = self.carry_out(&mut state, input, sight);
+        //= spec/interlocking.md#ilk-24-start
+        //# After a start, until the layout's time has passed, a device MUST refuse to set a route, to drive a point and to turn a segment, and confirm no block.
+        let moves = !matches!(input.request, None | Some(Request::Withdraw(_)));
+        let (alone, answer) = if starting && moves {
+            let idle = Input { request: None, ..input };
+            (self.carry_out(&mut state, idle, sight).0, Some(Err(Refusal::Starting)))
+        } else {
+            self.carry_out(&mut state, input, sight)
+        };
         let mut demand = Demand { wanted: alone, ..Demand::default() };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
             demand = demand.with(route, *held);
         }
         let drives = demand.drives(detected, under);
-        let view = View { occupied, blocked: state.works.blocked, closed, firm: detected.without(drives.points()) };
+        let (points, firm) = state.points.step(N, plan.settle, detected, drives);
+        state.points = points;
+        let view = View { occupied, blocked: state.works.blocked, closed, firm };
         let needs = Needs::of(self, &state.routes);
         let mut circuits = direction::open_line(self, &state.directions, (occupied, needs));
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             circuits = circuits.or(held.circuits(route));
         }
-        state.works = state.works.confirm(circuits, occupied);
+        if !starting {
+            state.works = state.works.confirm(circuits, occupied);
+        }
         state.epoch = state.epoch.next();
         let (proceed, grants) = signal::all(self, &state.routes, view);
         let contents = Contents {

@@ -1,6 +1,6 @@
 //! Points: which stand under a train, which are locked, and which are driven.
 
-use super::layout::{Layout, Route};
+use super::layout::{Layout, MAX_POINTS, Route};
 use super::route::{Phase, RouteState};
 use super::set::{CircuitSet, PointSet, Positions};
 
@@ -15,6 +15,59 @@ pub(super) fn meeting<const R: usize, const P: usize, const N: usize, const S: u
         points = points.or(PointSet::nth(number).only_if(point.detectors.meets(circuits)));
     }
     points
+}
+
+/// For how many cycles in a row each point has been detected in one position and not been driven, up to the layout's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Settling {
+    pub(super) stood: [u8; MAX_POINTS],
+    pub(super) last: Positions,
+}
+
+impl Settling {
+    /// No point has stood yet.
+    pub const INITIAL: Self = Self { stood: [0; MAX_POINTS], last: Positions::NONE };
+
+    /// A state for proofs and models; not every value is valid. `last` are the positions of the cycle before.
+    pub const fn from_parts(stood: [u8; MAX_POINTS], last: Positions) -> Self {
+        Self { stood, last }
+    }
+
+    /// For how many cycles each point has stood, and where the points were detected last.
+    pub const fn parts(&self) -> ([u8; MAX_POINTS], Positions) {
+        (self.stood, self.last)
+    }
+
+    /// Whether no count is over `settle`, the layout's number.
+    pub fn is_valid(&self, settle: u8) -> bool {
+        let mut valid = true;
+        for count in self.stood {
+            valid &= count <= settle;
+        }
+        valid
+    }
+
+    /// One cycle of `points` points; the answer is the positions that count as detected.
+    #[inline]
+    #[must_use]
+    pub(super) fn step(mut self, points: usize, settle: u8, detected: Positions, drives: Positions) -> (Self, Positions) {
+        //= spec/interlocking.md#ilk-23-settling
+        //# A point MUST count as detected only while it is not driven and has been detected in one position for the layout's number of cycles in a row since it was driven last, by a route or by hand.
+        let undriven = detected.without(drives.points());
+        let still = undriven.without(undriven.missing_in(self.last).points());
+        let mut settled = PointSet::EMPTY;
+        for (number, count) in self.stood.iter_mut().enumerate() {
+            if number < points {
+                let point = PointSet::nth(number);
+                let more = if *count < settle { *count + 1 } else { settle };
+                *count = if still.points().meets(point) { more } else { 0 };
+                settled = settled.or(point.only_if(*count >= settle));
+            }
+        }
+        // Without a settling time nothing is asked of the past.
+        self.last = detected.only_if(settle > 0);
+        (self, undriven.only_among(settled))
+    }
 }
 
 /// What routes want of the points, and what they forbid.

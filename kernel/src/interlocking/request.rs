@@ -23,6 +23,8 @@ pub enum Request {
 pub enum Refusal {
     /// There is no route, point or segment of this number.
     Unknown,
+    /// The device has just started: a train may still count on what was before.
+    Starting,
     /// The route to be set is held already.
     AlreadyHeld,
     /// The route to be withdrawn is not held.

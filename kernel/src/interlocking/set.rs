@@ -168,6 +168,12 @@ impl Positions {
         Self { normal: self.normal.without(points), reverse: self.reverse.without(points) }
     }
 
+    /// These as far as their points are in `points`.
+    #[must_use]
+    pub const fn only_among(self, points: PointSet) -> Self {
+        Self { normal: self.normal.and(points), reverse: self.reverse.and(points) }
+    }
+
     /// Those that are not in the same position in `other`.
     #[must_use]
     pub const fn missing_in(self, other: Self) -> Self {

@@ -13,7 +13,7 @@ pub struct View {
     pub blocked: CircuitSet,
     /// The segments with a blocked circuit.
     pub closed: SegmentSet,
-    /// The positions that are detected, without points that are being driven.
+    /// The positions that count as detected: none of a point that is driven, or has not stood since.
     pub firm: Positions,
 }
 

@@ -2,17 +2,23 @@
 
 use super::direction::{Directions, Needs};
 use super::layout::Layout;
+use super::point::Settling;
 use super::route::RouteState;
 use super::set::{CircuitSet, RouteSet};
 use super::table::Epoch;
 use super::track::Track;
 use super::works::Works;
+use crate::time::Ticks;
 
 /// What the device remembers from one logic cycle to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct State<const R: usize, const S: usize> {
     /// The track circuits.
     pub track: Track,
+    /// For how long the device has run, up to the layout's time.
+    pub started: Ticks,
+    /// The points.
+    pub points: Settling,
     /// The routes.
     pub routes: [RouteState; R],
     /// The segments of plain line.
@@ -27,6 +33,8 @@ impl<const R: usize, const S: usize> State<R, S> {
     /// The most restrictive state: all circuits occupied, blocked and restricted to stop; no route held; no segment with a direction.
     pub const INITIAL: Self = Self {
         track: Track::INITIAL,
+        started: Ticks(0),
+        points: Settling::INITIAL,
         routes: [RouteState::IDLE; R],
         directions: Directions::INITIAL,
         works: Works::INITIAL,
@@ -37,9 +45,13 @@ impl<const R: usize, const S: usize> State<R, S> {
     pub fn is_valid<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
         let plan = layout.plan();
         let mut valid = self.track.is_valid(plan.clear) && self.works.is_valid() && self.directions.is_valid(plan.turn);
+        valid &= self.points.is_valid(plan.settle) && self.started <= plan.start;
+        let starts = self.is_starting(layout);
+        let none = self.works.confirmed.is_empty() && self.directions.toward.or(self.directions.away).is_empty();
+        valid &= !starts || none;
         let mut held = CircuitSet::EMPTY;
         for (route, state) in plan.routes.iter().zip(&self.routes) {
-            valid &= state.is_valid(route);
+            valid &= state.is_valid(route) && (!starts || !state.is_held());
             held = held.or(state.circuits(route));
         }
         let needs = Needs::of(layout, &self.routes);
@@ -51,6 +63,11 @@ impl<const R: usize, const S: usize> State<R, S> {
             }
         }
         valid
+    }
+
+    /// Whether a train may still count on what was before the device started.
+    pub fn is_starting<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
+        self.started < layout.plan().start
     }
 
     /// Whether two routes hold what they may hold together: no common circuit but an overlap under a continuing route, no point both ways,

@@ -19,10 +19,15 @@ fn strokes(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec
     let in_ms = |ticks: u16| u32::from(ticks) * model.values.cycle_ms;
     let (name, throw) = (&slowest.name, slowest.throw_ms);
     let drive = in_ms(route.drive.0);
-    if drive < throw {
+    let settle = u32::from(model.values.settle) * model.values.cycle_ms;
+    let needed = throw.saturating_add(settle);
+    if drive < needed {
         let span = given.drive_ms.as_ref().map_or(&route.span, |time| &time.span);
-        let what = format!("route {} gives its points {drive} ms, but point {name} takes {throw} ms", route.name);
-        problems.push(Problem::new(Rule::DriveUnderThrow, span, what, format!("drive_ms must be at least {throw}")));
+        let what = format!(
+            "route {} gives its points {drive} ms, but point {name} takes {throw} ms and settles for {settle} ms",
+            route.name
+        );
+        problems.push(Problem::new(Rule::DriveUnderThrow, span, what, format!("drive_ms must be at least {needed}")));
     }
     let release = in_ms(route.release.0);
     if release <= throw {

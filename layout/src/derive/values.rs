@@ -61,6 +61,13 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     });
     let turn = ticks("turn_ms", &times.turn_ms, Rounding::Permits, cycle, problems);
     let loss = at_most("shunt_loss_ms", &times.shunt_loss_ms, cycle, problems);
+    let start = at_most("start_ms", &times.start_ms, cycle, problems);
+    let settle = at_most("settle_ms", &times.settle_ms, cycle, problems);
+    let settle = u8::try_from(settle.0).unwrap_or_else(|_| {
+        let what = format!("settle_ms is {} cycles", settle.0);
+        problems.push(Problem::new(Rule::Range, &times.settle_ms.span, what, "0 to 255 cycles are possible"));
+        u8::MAX
+    });
     let residual = at_most("residual_ms", &times.residual_ms, cycle, problems);
     let standstill = at_most("standstill_ms", &times.standstill_ms, cycle, problems);
     let (speeds_kmh, braking) = codes(station, problems);
@@ -69,6 +76,8 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         clear,
         // More than that is more than any T_clear.
         loss: u8::try_from(loss.0).unwrap_or(u8::MAX),
+        start,
+        settle,
         residual,
         standstill,
         cab_signalled: station.cab_signalled,

@@ -5,7 +5,7 @@ use super::ground::Blade;
 use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circuits};
 use super::train::{Fate, Train};
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Directions, Input, Positions, RouteState, SpeedCode, Track, Works,
+    self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, Track, Works,
 };
 
 /// The machine's state, without what never changes in a model and without the number of the cycle.
@@ -13,6 +13,10 @@ use atc_kernel::interlocking::{
 pub struct Kept {
     /// Cycles for which each circuit has been reported clear.
     pub clear_for: [u8; CIRCUITS],
+    /// Cycles for which each point has been detected and not driven.
+    pub stood: [u8; POINTS],
+    /// Where the points were detected last, if that matters.
+    pub last: Positions,
     /// The routes.
     pub routes: [RouteState; ROUTES],
     /// The segments.
@@ -40,6 +44,8 @@ impl Kept {
         let code = |circuit: usize| state.works.restrictions[circuit] <= RESTRICTED;
         Self {
             clear_for: std::array::from_fn(|circuit| all[circuit]),
+            stood: std::array::from_fn(|point| state.points.parts().0[point]),
+            last: state.points.parts().1,
             routes: state.routes,
             directions: state.directions,
             blocked: mask(state.works.blocked),
@@ -52,6 +58,8 @@ impl Kept {
     pub fn kernel(&self, layout: &Small) -> kernel::State<ROUTES, SEGMENTS> {
         let mut clear_for = [layout.plan().clear; kernel::MAX_CIRCUITS];
         clear_for[..CIRCUITS].copy_from_slice(&self.clear_for);
+        let mut stood = [0; kernel::MAX_POINTS];
+        stood[..POINTS].copy_from_slice(&self.stood);
         let mut restrictions = [SpeedCode::MOST; kernel::MAX_CIRCUITS];
         for (circuit, code) in restrictions.iter_mut().enumerate().take(CIRCUITS) {
             if self.restricted >> circuit & 1 == 1 {
@@ -60,6 +68,8 @@ impl Kept {
         }
         kernel::State {
             track: Track::from_parts(clear_for),
+            started: layout.plan().start,
+            points: Settling::from_parts(stood, self.last),
             routes: self.routes,
             directions: self.directions,
             works: Works { blocked: circuits(self.blocked), confirmed: circuits(self.confirmed), restrictions },

@@ -182,6 +182,8 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
             "cycle_ms": CYCLE_MS,
             "clear_cycles": plan.clear,
             "turn_cycles": plan.turn.0,
+            "start_cycles": plan.start.0,
+            "settle_cycles": plan.settle,
             "loss_cycles": plan.loss,
             "residual_cycles": plan.residual.0,
             "standstill_cycles": plan.standstill.0,
@@ -256,6 +258,7 @@ const fn phase(phase: Phase) -> &'static str {
 const fn refused(refusal: Refusal) -> &'static str {
     match refusal {
         Refusal::Unknown => "unknown",
+        Refusal::Starting => "starting",
         Refusal::AlreadyHeld => "already-held",
         Refusal::NotHeld => "not-held",
         Refusal::Conflict => "conflict",

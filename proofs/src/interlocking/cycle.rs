@@ -4,7 +4,7 @@ use super::{any_cycle, any_input, any_layout, any_state, bit};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Request, RouteState, SegmentSet, Sight,
+    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, RouteState, SegmentSet, Sight,
     State, Travel, View, grant, ready, refuse_route, shows_proceed,
 };
 
@@ -52,6 +52,27 @@ fn sight<const R: usize, const P: usize, const N: usize, const S: usize>(
     }
 }
 
+/// The positions that count as detected, point by point: not driven, and detected there for the settling time, this cycle included.
+fn firm<const R: usize, const P: usize, const N: usize, const S: usize>(
+    plan: &Plan<R, P, N, S>,
+    before: &State<R, S>,
+    (detected, drives): (Positions, Positions),
+) -> Positions {
+    let (stood, last) = before.points.parts();
+    let driven = drives.normal.bits() | drives.reverse.bits();
+    let (mut normal, mut reverse) = (0, 0);
+    for number in 0..N {
+        let is_in = |set: PointSet| set.bits() >> number & 1 == 1;
+        let stands = |set: PointSet, before: PointSet| {
+            let stood = if is_in(before) { u16::from(stood[number]) + 1 } else { 0 };
+            is_in(set) && driven >> number & 1 == 0 && stood >= u16::from(plan.settle)
+        };
+        normal |= u32::from(stands(detected.normal, last.normal)) << number;
+        reverse |= u32::from(stands(detected.reverse, last.reverse)) << number;
+    }
+    Positions { normal: PointSet::from_bits(normal), reverse: PointSet::from_bits(reverse) }
+}
+
 /// What a cycle makes of one route, against the parts that the other theorems are about.
 #[allow(clippy::struct_excessive_bools, reason = "one for each claim and cover point")]
 struct Parts {
@@ -86,11 +107,7 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let it = if cases == 1 { 0 } else { e.choose("the route that is looked at", cases) };
     let (after, output) = layout.interlock(before, input);
     let sight = sight(plan, &before, input);
-    let driven = output.drives.normal.bits() | output.drives.reverse.bits();
-    let firm = Positions {
-        normal: PointSet::from_bits(sight.detected.normal.bits() & !driven),
-        reverse: PointSet::from_bits(sight.detected.reverse.bits() & !driven),
-    };
+    let firm = firm(plan, &before, (sight.detected, output.drives));
     let view = View { occupied: sight.occupied, blocked: sight.blocked, closed: sight.closed, firm };
     let mut followed = before.routes;
     for (state, route) in followed.iter_mut().zip(&plan.routes) {
@@ -99,7 +116,9 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let (route, mine, now) = (&plan.routes[it], followed[it], after.routes[it]);
     let end = |state: RouteState| state.reserve(route, sight.occupied, ready(route, state, view));
     let is_it = |number: u8| usize::from(number) == it;
-    let asked = matches!(input.request, Some(Request::Set(asked)) if is_it(asked.number()));
+    // After a start nothing is set.
+    let starting = before.started < plan.start;
+    let asked = !starting && matches!(input.request, Some(Request::Set(asked)) if is_it(asked.number()));
     let withdrawn =
         matches!(input.request, Some(Request::Withdraw(asked)) if is_it(asked.number())) && mine.phase != Phase::Idle;
     let untouched = now == end(mine);
@@ -325,5 +344,42 @@ harness! {
         let silent = safe.permits.bits() == 0 && safe.confirmed.bits() == 0 && safe.answer.is_none();
         e.claim(Claim::Safe as u32, dark && silent && safe.table.read(epoch).is_none());
         e.cover(Cover::Any as u32, layout.plan().routes[0].length == 1);
+    }
+}
+
+harness! {
+    /// After a start nothing moves, is confirmed or turned, and nobody is let in, until the layout's time has passed: whatever is unblocked and
+    /// asked for.
+    t_ilk_1_starting(e)
+    theorem "T-ILK-1";
+    requirements ["ILK-24"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
+    cases 1;
+    claims {
+        Still: "no point is driven, no signal shows proceed and no route is held",
+        Line: "no segment has a direction, and none is permitted to the neighbour",
+        Works: "no block is confirmed",
+        Counts: "the time goes on by one cycle",
+    }
+    covers {
+        Set: "a route is refused because of the start",
+        Over: "the time passes",
+    }
+    {
+        let Some((layout, before, input)) = any_cycle::<E, 1, 2, 1, 1>(e) else { return };
+        let start = layout.plan().start.0;
+        let starting = before.started.0 < start;
+        let (after, output) = layout.interlock(before, input);
+        let driven = output.drives.normal.bits() | output.drives.reverse.bits() != 0;
+        let held = after.routes[0].phase != Phase::Idle;
+        e.claim(Claim::Still as u32, !starting || !driven && output.proceed.bits() == 0 && !held);
+        let line = after.directions.toward.bits() | after.directions.away.bits() | output.permits.bits();
+        e.claim(Claim::Line as u32, !starting || line == 0);
+        e.claim(Claim::Works as u32, !starting || output.confirmed.bits() == 0 && after.works.confirmed.bits() == 0);
+        e.claim(Claim::Counts as u32, after.started.0 == if starting { before.started.0 + 1 } else { before.started.0 });
+        let set = matches!(input.request, Some(Request::Set(_)));
+        e.cover(Cover::Set as u32, set && starting && matches!(output.answer, Some(Err(Refusal::Starting))));
+        e.cover(Cover::Over as u32, starting && after.started.0 == start);
     }
 }

@@ -19,8 +19,8 @@ mod works;
 use crate::engine::{any_byte, any_flag, any_u32};
 use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, Orders, Phase, Plan, Point, PointId, PointSet,
-    Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, SpeedCode,
+    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan, Point, PointId, PointSet,
+    Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, Settling, SpeedCode,
     State, Track, Travel, Works,
 };
 use atc_kernel::time::Ticks;
@@ -59,6 +59,7 @@ pub const ALL: &[Harness] = &[
     cycle::t_ilk_1_valid::HARNESS,
     cycle::t_ilk_1_refused::HARNESS,
     cycle::t_ilk_1_start::HARNESS,
+    cycle::t_ilk_1_starting::HARNESS,
     route::t_ilk_2::HARNESS,
     signal::t_ilk_3::HARNESS,
     signal::t_ilk_3_monotone::HARNESS,
@@ -77,6 +78,7 @@ pub const ALL: &[Harness] = &[
     works::t_ilk_8::HARNESS,
     direction::t_ilk_9::HARNESS,
     point::t_ilk_4::HARNESS,
+    point::t_ilk_4_settled::HARNESS,
     atc::t_atc_1_connect::HARNESS,
     atc::t_atc_1_apart::HARNESS,
     atc::t_atc_2::HARNESS,
@@ -168,6 +170,8 @@ fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, 
         segments,
         clear: any_byte(e, "clear (cycles)", 1..=2),
         turn: Ticks(e.word("turn time (cycles)", 1..=2)),
+        start: Ticks(e.word("time after a start (cycles)", 0..=0)),
+        settle: any_byte(e, "settling time (cycles)", 0..=0),
         loss: any_byte(e, "longest loss of shunt (cycles)", 0..=0),
         residual: Ticks(e.word("residual running (cycles)", 0..=1)),
         standstill: Ticks(e.word("standstill time (cycles)", 0..=1)),
@@ -236,9 +240,22 @@ fn any_route_state<E: Engine + ?Sized>(e: &mut E) -> RouteState {
     }
 }
 
+/// Any points: the first four have any count, and all were detected anywhere.
+fn any_settling<E: Engine + ?Sized>(e: &mut E) -> Settling {
+    let mut stood = [0; MAX_POINTS];
+    for (number, count) in stood.iter_mut().enumerate() {
+        if number < POINTS {
+            *count = any_byte(e, "a point has stood for (cycles)", 0..=0);
+        }
+    }
+    Settling::from_parts(stood, any_positions(e))
+}
+
 fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> State<R, S> {
     State {
         track: Track::INITIAL,
+        started: Ticks(e.word("started for (cycles)", 0..=0)),
+        points: any_settling(e),
         routes: core::array::from_fn(|_| any_route_state(e)),
         directions: Directions {
             toward: any_segments(e, "segments towards the station (bits)"),

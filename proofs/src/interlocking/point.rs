@@ -93,3 +93,48 @@ harness! {
         e.cover(Cover::Fails as u32, fails);
     }
 }
+
+harness! {
+    /// A point that was driven, by a route or by hand, counts as detected only once it has stood detected in one position for the settling time:
+    /// no signal shows proceed over it before. The time since is a ghost.
+    t_ilk_4_settled(e)
+    theorem "T-ILK-4";
+    requirements ["ILK-23"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 32 circuits, 2 points, no segment";
+    cases 1;
+    claims {
+        Stood: "proceed is shown only over points that have stood in position, undriven, for the settling time",
+        Kept: "the machine counts no more cycles than have passed",
+    }
+    covers {
+        Proceed: "proceed is shown over a point, with a settling time",
+        Waits: "a point in position does not count yet",
+    }
+    {
+        let Some((layout, before, input)) = any_cycle::<E, 1, 2, 2, 0>(e) else { return };
+        let number = e.word("a point that stands for all (number)", 0..=1) & 1;
+        let has = |bits: u32| bits >> number & 1 == 1;
+        // For how many cycles it has been detected where it was last, and not been driven: a ghost.
+        let stood = any_byte(e, "the point has stood for (cycles)", 0..=1);
+        let count = |stood: [u8; 32]| if number == 0 { stood[0] } else { stood[1] };
+        let (counted, last) = before.points.parts();
+        e.assume(count(counted) <= stood);
+        let (after, output) = layout.interlock(before, input);
+        let driven = has(output.drives.normal.bits() | output.drives.reverse.bits());
+        let both = has(input.detected.normal.bits() & input.detected.reverse.bits());
+        let normal = has(input.detected.normal.bits()) && !both;
+        let reverse = has(input.detected.reverse.bits()) && !both;
+        let same = normal && has(last.normal.bits()) || reverse && has(last.reverse.bits());
+        let stood = if same && !driven { stood.saturating_add(1) } else { 0 };
+        e.claim(Claim::Kept as u32, count(after.points.parts().0) <= stood);
+        let (route, state) = (&layout.plan().routes[0], after.routes[0]);
+        let (path, overlap) = (held(route, state), kept(route, state));
+        let needs = has(path.positions.points().bits() | overlap.positions.points().bits());
+        let proceed = output.proceed.bits() & 1 == 1;
+        let settled = (normal || reverse) && !driven && stood >= layout.plan().settle;
+        e.claim(Claim::Stood as u32, !(proceed && needs) || settled);
+        e.cover(Cover::Proceed as u32, proceed && needs && layout.plan().settle > 1);
+        e.cover(Cover::Waits as u32, normal && !driven && !settled);
+    }
+}

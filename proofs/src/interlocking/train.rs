@@ -10,8 +10,9 @@ use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{
     CircuitSet, Directions, Epoch, Input, Layout, MAX_CIRCUITS, Output, Phase, Plan, Rear, Request, Route, RouteState,
-    SegmentSet, SpeedCode, State, Track, Works,
+    SegmentSet, Settling, SpeedCode, State, Track, Works,
 };
+use atc_kernel::time::Ticks;
 
 /// The places of the path: what one train does to a route repeats from place to place.
 const LENGTH: usize = if cfg!(chosen) { 2 } else { 3 };
@@ -233,6 +234,8 @@ fn holds(train: &Train, ground: &Ground, state: &RouteState) -> bool {
 fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
     State {
         track: Track::INITIAL,
+        started: Ticks(u16::MAX),
+        points: Settling::INITIAL,
         routes: [any_route_state(e)],
         directions: Directions { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, withdrawn: [] },
         works: Works {

@@ -32,6 +32,13 @@ fn number(names: &[String], name: &str) -> u8 {
 impl Session {
     /// The passing loop with these lines added to its file; unblocked, all points normal, and quiet until it may be used.
     pub fn new(lines: &str) -> Self {
+        let mut session = Self::started(lines);
+        session.wait(usize::from(session.layout.plan().start.0), &[]);
+        session
+    }
+
+    /// The same, just started.
+    pub fn started(lines: &str) -> Self {
         let description = Description::from_toml("loop", &format!("{LOOP}\n{lines}\n")).expect("a layout");
         let compiled = description.compile().expect("a layout without problems");
         let layout = compiled.layout();

@@ -220,12 +220,13 @@ proptest! {
 fn the_sessions_are_lively() {
     let mut reached = Reached::default();
     let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
-    for _ in 0..120 {
+    for _ in 0..300 {
         let seeds = (dice.below(1 << 30) as u64, dice.below(1 << 30) as u64);
         session(seeds.0, seeds.1, 500, &mut reached).unwrap_or_else(|what| panic!("{what}"));
     }
     let refusals = [
         Refusal::Unknown,
+        Refusal::Starting,
         Refusal::AlreadyHeld,
         Refusal::NotHeld,
         Refusal::Conflict,
@@ -263,7 +264,7 @@ fn the_sessions_are_lively() {
         "two routes at once",
     ];
     let expected = expected.map(str::to_owned).into_iter().chain(refusals.map(|refusal| format!("{refusal:?}")));
-    println!("60,000 cycles: {:#?}", reached.0);
+    println!("150,000 cycles: {:#?}", reached.0);
     for what in expected {
         let times = reached.0.get(&what).copied().unwrap_or(0);
         assert!(times >= 1, "{what}: {times} times; reached were {:#?}", reached.0);

@@ -99,6 +99,8 @@ impl Station {
         };
         station.join(dice, &columns, &lines);
         station.sketch.lengths = (0..count).map(|_| dice.between(50, 400)).collect();
+        station.sketch.start = u16::try_from(dice.below(4)).expect("small");
+        station.sketch.settle = u8::try_from(dice.below(3)).expect("small");
         station.sketch.clear = u8::try_from(dice.between(1, 3)).expect("small");
         station.sketch.turn = dice.between(1, 5);
         station.sketch.braking = vec![0, 60, 130, 300, 500, 800, 1200, 2000];

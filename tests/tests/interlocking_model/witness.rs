@@ -87,6 +87,11 @@ pub struct Said {
 pub struct Witness {
     /// The last reports of the circuits, the latest last, as many as are needed.
     reports: Vec<Set>,
+    /// For how many cycles it has run, up to the time after a start.
+    age: u16,
+    /// The detections of the last cycle, and for how many cycles each point has been where it is.
+    seen: Vec<Need>,
+    still: Vec<u8>,
     pub routes: Vec<Held>,
     pub stretches: Vec<Stretch>,
     blocked: Set,
@@ -111,6 +116,9 @@ impl Witness {
         let all: Set = (0..sketch.lengths.len()).collect();
         Self {
             reports: Vec::new(),
+            age: 0,
+            seen: Vec::new(),
+            still: vec![0; sketch.points.len()],
             routes: sketch.routes.iter().map(Held::idle).collect(),
             stretches: sketch.segments.iter().map(|_| Stretch { travel: None, withdrawn: 0 }).collect(),
             blocked: all,
@@ -189,10 +197,12 @@ impl Witness {
             stretch.withdrawn = if permitted { 0 } else { (stretch.withdrawn + 1).min(sketch.turn) };
         }
         let drives = self.drives(sketch, alone, &occupied, &seen);
-        let firm: Vec<Need> =
-            seen.iter().filter(|need| !drives.iter().any(|(driven, _)| *driven == need.0)).copied().collect();
+        let firm = self.settled(sketch, seen, &drives);
         self.reserve(sketch, &occupied, &firm);
-        self.confirm(sketch, &occupied);
+        if self.age >= sketch.start {
+            self.confirm(sketch, &occupied);
+        }
+        self.age = (self.age + 1).min(sketch.start);
         let proceed: Set = (0..self.routes.len())
             .filter(|route| self.routes[*route].stage == Stage::Set && self.sound(sketch, *route, &occupied, &firm))
             .collect();
@@ -207,6 +217,18 @@ impl Witness {
             proceed,
             answer,
         }
+    }
+
+    /// The points that have been where they are, undriven, for as many cycles as the plan asks for.
+    fn settled(&mut self, sketch: &Sketch, seen: Vec<Need>, drives: &[Need]) -> Vec<Need> {
+        let undriven = |need: &&Need| !drives.iter().any(|(driven, _)| *driven == need.0);
+        for (point, still) in self.still.iter_mut().enumerate() {
+            let stays = seen.iter().filter(undriven).any(|need| need.0 == point && self.seen.contains(need));
+            *still = if stays { (*still + 1).min(sketch.settle) } else { 0 };
+        }
+        let firm = seen.iter().filter(undriven).filter(|need| self.still[need.0] >= sketch.settle).copied().collect();
+        self.seen = if sketch.settle > 0 { seen } else { Vec::new() };
+        firm
     }
 
     /// Points that provisional routes and an individual command want elsewhere than they are; not under a train, not locked.

@@ -29,7 +29,7 @@ impl Interlocked {
         let all = asked.path.or(asked.overlap);
         let detected = input.detected.without(input.detected.normal.and(input.detected.reverse));
         match refusal {
-            Refusal::Unknown | Refusal::AlreadyHeld | Refusal::NotHeld => match request {
+            Refusal::Unknown | Refusal::Starting | Refusal::AlreadyHeld | Refusal::NotHeld => match request {
                 Request::Set(route) | Request::Withdraw(route) => {
                     self.names.routes.get(usize::from(route.number())).cloned().into_iter().collect()
                 }

@@ -26,6 +26,12 @@ pub struct PlanConfig {
     pub clear_cycles: u8,
     /// For how many cycles the neighbour's permission must have been withdrawn before a segment turns.
     pub turn_cycles: u16,
+    /// For how many cycles after a start nothing moves, is confirmed or turned.
+    #[serde(default)]
+    pub start_cycles: u16,
+    /// For how many cycles in a row a point must be detected, undriven, before it counts as detected.
+    #[serde(default)]
+    pub settle_cycles: u8,
     /// For how many cycles in a row an occupied circuit may at most not be reported: less than `clear_cycles`.
     #[serde(default)]
     pub loss_cycles: u8,
@@ -167,6 +173,8 @@ impl PlanConfig {
         fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
         plan.clear = self.clear_cycles;
         plan.turn = Ticks(self.turn_cycles);
+        plan.start = Ticks(self.start_cycles);
+        plan.settle = self.settle_cycles;
         plan.loss = self.loss_cycles;
         plan.residual = Ticks(self.residual_cycles);
         plan.standstill = Ticks(self.standstill_cycles);

@@ -80,6 +80,7 @@ word! {
     /// Why a request is refused.
     Reason(Refusal), "RefusalReason", "reason",
     Unknown => "unknown", "There is no such route, point or segment.";
+    Starting => "starting", "The device has just started: a train may still count on what was before.";
     AlreadyHeld => "already-held", "The route to be set is held already.";
     NotHeld => "not-held", "The route to be withdrawn is not held.";
     Conflict => "conflict", "A route that is declared to conflict is held.";

@@ -14,6 +14,9 @@ impl Witness {
         seen: &[Need],
         consent: &Set,
     ) -> Vec<Refusal> {
+        if self.age < sketch.start && !matches!(ask, Ask::Withdraw(_)) {
+            return vec![Refusal::Starting];
+        }
         let known = match ask {
             Ask::Set(route) | Ask::Withdraw(route) => route < self.routes.len(),
             Ask::Drive(point, _) => point < sketch.points.len(),
