@@ -75,5 +75,6 @@ pub fn loop_station() -> Sketch {
         braking: vec![0, 100, 300, 700],
         clear: 1,
         turn: 3,
+        ..Sketch::default()
     }
 }

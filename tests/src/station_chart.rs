@@ -10,7 +10,7 @@
 //!
 //! A column is one logic cycle. `#` is on, `.` is off or none. What is read, each row left out if nothing of it happens: `occ`,
 //! `point` (normal without the row), `set`, `withdraw`, `drive` (`n`, `r`), `turn` (`t` toward, `a` away), `block`, `unblock`, and
-//! `consent`. What must be put out, as far as rows of it are drawn:
+//! `consent` (without it the neighbours always permit). What must be put out, as far as rows of it are drawn:
 //!
 //! * `answer`: `+` accepted; refused: `h` held already, `n` not held, `c` conflict, `p` path held, `v` overlap held, `l` point locked,
 //!   `o` occupied, `b` blocked, `u` point under a train, `d` direction, `w` waiting.
@@ -97,13 +97,14 @@ impl<'a> Chart<'a> {
             unblock: self.circuits("unblock", cycle),
             ..Orders::default()
         };
-        let consent: Vec<_> = self.at("consent", cycle).iter().map(|sign| sign.0).collect();
+        let drawn: Vec<_> = self.at("consent", cycle).iter().map(|sign| sign.0).collect();
+        let silent = self.rows.iter().all(|row| row.0 != "consent");
         Input {
             occupied: self.circuits("occ", cycle),
             detected: sketch::positions(&detected),
             request: self.request(cycle),
             orders,
-            consent: sketch::segments(&consent),
+            consent: if silent { SegmentSet::ALL } else { sketch::segments(&drawn) },
         }
     }
 

@@ -52,6 +52,7 @@ fn station() -> Small {
         braking: vec![0, 50, 150],
         clear: 2,
         turn: 3,
+        ..Sketch::default()
     };
     sketch.plan()
 }

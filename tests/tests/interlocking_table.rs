@@ -31,6 +31,7 @@ fn station() -> Layout<2, 2, 1, 2> {
         braking: vec![0, 100, 300, 700],
         clear: 1,
         turn: 1,
+        ..Sketch::default()
     };
     Layout::new(sketch.plan()).expect("a station")
 }

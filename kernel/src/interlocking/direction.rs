@@ -21,17 +21,24 @@ pub struct Directions<const S: usize> {
     pub toward: SegmentSet,
     /// The segments where this station sends.
     pub away: SegmentSet,
+    /// The segments whose last direction was towards this station: a train that is in them was sent by the neighbour.
+    pub came: SegmentSet,
     /// For how many cycles this station has not permitted the neighbour to send, up to the layout's turn time.
     pub withdrawn: [Ticks; S],
 }
 
 impl<const S: usize> Directions<S> {
     /// No segment has a direction, and nobody knows what the neighbour was told.
-    pub const INITIAL: Self = Self { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, withdrawn: [Ticks(0); S] };
+    pub const INITIAL: Self = Self {
+        toward: SegmentSet::EMPTY,
+        away: SegmentSet::EMPTY,
+        came: SegmentSet::EMPTY,
+        withdrawn: [Ticks(0); S],
+    };
 
     /// Whether no segment has two directions, and time has been counted exactly where permission is withdrawn.
     pub fn is_valid(&self, turn: Ticks) -> bool {
-        let mut valid = !self.toward.meets(self.away);
+        let mut valid = !self.came.meets(self.away) && self.came.contains(self.toward);
         for (number, time) in self.withdrawn.iter().enumerate() {
             let segment = SegmentSet::nth(number);
             valid &= *time <= turn;
@@ -94,6 +101,10 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
     (occupied, closed, needs, consent): (CircuitSet, SegmentSet, Needs, SegmentSet),
 ) -> (Directions<S>, Option<Turned>) {
     let mut answer = None;
+    let mut entered = SegmentSet::EMPTY;
+    for route in &layout.plan().routes {
+        entered = entered.or(route.from.only_if(route.exists()));
+    }
     for (number, segment) in layout.plan().segments.iter().enumerate() {
         let it = SegmentSet::nth(number);
         let asked = match command {
@@ -109,10 +120,12 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
             //= spec/interlocking.md#ilk-20-blocked-line
             //# A segment with a blocked circuit MUST NOT be given a direction.
             Some(Travel::Toward) if closed.meets(it) => answer = Some(Turned::Blocked),
-            // A train that the neighbour has sent may be in it, and must be let in.
-            Some(Travel::Toward) if !needs.away.meets(it) && (free || !directions.away.meets(it)) => {
+            //= spec/interlocking.md#ilk-25-occupied-line
+            //# A segment that is occupied, or whose throat is, MUST be given the direction towards the station only if that was its last, and no segment into the station that no route leads from.
+            Some(Travel::Toward) if entered.meets(it) && !needs.away.meets(it) && (free || directions.came.meets(it)) => {
                 directions.away = directions.away.without(it);
                 directions.toward = directions.toward.or(it);
+                directions.came = directions.came.or(it);
                 answer = Some(Turned::Done);
             }
             Some(Travel::Away) if directions.away.meets(it) => answer = Some(Turned::Done),
@@ -122,6 +135,7 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
                 directions.toward = directions.toward.without(it);
                 let turns = time >= layout.plan().turn && consent.meets(it) && !closed.meets(it);
                 directions.away = directions.away.or(it.only_if(turns));
+                directions.came = directions.came.without(it.only_if(turns));
                 answer = Some(if turns { Turned::Done } else { Turned::Waiting });
             }
             Some(_) => answer = Some(Turned::InTheWay),

@@ -55,7 +55,7 @@ pub struct Input {
     pub request: Option<Request>,
     /// What staff command.
     pub orders: Orders,
-    /// The segments where the neighbour permits this station to send trains.
+    /// The segments where the neighbour permits this station to send trains, by a telegram that is no older than its life.
     pub consent: SegmentSet,
 }
 
@@ -106,7 +106,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
             *held = held.follow(route, occupied);
         }
         let under = point::meeting(self, occupied);
-        let directions = (state.directions.toward, state.directions.away);
+        //= spec/interlocking.md#ilk-26-outward
+        //# A route to a segment MUST be set and show proceed, and trains be granted the segment outward, only in cycles in which the neighbour permits this station to send.
+        let directions = (state.directions.toward, state.directions.away.and(input.consent));
         let closed = direction::closed(self, state.works.blocked);
         let sight = Sight { occupied, blocked: state.works.blocked, closed, detected, under, directions };
         //= spec/interlocking.md#ilk-24-start
@@ -125,7 +127,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let drives = demand.drives(detected, under);
         let (points, firm) = state.points.step(N, plan.settle, detected, drives);
         state.points = points;
-        let view = View { occupied, blocked: state.works.blocked, closed, firm };
+        let unsent = SegmentSet::ALL.without(input.consent);
+        let view = View { occupied, blocked: state.works.blocked, closed: closed.or(unsent), firm };
         let needs = Needs::of(self, &state.routes);
         let mut circuits = direction::open_line(self, &state.directions, (occupied, needs));
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
@@ -142,7 +145,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
             blocked: state.works.blocked,
             grants,
             toward: state.directions.toward,
-            away: state.directions.away,
+            away: state.directions.away.and(input.consent),
             restrictions: state.works.restrictions,
         };
         let table = Table::write(state.epoch, contents);

@@ -11,7 +11,7 @@ pub struct View {
     pub occupied: CircuitSet,
     /// The circuits that are blocked.
     pub blocked: CircuitSet,
-    /// The segments with a blocked circuit.
+    /// The segments into which nobody may be sent: one with a blocked circuit, or where the neighbour does not permit it.
     pub closed: SegmentSet,
     /// The positions that count as detected: none of a point that is driven, or has not stood since.
     pub firm: Positions,

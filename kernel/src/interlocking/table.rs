@@ -27,7 +27,7 @@ pub struct Contents<const R: usize> {
     pub grants: [Grant; R],
     /// The segments towards the station.
     pub toward: SegmentSet,
-    /// The segments away from the station.
+    /// The segments away from the station, as far as the neighbour permits this one to send.
     pub away: SegmentSet,
     /// The highest speed code on each circuit by temporary restriction.
     pub restrictions: [SpeedCode; MAX_CIRCUITS],

@@ -48,7 +48,10 @@ fn sight<const R: usize, const P: usize, const N: usize, const S: usize>(
         closed: SegmentSet::from_bits(closed),
         detected: plausible(input.detected),
         under: PointSet::from_bits(under),
-        directions: (before.directions.toward, before.directions.away),
+        directions: (
+            before.directions.toward,
+            SegmentSet::from_bits(before.directions.away.bits() & input.consent.bits()),
+        ),
     }
 }
 
@@ -108,7 +111,9 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let (after, output) = layout.interlock(before, input);
     let sight = sight(plan, &before, input);
     let firm = firm(plan, &before, (sight.detected, output.drives));
-    let view = View { occupied: sight.occupied, blocked: sight.blocked, closed: sight.closed, firm };
+    // Into a segment that is closed, or where the neighbour does not permit it, nobody is sent.
+    let unsent = SegmentSet::from_bits(sight.closed.bits() | !input.consent.bits());
+    let view = View { occupied: sight.occupied, blocked: sight.blocked, closed: unsent, firm };
     let mut followed = before.routes;
     for (state, route) in followed.iter_mut().zip(&plan.routes) {
         *state = state.follow(route, sight.occupied);

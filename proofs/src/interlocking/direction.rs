@@ -27,19 +27,19 @@ harness! {
     /// station only with the neighbour's permission, once this station's has been withdrawn for the turn time.
     t_ilk_9(e)
     theorem "T-ILK-9";
-    requirements ["ILK-17", "ILK-18", "ILK-19", "ILK-20"];
+    requirements ["ILK-17", "ILK-18", "ILK-19", "ILK-20", "ILK-25", "ILK-26"];
     assumptions [];
     bound BOUND;
     cases 2;
     claims {
-        One: "a segment has at most one direction",
+        One: "a segment has at most one direction, and the one away only while the neighbour permits it",
         Needed: "a held route from the segment has the direction towards the station until its first place is released, one to the segment has the other",
         Command: "a direction is given only by the command for it, and taken only by the command for the other",
         Clear: "a direction is taken only while segment and throat are clear, and no held route needs it",
-        Consent: "trains are sent out only after the neighbour has permitted it and has not been permitted itself for the turn time",
+        Consent: "trains are sent out only after the neighbour has permitted it and has not been permitted itself for the turn time, and no signal shows proceed to the segment without its permission",
         Blocked: "a segment with a blocked circuit is given no direction",
-        Permits: "the neighbour is permitted to send only towards the station and while no circuit of the segment is blocked",
-        Counted: "the time since the neighbour was last permitted is counted up to the turn time",
+        Permits: "the neighbour is permitted to send only towards the station and while no circuit of the segment is blocked, and the time since is counted up to the turn time",
+        Given: "an occupied segment is given the direction towards the station only if the neighbour has sent since it had another, and none that no route leads from",
     }
     covers {
         Toward: "a segment is turned towards the station",
@@ -69,7 +69,8 @@ harness! {
         let (was_toward, was_away) = (before.directions.toward.bits() >> it & 1 == 1, before.directions.away.bits() >> it & 1 == 1);
         let (toward, away) = (after.directions.toward.bits() >> it & 1 == 1, after.directions.away.bits() >> it & 1 == 1);
         let (_, _, contents) = output.table.parts();
-        let told = (contents.toward.bits() >> it & 1 == 1) == toward && (contents.away.bits() >> it & 1 == 1) == away;
+        let sends = away && input.consent.bits() >> it & 1 == 1;
+        let told = (contents.toward.bits() >> it & 1 == 1) == toward && (contents.away.bits() >> it & 1 == 1) == sends;
         e.claim(Claim::One as u32, !(toward && away) && told);
         let (need_toward, need_away) = needs(&layout, &after, it);
         e.claim(Claim::Needed as u32, (!need_toward || toward) && (!need_away || away));
@@ -89,14 +90,25 @@ harness! {
         let clear = input.occupied.bits() & (line | segment.throat.bits()) == 0;
         let taken = from_toward || from_away;
         e.claim(Claim::Clear as u32, !taken || clear && !(from_toward && need_toward) && !(from_away && need_away));
+        let mut entered = false;
+        let mut out = false;
+        for number in 0..ROUTES {
+            let route = &layout.plan().routes[number];
+            entered |= route.length > 0 && route.from.bits() >> it & 1 == 1;
+            out |= route.to.bits() >> it & 1 == 1 && output.proceed.bits() >> number & 1 == 1;
+        }
+        // A ghost: the neighbour has sent since the segment was last seen clear, or turned away.
+        let was_sent = before.directions.came.bits() >> it & 1 == 1;
+        e.claim(Claim::Given as u32, !to_toward || entered && (clear || was_sent));
         let consent = input.consent.bits() >> it & 1 == 1;
-        e.claim(Claim::Consent as u32, !to_away || consent && since >= limit);
+        e.claim(Claim::Consent as u32, (!to_away || consent && since >= limit) && (!out || consent));
         let closed = after.works.blocked.bits() & line != 0;
         e.claim(Claim::Blocked as u32, !(to_toward || to_away) || !closed);
         let permitted = output.permits.bits() >> it & 1 == 1;
-        e.claim(Claim::Permits as u32, !permitted || toward && !closed);
+        let permits = !permitted || toward && !closed;
         let now = if toward { 0 } else { since + 1 };
-        e.claim(Claim::Counted as u32, u32::from(after.directions.withdrawn[it].0) == if now < limit { now } else { limit });
+        let counted = u32::from(after.directions.withdrawn[it].0) == if now < limit { now } else { limit };
+        e.claim(Claim::Permits as u32, permits && counted);
         e.cover(Cover::Toward as u32, to_toward && was_away);
         e.cover(Cover::Away as u32, to_away);
         e.cover(Cover::Waits as u32, from_toward && !away);

@@ -260,6 +260,7 @@ fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> S
         directions: Directions {
             toward: any_segments(e, "segments towards the station (bits)"),
             away: any_segments(e, "segments away from the station (bits)"),
+            came: any_segments(e, "segments that were last towards the station (bits)"),
             withdrawn: core::array::from_fn(|_| Ticks(e.word("permission withdrawn for (cycles)", 0..=2))),
         },
         works: Works {

@@ -237,7 +237,7 @@ fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
         started: Ticks(u16::MAX),
         points: Settling::INITIAL,
         routes: [any_route_state(e)],
-        directions: Directions { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, withdrawn: [] },
+        directions: Directions { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, came: SegmentSet::EMPTY, withdrawn: [] },
         works: Works {
             blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: CircuitSet::EMPTY,

@@ -39,7 +39,19 @@ impl Session {
 
     /// The same, just started.
     pub fn started(lines: &str) -> Self {
-        let description = Description::from_toml("loop", &format!("{LOOP}\n{lines}\n")).expect("a layout");
+        Self::of(&format!("{LOOP}\n{lines}\n"))
+    }
+
+    /// The same without these routes.
+    pub fn without(routes: &[&str], lines: &str) -> Self {
+        let kept = LOOP.split("[[route]]").filter(|part| !routes.iter().any(|name| part.contains(&format!("name = \"{name}\""))));
+        let mut session = Self::of(&format!("{}\n{lines}\n", kept.collect::<Vec<_>>().join("[[route]]")));
+        session.wait(usize::from(session.layout.plan().start.0), &[]);
+        session
+    }
+
+    fn of(text: &str) -> Self {
+        let description = Description::from_toml("loop", text).expect("a layout");
         let compiled = description.compile().expect("a layout without problems");
         let layout = compiled.layout();
         let points = |point: u8| Positions::of(PointId::new(point).expect("a point"), Position::Normal);

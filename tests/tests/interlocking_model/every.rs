@@ -36,6 +36,7 @@ fn station() -> Sketch {
         braking: vec![0, 100],
         clear: 1,
         turn: 1,
+        ..Sketch::default()
     }
 }
 

@@ -103,7 +103,8 @@ fn compare<const R: usize, const P: usize, const N: usize, const S: usize>(
             (false, away) => away.then_some(Travel::Away),
         };
         let time = state.directions.withdrawn[number].0;
-        same("segment", number, &(travel, time), &(stretch.travel, stretch.withdrawn))?;
+        let came = state.directions.came.bits() >> number & 1 == 1;
+        same("segment", number, &(travel, time, came), &(stretch.travel, stretch.withdrawn, stretch.came))?;
     }
     same("proceed", 0, &numbers(output.proceed.bits(), 64), &said.proceed)?;
     same("permits", 0, &numbers(output.permits.bits().into(), 8), &said.permits)?;

@@ -20,6 +20,8 @@ pub struct Stretch {
     pub travel: Option<Travel>,
     /// For how many cycles the neighbour has not been permitted to send; more than the turn time is the turn time.
     pub withdrawn: u16,
+    /// Whether its last direction was towards the station.
+    pub came: bool,
 }
 
 /// What is asked for.
@@ -87,6 +89,8 @@ pub struct Said {
 pub struct Witness {
     /// The last reports of the circuits, the latest last, as many as are needed.
     reports: Vec<Set>,
+    /// In this cycle, where the neighbour permits to send.
+    sends: Set,
     /// For how many cycles it has run, up to the time after a start.
     age: u16,
     /// The detections of the last cycle, and for how many cycles each point has been where it is.
@@ -116,11 +120,12 @@ impl Witness {
         let all: Set = (0..sketch.lengths.len()).collect();
         Self {
             reports: Vec::new(),
+            sends: Set::new(),
             age: 0,
             seen: Vec::new(),
             still: vec![0; sketch.points.len()],
             routes: sketch.routes.iter().map(Held::idle).collect(),
-            stretches: sketch.segments.iter().map(|_| Stretch { travel: None, withdrawn: 0 }).collect(),
+            stretches: sketch.segments.iter().map(|_| Stretch { travel: None, withdrawn: 0, came: false }).collect(),
             blocked: all,
             confirmed: Set::new(),
             limits: vec![0; sketch.lengths.len()],
@@ -157,6 +162,7 @@ impl Witness {
     pub fn cycle(&mut self, sketch: &Sketch, read: &Read) -> Said {
         let occupied = self.track(sketch, &read.occupied);
         self.obey(&read.commands);
+        self.sends.clone_from(&read.consent);
         for (held, way) in self.routes.iter_mut().zip(&sketch.routes) {
             held.follow(way, &occupied);
         }
@@ -186,7 +192,10 @@ impl Witness {
                     }
                     Ask::Withdraw(route) => self.routes[route].withdraw(&sketch.routes[route], &occupied),
                     Ask::Drive(point, position) => alone = Some((point, position)),
-                    Ask::Turn(segment, travel) => self.stretches[segment].travel = Some(travel),
+                    Ask::Turn(segment, travel) => {
+                        self.stretches[segment].travel = Some(travel);
+                        self.stretches[segment].came = travel == Travel::Toward;
+                    }
                 }
             }
             reasons.dedup();
@@ -206,13 +215,15 @@ impl Witness {
         let proceed: Set = (0..self.routes.len())
             .filter(|route| self.routes[*route].stage == Stage::Set && self.sound(sketch, *route, &occupied, &firm))
             .collect();
+        let telegrams = self.telegrams(sketch, &occupied, &proceed, &firm);
+        self.sends.clear();
         let permitted = |stretch: &Stretch| stretch.travel == Some(Travel::Toward);
         Said {
             permits: (0..self.stretches.len())
                 .filter(|segment| permitted(&self.stretches[*segment]) && !self.closed(sketch, *segment))
                 .collect(),
             confirmed: self.confirmed.clone(),
-            telegrams: self.telegrams(sketch, &occupied, &proceed, &firm),
+            telegrams,
             drives: drives.into_iter().map(|(point, position)| (point, position == Position::Normal)).collect(),
             proceed,
             answer,
@@ -255,7 +266,7 @@ impl Witness {
         held.needs(way).iter().all(|need| firm.contains(need))
             && !meets(&circuits, occupied)
             && !meets(&circuits, &self.blocked)
-            && way.to.is_none_or(|segment| !self.closed(sketch, segment))
+            && way.to.is_none_or(|segment| !self.closed(sketch, segment) && self.sends.contains(&segment))
     }
 
     /// Whether a circuit of a segment is blocked.

@@ -54,6 +54,7 @@ impl Witness {
         let line = &sketch.segments[segment];
         let order: Vec<usize> = match self.stretches[segment].travel {
             None => return Vec::new(),
+            Some(Travel::Away) if !self.sends.contains(&segment) => return Vec::new(),
             Some(Travel::Toward) => line.circuits.iter().rev().copied().collect(),
             Some(Travel::Away) => line.throat.iter().chain(&line.circuits).copied().collect(),
         };

@@ -59,6 +59,7 @@ impl Witness {
             (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),
             (way.to.is_some_and(|segment| self.closed(sketch, segment)), Refusal::Blocked),
             (!has(way.from, Travel::Toward) || !has(way.to, Travel::Away), Refusal::Direction),
+            (way.to.is_some_and(|segment| !self.sends.contains(&segment)), Refusal::Direction),
             (needs.iter().any(stuck), Refusal::PointUnderTrain),
         ]));
         reasons
@@ -95,9 +96,10 @@ impl Witness {
         });
         let line = &sketch.segments[segment];
         let taken = meets(&line.circuits, occupied) || line.throat.is_some_and(|throat| occupied.contains(&throat));
-        // A train on the line goes by the direction away if that is what the segment has; otherwise it is let in.
-        let loses = travel == Travel::Away || stretch.travel == Some(Travel::Away);
-        let in_the_way = needs_other || taken && loses;
+        // A train on the line that the neighbour sent is let in; of any other nobody knows where it goes.
+        let loses = travel == Travel::Away || !stretch.came;
+        let no_way_in = travel == Travel::Toward && sketch.routes.iter().all(|way| way.from != Some(segment));
+        let in_the_way = needs_other || taken && loses || no_way_in;
         let early = stretch.withdrawn < sketch.turn || stretch.travel == Some(Travel::Toward);
         let blocked = self.closed(sketch, segment);
         match travel {
