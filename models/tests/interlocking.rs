@@ -4,7 +4,9 @@ mod common;
 mod meeting;
 
 use atc_kernel::Machine;
-use atc_kernel::interlocking::{CircuitId, CircuitSet, Input, Layout, Positions, Rule, State, Travel, movement};
+use atc_kernel::interlocking::{
+    CircuitId, CircuitSet, Input, Layout, Positions, Request, RouteId, Rule, State, Travel, movement,
+};
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
 use atc_models::interlocking::ground::{Ahead, Blade, Heading};
@@ -15,7 +17,7 @@ use atc_models::interlocking::yard::{self, Yard};
 use atc_models::interlocking::{Purpose, Sight};
 use atc_models::{Expectation, Outcome, Subject, Verdict, catalogue, check};
 use common::outcome;
-use meeting::{dispatch, meeting, turn};
+use meeting::{meeting, turn};
 use std::collections::{BTreeSet, HashSet};
 use std::sync::LazyLock;
 
@@ -66,7 +68,7 @@ fn a_train_that_is_lost_between_two_circuits_is_safe_and_may_be_stranded() {
         unheard: 1,
         unheard_in: 1 << rest::THROAT | 1 << rest::FIRST,
         before: vec![turn(0, Travel::Toward)],
-        requests: dispatch(&[0]),
+        requests: vec![Request::Set(RouteId::ZERO)],
         ..Environment::usual(vec![train])
     };
     let failed = |clear| {

@@ -120,12 +120,12 @@ fn layouts() -> Vec<Entry> {
             about(
                 "interlocking-short-stay",
                 "An overlap that is given up while the train may still slide: the point in it moves under the train.",
-                "the same; a train slides by one circuit in the cycle after it has arrived; the stay time is one cycle",
+                "the same; a train slides by one circuit within four cycles after it has arrived; the stay time is one cycle",
                 &["ILK-14"],
                 NO_OVERLAP,
             ),
             sliding(Overlaps::Throat, 1),
-            Environment { slides_for: 1, ..following(2) },
+            Environment { slides_for: 4, ..following(2) },
             DERAILMENT(&["overlap-covers-sliding"]),
         ),
     ]
