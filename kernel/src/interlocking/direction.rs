@@ -29,12 +29,8 @@ pub struct Directions<const S: usize> {
 
 impl<const S: usize> Directions<S> {
     /// No segment has a direction, and nobody knows what the neighbour was told.
-    pub const INITIAL: Self = Self {
-        toward: SegmentSet::EMPTY,
-        away: SegmentSet::EMPTY,
-        came: SegmentSet::EMPTY,
-        withdrawn: [Ticks(0); S],
-    };
+    pub const INITIAL: Self =
+        Self { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, came: SegmentSet::EMPTY, withdrawn: [Ticks(0); S] };
 
     /// Whether no segment has two directions, and time has been counted exactly where permission is withdrawn.
     pub fn is_valid(&self, turn: Ticks) -> bool {
@@ -122,7 +118,9 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
             Some(Travel::Toward) if closed.meets(it) => answer = Some(Turned::Blocked),
             //= spec/interlocking.md#ilk-25-occupied-line
             //# A segment that is occupied, or whose throat is, MUST be given the direction towards the station only if that was its last, and no segment into the station that no route leads from.
-            Some(Travel::Toward) if entered.meets(it) && !needs.away.meets(it) && (free || directions.came.meets(it)) => {
+            Some(Travel::Toward)
+                if entered.meets(it) && !needs.away.meets(it) && (free || directions.came.meets(it)) =>
+            {
                 directions.away = directions.away.without(it);
                 directions.toward = directions.toward.or(it);
                 directions.came = directions.came.or(it);

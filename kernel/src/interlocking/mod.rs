@@ -26,7 +26,9 @@ mod works;
 pub use atc::{MAX_LINKS, Movement, begins, connect, movement, telegram};
 pub use check::{Broken, Place, Rule};
 pub use direction::{Directions, Needs, Travel};
-pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station};
+pub use layout::{
+    Element, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station,
+};
 pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
 pub use route::{Phase, Rear, RouteState};

@@ -50,7 +50,13 @@ impl Settling {
     /// One cycle of `points` points; the answer is the positions that count as detected.
     #[inline]
     #[must_use]
-    pub(super) fn step(mut self, points: usize, settle: u8, detected: Positions, drives: Positions) -> (Self, Positions) {
+    pub(super) fn step(
+        mut self,
+        points: usize,
+        settle: u8,
+        detected: Positions,
+        drives: Positions,
+    ) -> (Self, Positions) {
         //= spec/interlocking.md#ilk-23-settling
         //# A point MUST count as detected only while it is not driven and has been detected in one position for the layout's number of cycles in a row since it was driven last, by a route or by hand.
         let undriven = detected.without(drives.points());

@@ -30,7 +30,8 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     let longest = model.routes.iter().map(|route| route.release).max().unwrap_or_default().max(model.values.turn);
     if model.values.start < longest && times.start_protected.is_none() {
         let (start, longest) = (u32::from(model.values.start.0) * cycle, u32::from(longest.0) * cycle);
-        let what = format!("after a start nothing moves for {start} ms, but a train may count on a route for {longest} ms");
+        let what =
+            format!("after a start nothing moves for {start} ms, but a train may count on a route for {longest} ms");
         let right = format!("start_ms must be at least {longest}, or start_protected say why every train stands");
         problems.push(Problem::new(Rule::StartTooShort, &times.start_ms.span, what, right));
     }

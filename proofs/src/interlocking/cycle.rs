@@ -4,8 +4,8 @@ use super::{any_cycle, any_input, any_layout, any_state, bit};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, RouteState, SegmentSet, Sight,
-    State, Travel, View, grant, ready, refuse_route, shows_proceed,
+    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, RouteState,
+    SegmentSet, Sight, State, Travel, View, grant, ready, refuse_route, shows_proceed,
 };
 
 /// The places of a path for locality; 2 unless the environment variable `ATC_LOCAL` says otherwise.

@@ -19,9 +19,9 @@ mod works;
 use crate::engine::{any_byte, any_flag, any_u32};
 use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan, Point, PointId, PointSet,
-    Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId, SegmentSet, Settling, SpeedCode,
-    State, Track, Travel, Works,
+    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan, Point,
+    PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId,
+    SegmentSet, Settling, SpeedCode, State, Track, Travel, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -234,9 +234,7 @@ fn any_route_state<E: Engine + ?Sized>(e: &mut E) -> RouteState {
         Phase::Failed => RouteState { phase, ..RouteState::RESERVED },
         Phase::Set => RouteState { phase, proved: true, rear, ..RouteState::RESERVED },
         Phase::Releasing if never_set => RouteState { phase, time, ..RouteState::RESERVED },
-        Phase::InUse | Phase::Releasing => {
-            RouteState { phase, tail, head, overlap, proved: true, time, rear, stood }
-        }
+        Phase::InUse | Phase::Releasing => RouteState { phase, tail, head, overlap, proved: true, time, rear, stood },
     }
 }
 

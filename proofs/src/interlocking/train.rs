@@ -121,7 +121,12 @@ impl Train {
         let ordered = self.tail <= self.front && self.front <= ground.over + 1 && (self.late == 0 || self.front > 0);
         let sliding = !self.slid || self.front >= ground.over && self.tail <= ground.over && !ground.overlap.is_empty();
         let inside = !self.is_live() || self.front <= ENTRY;
-        ordered && sliding && inside && self.late <= ground.loss && self.run <= ground.residual && self.moving <= ground.standstill
+        ordered
+            && sliding
+            && inside
+            && self.late <= ground.loss
+            && self.run <= ground.residual
+            && self.moving <= ground.standstill
     }
 
     /// Whether it is reported where it must be.
@@ -237,7 +242,12 @@ fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
         started: Ticks(u16::MAX),
         points: Settling::INITIAL,
         routes: [any_route_state(e)],
-        directions: Directions { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, came: SegmentSet::EMPTY, withdrawn: [] },
+        directions: Directions {
+            toward: SegmentSet::EMPTY,
+            away: SegmentSet::EMPTY,
+            came: SegmentSet::EMPTY,
+            withdrawn: [],
+        },
         works: Works {
             blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: CircuitSet::EMPTY,

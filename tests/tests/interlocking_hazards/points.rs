@@ -9,7 +9,8 @@ use crate::session::Session;
 fn a_point_that_leaves_after_an_individual_command_had_no_route_over_it() {
     for settle in 1..4_usize {
         for leaves in 0..=settle {
-            let mut session = Session::new(&format!("[times]\ncycle_ms = 1000\nthrow_ms = 5000\nsettle_ms = {settle}000"));
+            let mut session =
+                Session::new(&format!("[times]\ncycle_ms = 1000\nthrow_ms = 5000\nsettle_ms = {settle}000"));
             session.wait(9, &[]);
             let toward = session.turn("West", Travel::Toward);
             assert_eq!(session.ask(toward, &[]), Ok(()));

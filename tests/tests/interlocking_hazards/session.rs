@@ -1,10 +1,10 @@
 //! A device of the passing loop, stepped by names.
 
+use atc_kernel::Machine;
 use atc_kernel::interlocking::{
     CircuitSet, Input, Movement, Orders, Output, Phase, PointId, Position, Positions, Refusal, Request, RouteId,
     SegmentId, SegmentSet, State, Station, Travel,
 };
-use atc_kernel::Machine;
 use atc_layout::{Description, Names};
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
@@ -44,7 +44,9 @@ impl Session {
 
     /// The same without these routes.
     pub fn without(routes: &[&str], lines: &str) -> Self {
-        let kept = LOOP.split("[[route]]").filter(|part| !routes.iter().any(|name| part.contains(&format!("name = \"{name}\""))));
+        let kept = LOOP
+            .split("[[route]]")
+            .filter(|part| !routes.iter().any(|name| part.contains(&format!("name = \"{name}\""))));
         let mut session = Self::of(&format!("{}\n{lines}\n", kept.collect::<Vec<_>>().join("[[route]]")));
         session.wait(usize::from(session.layout.plan().start.0), &[]);
         session
@@ -89,9 +91,9 @@ impl Session {
     }
 
     pub fn circuits(&self, names: &[&str]) -> CircuitSet {
-        names.iter().fold(CircuitSet::EMPTY, |all, name| {
-            all.or(CircuitSet::nth(number(&self.names.circuits, name).into()))
-        })
+        names
+            .iter()
+            .fold(CircuitSet::EMPTY, |all, name| all.or(CircuitSet::nth(number(&self.names.circuits, name).into())))
     }
 
     fn route(&self, name: &str) -> RouteId {

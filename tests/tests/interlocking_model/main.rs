@@ -9,8 +9,8 @@ mod witness;
 use std::collections::BTreeMap;
 
 use atc_kernel::interlocking::{
-    Input, Layout, Orders, Output, Phase, PointId, Rear, Refusal, Request, RouteId, RouteState, SegmentId, SpeedCode, State,
-    Travel,
+    Input, Layout, Orders, Output, Phase, PointId, Rear, Refusal, Request, RouteId, RouteState, SegmentId, SpeedCode,
+    State, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{Sketch, circuits, positions, segments};
