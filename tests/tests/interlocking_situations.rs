@@ -310,7 +310,7 @@ fn a_withdrawn_route_stays_locked_while_a_train_comes() {
     );
 }
 
-/// The train passed the signal: the route goes on protecting it.
+/// The train passed the signal: the route goes on protecting it, and tells it nothing.
 #[test]
 fn a_train_that_could_not_stop_keeps_its_route() {
     check(
@@ -322,10 +322,10 @@ fn a_train_that_could_not_stop_keeps_its_route() {
         occ d      ......########
         set 0      #.............
         withdraw 0 ..#...........
-        phase 0    ssrrrrruuuuuuu
+        phase 0    ssrrrrrrrrrrrr
         held c     00000000......
         held d     00000000000000
-        held f     00000000......
+        held f     0000000000....
         stop c     ..............
         ",
     );
