@@ -32,13 +32,25 @@ fn every_cover_point_is_hit_by_some_drawn_values() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-const RARE: [&str; 6] = [
+const RARE: [&str; 18] = [
     "t_acc_6::Silenced",
     "set_1::Highest",
     "t_ilk_1::Under",
     "t_ilk_7::Again",
     "t_ilk_8::Both",
     "t_atc_1_overlap::Over",
+    "t_ilk_4_settled::Proceed",
+    "t_ilk_4_settled::Waits",
+    "t_ilk_1_starting::Set",
+    "t_ilk_1_starting::Over",
+    "t_ilk_train::Entered",
+    "t_ilk_train::Late",
+    "t_ilk_train::Let",
+    "t_ilk_train_release::Behind",
+    "t_ilk_train_release::Running",
+    "t_ilk_train_release::Timed",
+    "t_ilk_train_overlap::Stands",
+    "t_ilk_train_overlap::Slid",
 ];
 
 #[test]
