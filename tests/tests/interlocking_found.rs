@@ -13,7 +13,7 @@ use atc_tests::station_chart::{Small, check};
 // ---- Routes and their trains -----------------------------------------------------------------------------------------------
 
 /// A train runs past the signal into a route whose point has never arrived: the route is no train's, neither while its release time
-/// runs nor after it, and it can be given up when the train is gone.
+/// runs nor after it, and it is released when the train is gone.
 #[test]
 fn a_route_that_was_never_set_grants_nothing_and_follows_no_train() {
     check(
@@ -26,16 +26,16 @@ fn a_route_that_was_never_set_grants_nothing_and_follows_no_train() {
         point P    nn............
         point Q    rrrrrrrrrrrrrr
         set 1      .#............
-        withdraw 1 ...#.........#
+        withdraw 1 ...#..........
         drives P   .r............
-        phase 1    .pprrrrrfffff.
+        phase 1    .pprrrrrrrrr..
         signal 1   ..............
         stop b     ..............
         stop c     ..............
         stop e     ..............
-        held c     .111111111111.
-        held e     .111111111111.
-        held f     .111111111111.
+        held c     .11111111111..
+        held e     .11111111111..
+        held f     .11111111111..
         ",
     );
 }
