@@ -59,6 +59,17 @@ pub(crate) mod cbmc {
 
     pub struct Cbmc;
 
+    impl Cbmc {
+        /// The prover, at the start of a harness.
+        #[inline(always)]
+        pub fn start() -> Self {
+            // A copy of the kernel that has mutants in it asks which of them it is to be.
+            #[cfg(mutants)]
+            atc_kernel::select();
+            Self
+        }
+    }
+
     impl Engine for Cbmc {
         #[inline(always)]
         fn word(&mut self, _: &'static str, _: RangeInclusive<u16>) -> u16 {

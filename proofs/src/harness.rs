@@ -98,7 +98,7 @@ macro_rules! harness {
                 #[cfg(engine = "cbmc")]
                 #[unsafe(no_mangle)]
                 extern "C" fn $name() {
-                    run(&mut $crate::engine::cbmc::Cbmc);
+                    run(&mut $crate::engine::cbmc::Cbmc::start());
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! From harness to C: rustc → wasm-ld → wasm2c.
 
+use crate::joins::{JOINED, no_crossing};
 use crate::loops::one_way_back;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
@@ -30,13 +31,48 @@ const LINK: [&str; 6] =
 
 const DRIVER: &str = include_str!("../../cbmc/driver.c");
 
-const LIMITS: Limits = Limits { time: Duration::from_mins(2), memory_kib: 4 << 20 };
+const LIMITS: Limits = Limits { cpu: Duration::from_mins(4), memory_kib: 4 << 20 };
 
 /// The harnesses, compiled: a static library from which one is linked at a time.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     library: PathBuf,
     folder: PathBuf,
+}
+
+/// Which kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// As its sources are.
+    AsItIs,
+    /// With mutants in it, of which one can be selected at run time.
+    WithMutants,
+}
+
+/// Copies the sources of kernel and harnesses into `sources`, and nothing else is there then.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub fn copy(root: &Path, sources: &Path) -> Result<(), String> {
+    if sources.exists() {
+        std::fs::remove_dir_all(sources).map_err(|error| format!("{}: {error}", sources.display()))?;
+    }
+    ["kernel/src", "proofs/src"].iter().try_for_each(|folder| copy_all(&root.join(folder), &sources.join(folder)))
+}
+
+fn copy_all(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
+    std::fs::create_dir_all(to).map_err(failed)?;
+    for entry in std::fs::read_dir(from).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy_all(&entry.path(), &target)?;
+        } else {
+            std::fs::copy(entry.path(), &target).map_err(failed)?;
+        }
+    }
+    Ok(())
 }
 
 /// Compiles the kernel and the harnesses `only` (all of them if none is named) whose sources are below `sources` (`kernel/src`,
@@ -50,6 +86,7 @@ pub fn compile(
     folder: &Path,
     aspects: usize,
     only: &[String],
+    mutants: Kernel,
 ) -> Result<Compiled, String> {
     fresh(folder)?;
     let kernel = folder.join("libatc_kernel.rlib");
@@ -61,6 +98,9 @@ pub fn compile(
         "--cfg=engine=\"cbmc\"".to_owned(),
         format!("--extern=atc_kernel={}", kernel.display()),
     ];
+    if mutants == Kernel::WithMutants {
+        options.push("--cfg=mutants".to_owned());
+    }
     if !only.is_empty() {
         // What only the others use is not used.
         options.extend(["--cfg=chosen", "--cap-lints=allow"].map(ToOwned::to_owned));
@@ -104,7 +144,10 @@ impl Compiled {
         ];
         tool(tools, "wasm2c", &convert, None, &folder)?;
         let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
-        write(&source, &one_way_back(&without_accessors(&text)?)?)?;
+        let original = one_way_back(&without_accessors(&text)?)?;
+        write(&folder.join("original.c"), &original)?;
+        let text = if JOINED.contains(&name) { no_crossing(&original)? } else { original };
+        write(&source, &text)?;
         write(&folder.join("driver.c"), DRIVER)?;
         Ok(folder)
     }

@@ -41,6 +41,9 @@ enum Command {
         /// Where the JSON goes [default: target/proofs/mutants.json].
         #[arg(long)]
         json: Option<PathBuf>,
+        /// Compiles each mutant alone: slow, and to check the usual way by.
+        #[arg(long)]
+        alone: bool,
         #[command(flatten)]
         run: Run,
     },
@@ -75,7 +78,7 @@ struct Run {
     /// Runs of the prover at a time [default: the cores].
     #[arg(long)]
     jobs: Option<usize>,
-    /// Seconds for each run of the prover.
+    /// Seconds of CPU time for each run of the prover.
     #[arg(long, default_value_t = 600)]
     time_limit: u64,
     /// Which solver.
@@ -124,7 +127,9 @@ fn run(command: Command) -> Result<bool, String> {
             save(&json.unwrap_or_else(|| default("native.json")), &result)?;
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
         }
-        Command::Mutants { names, json, run } => try_mutants(&names, json, &run.options()),
+        Command::Mutants { names, json, alone, run } => {
+            try_mutants(&names, json, &Options { alone, ..run.options() })
+        }
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
         Command::Selftest { run } => {
             selftest::check(&Tools::find(&root())?, &run.options())?;
@@ -186,7 +191,7 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     let killed = result.mutants.iter().filter(|mutant| mutant.verdict == MutantVerdict::Killed).count();
     let passed = result.controls.iter().filter(|control| control.reason.is_none()).count();
     println!(
-        "{passed} of {} controls passed: the right kernel where a harness is smaller than in its proof",
+        "{passed} of {} controls passed: no mutant selected, where a harness is smaller than in its proof",
         result.controls.len()
     );
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);

@@ -5,16 +5,17 @@ use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select};
 const DONE: &str = r#"[{"program":"CBMC"},{"result":[
   {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
   {"property":"w2c_prover_claim.assertion.2","description":"claim 1","status":"FAILURE","trace":[
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000111"}},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000010000000000000111"}},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000000"}},
     {"stepType":"assignment","lhs":"other","value":{"binary":"1"}},
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000001111111111111111"}}]}]},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000111111111111111111"}}]}]},
   {"cProverStatus":"failure"}]"#;
 
 #[test]
 fn verdicts_and_counterexamples_are_read() {
     let answer = parse_cbmc(DONE).unwrap();
     assert_eq!((answer.claim(0), answer.claim(1), answer.claim(2)), (Some(true), Some(false), None));
-    assert_eq!(answer.values["claim 1"], [7, 65_535]);
+    assert_eq!(answer.values["claim 1"], [7, 0, 65_535]);
     assert_eq!(answer.other_failure(), None);
 }
 
