@@ -19,7 +19,7 @@ pub const RUSTC: [&str; 8] = [
     "-Cllvm-args=-unroll-threshold=1000000",
 ];
 
-/// The kernel is only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
+/// The kernel and its arithmetic are only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
 const KERNEL: [&str; 2] = ["--crate-type=rlib", "-Clinker-plugin-lto"];
 
 /// Bytes of the stack in linear memory. A harness that needs more traps out of bounds.
@@ -39,8 +39,8 @@ pub struct Compiled {
     folder: PathBuf,
 }
 
-/// Compiles the kernel and the harnesses `only` (all of them if none is named) whose sources are below `sources` (`kernel/src`,
-/// `proofs/src`) into `folder`.
+/// Compiles the kernel with its arithmetic, and the harnesses `only` (all of them if none is named), whose sources are below `sources`
+/// (`arithmetic/src`, `kernel/src`, `proofs/src`), into `folder`.
 ///
 /// # Errors
 /// What the compiler said.
@@ -52,13 +52,19 @@ pub fn compile(
     only: &[String],
 ) -> Result<Compiled, String> {
     fresh(folder)?;
+    let arithmetic = folder.join("libatc_arithmetic.rlib");
     let kernel = folder.join("libatc_kernel.rlib");
     let library = folder.join("libatc_proofs.a");
-    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &KERNEL.map(ToOwned::to_owned), aspects)?;
+    let with_arithmetic = format!("--extern=atc_arithmetic={}", arithmetic.display());
+    let linked = KERNEL.map(ToOwned::to_owned).to_vec();
+    rustc(tools, &sources.join("arithmetic/src/lib.rs"), &arithmetic, &linked, aspects)?;
+    let linked = [linked, vec![with_arithmetic.clone()]].concat();
+    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &linked, aspects)?;
     let mut options = vec![
         "--crate-type=staticlib".to_owned(),
         "-Clto=fat".to_owned(),
         "--cfg=engine=\"cbmc\"".to_owned(),
+        with_arithmetic,
         format!("--extern=atc_kernel={}", kernel.display()),
     ];
     if !only.is_empty() {

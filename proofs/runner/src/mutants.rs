@@ -1,4 +1,4 @@
-//! Named wrong kernels. Each is a change of a line or two in a copy of the kernel; a theorem that is proved of the
+//! Named wrong kernels. Each is a change of a line or two in a copy of the kernel and its arithmetic; a theorem that is proved of the
 //! kernel must fail on it.
 
 use crate::campaign::{Options, flags, in_parallel};
@@ -24,7 +24,7 @@ pub struct Mutant {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The file, from the kernel's `src`.
+    /// The file: from the kernel's `src`, or from the checkout if it begins with `arithmetic/src/`.
     pub file: String,
     /// The text to replace; it stands in the file exactly once.
     pub find: String,
@@ -63,9 +63,16 @@ pub fn list(root: &Path) -> Result<Vec<Mutant>, String> {
     Ok(file.mutant)
 }
 
+impl Mutant {
+    /// The file that it changes, from the checkout.
+    pub fn path(&self) -> String {
+        if self.file.starts_with("arithmetic/src/") { self.file.clone() } else { format!("kernel/src/{}", self.file) }
+    }
+}
+
 /// The text of the file that the mutant changes, changed.
 fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
-    let path = root.join("kernel/src").join(&mutant.file);
+    let path = root.join(mutant.path());
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     match text.matches(&mutant.find).count() {
         1 => Ok(text.replacen(&mutant.find, &mutant.replace, 1)),
@@ -112,7 +119,7 @@ pub fn mutants(
             name: mutant.name.clone(),
             what: mutant.what.clone(),
             requirements: mutant.requirements.clone(),
-            file: format!("kernel/src/{}", mutant.file),
+            file: mutant.path(),
             change: [mutant.find.clone(), mutant.replace.clone()],
             verdict,
             killed_by,
@@ -149,9 +156,10 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
     if sources.exists() {
         std::fs::remove_dir_all(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
     }
-    copy(&root.join("kernel/src"), &sources.join("kernel/src"))?;
-    copy(&root.join("proofs/src"), &sources.join("proofs/src"))?;
-    crate::compile::write(&sources.join("kernel/src").join(&mutant.file), &changed(root, mutant)?)?;
+    for folder in ["arithmetic/src", "kernel/src", "proofs/src"] {
+        copy(&root.join(folder), &sources.join(folder))?;
+    }
+    crate::compile::write(&sources.join(mutant.path()), &changed(root, mutant)?)?;
     let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by)?;
     let mut killed = Vec::new();
     let mut reasons = Vec::new();
