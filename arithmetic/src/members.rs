@@ -11,7 +11,6 @@ use creusot_std::prelude::{View, ensures, invariant};
         && (forall<i> 0 <= i && i < rank@ ==> !members@[i]),
     None => forall<i> 0 <= i && i < members@.len() ==> !members@[i],
 }))]
-#[inline]
 pub fn lowest_member(members: &[bool]) -> Option<usize> {
     let mut rank = 0;
     #[cfg_attr(creusot, invariant(rank@ <= members@.len()))]

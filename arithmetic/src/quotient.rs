@@ -9,7 +9,6 @@ use creusot_std::prelude::{View, ensures, invariant, requires};
 #[cfg_attr(creusot, requires(over@ <= rise@ && 1 <= rise@ && rise@ < 131_072 && whole@ <= 2048))]
 #[cfg_attr(creusot, ensures(result@ * rise@ <= over@ * whole@))]
 #[cfg_attr(creusot, ensures(over@ * whole@ < (result@ + 1) * rise@))]
-#[inline]
 pub const fn part(over: u32, rise: u32, whole: u32) -> u32 {
     let dividend = over * whole;
     let mut found = Quotient { quotient: 0, product: 0 };
@@ -45,7 +44,6 @@ impl Quotient {
     } else {
         result == self
     }))]
-    #[inline]
     #[must_use]
     pub const fn digit(self, half: u32, rise: u32, dividend: u32) -> Self {
         let product = self.product + half * rise;

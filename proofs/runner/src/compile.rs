@@ -66,6 +66,8 @@ pub fn compile(
         "--cfg=engine=\"cbmc\"".to_owned(),
         with_arithmetic,
         format!("--extern=atc_kernel={}", kernel.display()),
+        // Where the kernel's own dependency is looked for.
+        format!("-Ldependency={}", folder.display()),
     ];
     if !only.is_empty() {
         // What only the others use is not used.
