@@ -15,6 +15,67 @@ fn limits() -> Vec<u32> {
     all
 }
 
+/// The sources, and each contract in them. What is tried below is this list in plain arithmetic: a contract that is changed in the
+/// sources alone makes `the_contracts_are_those_that_are_tried_here` fail.
+const CONTRACTS: &[(&str, &[&str])] = &[
+    (
+        include_str!("../src/rounding.rs"),
+        &[
+            "requires(divisor@ > 0)",
+            "ensures(result@ * divisor@ >= dividend@)",
+            "ensures((result@ - 1) * divisor@ < dividend@)",
+            "requires(divisor@ > 0)",
+            "ensures(result@ * divisor@ <= dividend@)",
+            "ensures((result@ + 1) * divisor@ > dividend@)",
+        ],
+    ),
+    (
+        include_str!("../src/energy.rs"),
+        &[
+            "ensures(result@ < 2_097_152_000 && result@ <= 324 * deceleration@ * distance@)",
+            "ensures(result@ == 2_097_151_999 || result@ == 324 * deceleration@ * distance@)",
+            "requires(energy@ < 2_097_152_000)",
+            "ensures(125 * result@ * result@ <= energy@)",
+            "ensures(energy@ < 125 * (result@ + 1) * (result@ + 1))",
+        ],
+    ),
+    (
+        include_str!("../src/quotient.rs"),
+        &[
+            "requires(over@ <= rise@ && 1 <= rise@ && rise@ < 131_072 && whole@ <= 2048)",
+            "ensures(result@ * rise@ <= over@ * whole@)",
+            "ensures(over@ * whole@ < (result@ + 1) * rise@)",
+            "requires(self.quotient@ + half@ <= 4096 && half@ <= 2048 && rise@ < 131_072)",
+            "requires(self.product@ == self.quotient@ * rise@)",
+            "ensures(if self.product@ + half@ * rise@ <= dividend@ { \
+             result.quotient@ == self.quotient@ + half@ && result.product@ == self.product@ + half@ * rise@ \
+             } else { result == self })",
+        ],
+    ),
+    (
+        include_str!("../src/members.rs"),
+        &["ensures(match result { \
+             Some(rank) => rank@ < members@.len() && members@[rank@] \
+             && (forall<i> 0 <= i && i < rank@ ==> !members@[i]), \
+             None => forall<i> 0 <= i && i < members@.len() ==> !members@[i], })"],
+    ),
+];
+
+/// What stands between `cfg_attr(creusot, ` and its end, on one line; invariants left out, which no caller sees.
+fn contracts(source: &str) -> Vec<String> {
+    let spaced = source.split_whitespace().collect::<Vec<_>>().join(" ");
+    let all =
+        spaced.split("cfg_attr(creusot, ").skip(1).map(|rest| rest.split(")]").next().unwrap_or_default().to_owned());
+    all.filter(|contract| !contract.starts_with("invariant(")).collect()
+}
+
+#[test]
+fn the_contracts_are_those_that_are_tried_here() {
+    for (source, expected) in CONTRACTS {
+        assert_eq!(contracts(source), *expected);
+    }
+}
+
 fn wide(number: impl Into<i128>) -> i128 {
     number.into()
 }
