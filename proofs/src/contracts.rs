@@ -1,9 +1,9 @@
 //! The contracts of kernel functions, for Kani: each is checked against its function for all inputs.
 //! (`cargo kani -p atc-proofs -Z function-contracts`)
 
+use atc_arithmetic::{divide_down, divide_up};
 use atc_kernel::aspect::AspectSet;
 use atc_kernel::block::{self, SectionSet};
-use atc_kernel::time::{divide_down, divide_up};
 
 #[kani::proof_for_contract(AspectSet::lowest)]
 fn lowest() {

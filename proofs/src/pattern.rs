@@ -1,8 +1,9 @@
 //! The braking pattern: theorem T-PAT-1 to T-PAT-3.
 
 use crate::{Engine, Harness, any_byte, any_u32};
+use atc_arithmetic::{ENERGY_END, energy, root};
 use atc_kernel::distance::Metres;
-use atc_kernel::pattern::{Deceleration, ENERGY_END, MAX_SPEED, energy, pattern, root};
+use atc_kernel::pattern::{Deceleration, MAX_SPEED, pattern};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
 
@@ -45,7 +46,7 @@ harness! {
         let Some(brake) = any_brake(e) else { return };
         let deceleration = brake.on(any_gradient(e, "gradient (‰, two's complement)"));
         let distance = e.word("distance (m)", 0..=10_000);
-        let number = energy(deceleration, Metres(distance));
+        let number = energy(deceleration.mm_s2(), distance);
         let product = u32::from(deceleration.mm_s2()) * u32::from(distance);
         // The least product of which 324 times is not under 125·4096² = 2 097 152 000.
         let over = 6_472_692;

@@ -15,7 +15,7 @@ pub struct Catalogue {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The place of the text that it changes: `kernel/src/….rs:12`.
+    /// The place of the text that it changes: `kernel/src/….rs:12`, or below `arithmetic/src`.
     pub at: Option<String>,
     /// That text.
     pub find: String,
@@ -28,7 +28,7 @@ pub struct Catalogue {
 pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
     let all = atc_prover::mutants::list(root).map_err(|error| Fault::new(&"wrong kernels", error))?;
     let one = |mutant: atc_prover::mutants::Mutant| {
-        let file = format!("kernel/src/{}", mutant.file);
+        let file = mutant.path();
         let text = read(&root.join(&file))?;
         let line = text.find(&mutant.find).map(|place| text[..place].matches('\n').count() + 1);
         Ok(Catalogue {

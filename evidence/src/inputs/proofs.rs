@@ -102,7 +102,12 @@ pub const ENGINES: &[(&str, &str, bool, &str)] = &[
         "ci/install-provers && cargo run --release -p atc-prover -- prove",
     ),
     ("kani", "the compiler's intermediate form (MIR), bit by bit", true, "cargo kani -p atc-proofs"),
-    ("creusot", "the contracts on single functions, without any bound", true, "cargo creusot prove"),
+    (
+        "creusot",
+        "the contracts of the arithmetic, over all numbers; for Creusot 0.11, Why3 1.8.2, Z3 4.13.3, cvc5 1.3.2",
+        true,
+        "cargo update -p creusot-std --precise 0.11.0 && cargo creusot prove",
+    ),
     (
         "native",
         "the machine code of this computer, on chosen values: tests, no proof",

@@ -21,7 +21,7 @@ pub fn attempt(
     let folder = root.join("target").join("proofs").join("mutants").join(&mutant.name);
     let sources = folder.join("sources");
     copy(root, &sources)?;
-    write(&sources.join("kernel/src").join(&mutant.file), &changed(root, mutant)?)?;
+    write(&sources.join(mutant.path()), &changed(root, mutant)?)?;
     let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by, Kernel::AsItIs)?;
     let judge = |harness: &'static atc_proofs::Harness| {
         let asked = Asked::new(tools, &compiled, harness, options);

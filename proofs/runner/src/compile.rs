@@ -20,7 +20,7 @@ pub const RUSTC: [&str; 8] = [
     "-Cllvm-args=-unroll-threshold=1000000",
 ];
 
-/// The kernel is only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
+/// The kernel and its arithmetic are only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
 const KERNEL: [&str; 2] = ["--crate-type=rlib", "-Clinker-plugin-lto"];
 
 /// Bytes of the stack in linear memory. A harness that needs more traps out of bounds.
@@ -57,7 +57,8 @@ pub fn copy(root: &Path, sources: &Path) -> Result<(), String> {
     if sources.exists() {
         std::fs::remove_dir_all(sources).map_err(|error| format!("{}: {error}", sources.display()))?;
     }
-    ["kernel/src", "proofs/src"].iter().try_for_each(|folder| copy_all(&root.join(folder), &sources.join(folder)))
+    let folders = ["arithmetic/src", "kernel/src", "proofs/src"];
+    folders.iter().try_for_each(|folder| copy_all(&root.join(folder), &sources.join(folder)))
 }
 
 fn copy_all(from: &Path, to: &Path) -> Result<(), String> {
@@ -75,8 +76,8 @@ fn copy_all(from: &Path, to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Compiles the kernel and the harnesses `only` (all of them if none is named) whose sources are below `sources` (`kernel/src`,
-/// `proofs/src`) into `folder`.
+/// Compiles the kernel with its arithmetic, and the harnesses `only` (all of them if none is named), whose sources are below `sources`
+/// (`arithmetic/src`, `kernel/src`, `proofs/src`), into `folder`.
 ///
 /// # Errors
 /// What the compiler said.
@@ -89,14 +90,22 @@ pub fn compile(
     mutants: Kernel,
 ) -> Result<Compiled, String> {
     fresh(folder)?;
+    let arithmetic = folder.join("libatc_arithmetic.rlib");
     let kernel = folder.join("libatc_kernel.rlib");
     let library = folder.join("libatc_proofs.a");
-    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &KERNEL.map(ToOwned::to_owned), aspects)?;
+    let with_arithmetic = format!("--extern=atc_arithmetic={}", arithmetic.display());
+    let linked = KERNEL.map(ToOwned::to_owned).to_vec();
+    rustc(tools, &sources.join("arithmetic/src/lib.rs"), &arithmetic, &linked, aspects)?;
+    let linked = [linked, vec![with_arithmetic.clone()]].concat();
+    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &linked, aspects)?;
     let mut options = vec![
         "--crate-type=staticlib".to_owned(),
         "-Clto=fat".to_owned(),
         "--cfg=engine=\"cbmc\"".to_owned(),
+        with_arithmetic,
         format!("--extern=atc_kernel={}", kernel.display()),
+        // Where the kernel's own dependency is looked for.
+        format!("-Ldependency={}", folder.display()),
     ];
     if mutants == Kernel::WithMutants {
         options.push("--cfg=mutants".to_owned());

@@ -1,4 +1,4 @@
-//! Named mutants. Each is a change of a line or two in a copy of the kernel; a theorem that is proved of the kernel must fail on it.
+//! Named mutants. Each is a change of a line or two in a copy of the kernel and its arithmetic; a theorem that is proved of the kernel must fail on it.
 //!
 //! Most are compiled together and selected at run time ([`crate::together`]); those that cannot be are compiled alone ([`crate::alone`]).
 
@@ -26,7 +26,7 @@ pub struct Mutant {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The file, from the kernel's `src`.
+    /// The file: from the kernel's `src`, or from the checkout if it begins with `arithmetic/src/`.
     pub file: String,
     /// The text to replace; it stands in the file exactly once.
     pub find: String,
@@ -68,9 +68,16 @@ pub fn list(root: &Path) -> Result<Vec<Mutant>, String> {
     Ok(file.mutant)
 }
 
+impl Mutant {
+    /// The file that it changes, from the checkout.
+    pub fn path(&self) -> String {
+        if self.file.starts_with("arithmetic/src/") { self.file.clone() } else { format!("kernel/src/{}", self.file) }
+    }
+}
+
 /// The text of the file that the mutant changes, changed.
 pub(crate) fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
-    let path = root.join("kernel/src").join(&mutant.file);
+    let path = root.join(mutant.path());
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     match text.matches(&mutant.find).count() {
         1 => Ok(text.replacen(&mutant.find, &mutant.replace, 1)),
@@ -141,8 +148,9 @@ pub fn mutants(
 /// Whether the mutant can be selected at run time.
 fn selectable(root: &Path, mutant: &Mutant) -> bool {
     let change = Change { number: 1, find: &mutant.find, replace: &mutant.replace };
-    let text = std::fs::read_to_string(root.join("kernel/src").join(&mutant.file)).unwrap_or_default();
-    is_selectable(&text, &change)
+    let text = std::fs::read_to_string(root.join(mutant.path())).unwrap_or_default();
+    // The selector is in the kernel, which its arithmetic does not know.
+    mutant.path().starts_with("kernel/") && is_selectable(&text, &change)
 }
 
 /// What the harnesses have said of the mutants so far.
@@ -206,7 +214,7 @@ impl<'a> Tally<'a> {
             name: mutant.name.clone(),
             what: mutant.what.clone(),
             requirements: mutant.requirements.clone(),
-            file: format!("kernel/src/{}", mutant.file),
+            file: mutant.path(),
             change: [mutant.find.clone(), mutant.replace.clone()],
             verdict,
             killed_by: if matches!(verdict, MutantVerdict::Error | MutantVerdict::NotRun) { Vec::new() } else { killed_by },

@@ -2,8 +2,9 @@
 
 use super::{BOUND, any_cycle, any_parts, any_set, any_times, has, lowest, ranks, same, satisfied};
 use crate::ASPECTS;
+use atc_arithmetic::lowest_member;
 use atc_kernel::Machine;
-use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, Display, Parts, State, lowest_member, step};
+use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, Display, Parts, State, step};
 
 harness! {
     /// Validity is inductive, the initial state is valid and displays nothing, and the display is a function of

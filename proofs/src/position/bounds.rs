@@ -1,7 +1,7 @@
 //! The division of a span, alone: the rounding of T-POS-1.
 
 use crate::any_u32;
-use atc_kernel::position::{Quotient, part};
+use atc_arithmetic::{Quotient, part};
 
 harness! {
     /// The part of a span that belongs to a part of its rise is rounded down, and by less than a decimetre. It is found in twelve

@@ -5,9 +5,10 @@
 
 use super::{any_curves, signed, table};
 use crate::{any_flag, any_u32};
+use atc_arithmetic::part;
 use atc_kernel::distance::Millimetres;
 use atc_kernel::position::{
-    Correction, Interval, Measured, Millibels, Moved, Position, SPANS, Spacing, Span, Spans, Table, part, step,
+    Correction, Interval, Measured, Millibels, Moved, Position, SPANS, Spacing, Span, Spans, Table, step,
 };
 
 harness! {
