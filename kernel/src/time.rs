@@ -4,7 +4,7 @@
 //! conversion that rounds to nearest: the caller says which direction is the safe one.
 
 #[cfg(creusot)]
-use creusot_std::prelude::*;
+use creusot_std::prelude::{View, ensures, requires};
 
 /// The longest time that any parameter may have: 60 000 logic cycles (ten minutes at 10 ms).
 pub const MAX_TICKS: u16 = 60_000;

@@ -2,7 +2,7 @@
 
 use super::MAX_ASPECTS;
 #[cfg(creusot)]
-use creusot_std::prelude::*;
+use creusot_std::prelude::{View, ensures, invariant};
 
 /// One aspect: its rank by permitted speed, 0 the lowest, at most 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

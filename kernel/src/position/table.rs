@@ -3,7 +3,7 @@
 use super::Interval;
 use crate::distance::Millimetres;
 #[cfg(creusot)]
-use creusot_std::prelude::*;
+use creusot_std::prelude::{View, ensures, invariant, requires};
 
 /// The distances at which a table has values.
 pub const KNOTS: usize = 17;

@@ -30,9 +30,7 @@ harness! {
         e.claim(Claim::Back as u32, decode(frame) == Ok(telegram));
         let mut bytes = [0_u8; 10];
         for (place, byte) in bytes.iter_mut().enumerate() {
-            let [low, high, ..] = (frame.bits() >> (9 * (9 - place) + 1)).to_le_bytes();
-            let _ = high;
-            *byte = low;
+            *byte = (frame.bits() >> (9 * (9 - place) + 1)).to_le_bytes()[0];
         }
         let [b0, b1, b2, b3, b4, b5, b6, b7, high, low] = bytes;
         let rest = check([b0, b1, b2, b3, b4, b5, b6, b7]);
