@@ -10,7 +10,9 @@ mod report;
 mod reset;
 
 use crate::{Engine, Harness, any_byte, any_flag};
-use atc_kernel::block::{Block, Fault, Hold, Input, Output, Parts, SectionSet, State, Status, TrainCount, step};
+use atc_kernel::block::{
+    Block, Fault, Hold, Input, MAX_SECTIONS, Output, Parts, SectionSet, State, Status, TrainCount, step,
+};
 use atc_kernel::time::Ticks;
 
 pub use count::{blk_8, blk_machine, blk_set, blk_total, t_blk_2, t_blk_3};
@@ -43,6 +45,9 @@ pub const ALL: &[Harness] = &[
     blk_total::HARNESS,
     blk_machine::HARNESS,
 ];
+
+/// The longest loop: over the holds of 0 to 16 sections.
+pub(crate) const LONGEST: usize = MAX_SECTIONS as usize + 1;
 
 /// An arbitrary hold.
 fn any_hold<E: Engine + ?Sized>(e: &mut E, what: &'static str, likely: u16) -> Option<Hold> {
