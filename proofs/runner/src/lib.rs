@@ -8,6 +8,7 @@ pub mod campaign;
 mod cbmc;
 mod compile;
 mod control;
+pub mod kani;
 mod loops;
 pub mod mutants;
 pub mod native;
