@@ -17,6 +17,7 @@ pub mod provenance;
 pub mod report;
 pub mod selftest;
 mod tools;
+pub mod unwound;
 
 use std::path::{Path, PathBuf};
 
