@@ -203,6 +203,32 @@ fn patterns(tokens: TokenStream, found: &mut Vec<String>) {
     }
 }
 
+/// What is known to be weak in Kani: a contract that is used without being checked, and quantifiers that are ignored. Among the
+/// tokens too.
+fn weak(tokens: TokenStream, found: &mut Vec<String>) {
+    let mut before = String::new();
+    for token in tokens {
+        match token {
+            TokenTree::Group(group) => {
+                weak(group.stream(), found);
+                before.clear();
+            }
+            TokenTree::Ident(name) if name == "stub_verified" => {
+                report(
+                    found,
+                    name.span(),
+                    "stub_verified: Kani does not check that the contract was proved (4294, 4295)",
+                );
+            }
+            TokenTree::Ident(name) if before == "kani::" && (name == "forall" || name == "exists") => {
+                report(found, name.span(), "a quantifier of Kani: it may be ignored (4282)");
+            }
+            TokenTree::Ident(name) => before = name.to_string(),
+            other => before.push_str(&other.to_string()),
+        }
+    }
+}
+
 /// Adds the fields of a file that are arrays.
 fn fields(file: &syn::File, known: &mut Known) {
     for item in &file.items {
@@ -226,7 +252,9 @@ pub fn found(texts: &[String]) -> Vec<Vec<String>> {
     let look = |(file, text): (&syn::File, &String)| {
         let mut finder = Finder { fields: known.clone(), ..Finder::default() };
         finder.visit_file(file);
-        patterns(text.parse().expect("tokens"), &mut finder.found);
+        let tokens: TokenStream = text.parse().expect("tokens");
+        patterns(tokens.clone(), &mut finder.found);
+        weak(tokens, &mut finder.found);
         finder.found
     };
     files.iter().zip(texts).map(look).collect()

@@ -16,8 +16,8 @@ fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
     }
 }
 
-#[test]
-fn the_crates_that_are_verified_have_nothing_that_kani_or_creusot_cannot_take() {
+/// The sources of the crates that are verified.
+fn verified() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
     let mut crates = Vec::new();
     for entry in std::fs::read_dir(root).unwrap() {
@@ -32,14 +32,32 @@ fn the_crates_that_are_verified_have_nothing_that_kani_or_creusot_cannot_take() 
     }
     let mut files = Vec::new();
     crates.iter().for_each(|folder| sources(folder, &mut files));
+    files
+}
+
+#[test]
+fn the_crates_that_are_verified_have_nothing_that_kani_or_creusot_cannot_take() {
+    let files = verified();
     let texts: Vec<_> = files.iter().map(|file| std::fs::read_to_string(file).unwrap()).collect();
     assert!(texts.iter().any(|text| text.contains("harness! {")));
     let mut all = Vec::new();
     for (file, faults) in files.iter().zip(found(&texts)) {
-        let file = file.strip_prefix(root).unwrap().display();
-        all.extend(faults.iter().map(|fault| format!("{file}: {fault}")));
+        all.extend(faults.iter().map(|fault| format!("{}: {fault}", file.display())));
     }
     assert!(all.is_empty(), "{}", all.join("\n"));
+}
+
+/// Kani asserts what a contract requires wherever the function is called: only a function that is not total may require something.
+#[test]
+fn a_contract_for_kani_requires_nothing_but_a_divisor() {
+    let mut contracts = 0;
+    for file in verified() {
+        let text = std::fs::read_to_string(&file).unwrap();
+        contracts += text.matches("kani::ensures(").count();
+        let required = text.split("kani::requires(").skip(1).map(|rest| rest.split(')').next().unwrap());
+        required.for_each(|required| assert_eq!(required, "divisor > 0", "{}", file.display()));
+    }
+    assert!(contracts > 10, "only {contracts}");
 }
 
 /// How much is found in one text.
@@ -128,6 +146,15 @@ fn an_index_that_is_no_constant_or_an_array_of_fixed_length_is_not() {
     ] {
         assert_eq!(count(text), 0, "{text}");
     }
+}
+
+#[test]
+fn weak_points_of_kani_are_found() {
+    assert_eq!(count("#[kani::stub_verified(root)] fn f() {}"), 1);
+    assert_eq!(count("#[cfg_attr(kani, kani::stub_verified(root))] fn f() {}"), 1);
+    assert_eq!(count("fn f() { assert!(kani::forall!(|i in (0, 4)| a[i] == 0)); }"), 1);
+    assert_eq!(count("harness! { n(e) { kani::exists!(|i in (0, 4)| a[i] == 0); } }"), 1);
+    assert_eq!(count("#[cfg_attr(creusot, ensures(forall<i> 0 <= i ==> !members@[i]))] fn f() { kani::any() }"), 0);
 }
 
 #[test]
