@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 fn loops_are_unwound_as_often_as_the_sizes_ask_for() {
     for harness in harnesses() {
         assert_eq!(harness.unwind, harness.derived, "{}: the number is not what is derived", harness.name);
+        assert!(harness.apart.len() <= harness.cases, "{}: more cases apart than there are", harness.name);
     }
 }
 
