@@ -177,10 +177,11 @@ impl<'a> Visit<'a> for Finder {
     fn visit_macro(&mut self, call: &'a syn::Macro) {
         for token in call.tokens.clone() {
             let TokenTree::Group(group) = token else { continue };
-            if group.delimiter() == Delimiter::Brace {
-                if let Ok(block) = syn::parse2::<syn::Block>(TokenStream::from(TokenTree::Group(group))) {
-                    self.with(None, |finder| finder.visit_block(&block));
-                }
+            if group.delimiter() != Delimiter::Brace {
+                continue;
+            }
+            if let Ok(block) = syn::parse2::<syn::Block>(TokenStream::from(TokenTree::Group(group))) {
+                self.with(None, |finder| finder.visit_block(&block));
             }
         }
     }
