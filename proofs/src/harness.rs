@@ -116,6 +116,7 @@ macro_rules! harness {
                 pub fn run<E: $crate::Engine + ?Sized>($engine: &mut E) $body
 
                 // Sizes may be smaller than those of which the number is derived, never greater.
+                #[allow(clippy::int_plus_one, reason = "the bound is one more than a size")]
                 const _: () = assert!($unwind >= $derived, "loops are not unwound far enough");
 
                 #[cfg(kani)]
