@@ -21,9 +21,8 @@ pub const fn energy(deceleration: u16, distance: u16) -> u32 {
 }
 
 /// The greatest r with 125·r² ≤ `energy`, which is under [`ENERGY_END`]; so at most 4095.
-#[cfg_attr(kani, kani::requires(energy < ENERGY_END))]
-#[cfg_attr(kani, kani::ensures(|root| 125 * u32::from(*root) * u32::from(*root) <= energy))]
-#[cfg_attr(kani, kani::ensures(|root| 125 * (u32::from(*root) + 1) * (u32::from(*root) + 1) > energy))]
+#[cfg_attr(kani, kani::ensures(|root| *root < 4096 && 125 * u32::from(*root) * u32::from(*root) <= energy))]
+#[cfg_attr(kani, kani::ensures(|root| energy >= ENERGY_END || 125 * (u32::from(*root) + 1) * (u32::from(*root) + 1) > energy))]
 #[cfg_attr(creusot, requires(energy@ < 2_097_152_000))]
 #[cfg_attr(creusot, ensures(125 * result@ * result@ <= energy@))]
 #[cfg_attr(creusot, ensures(energy@ < 125 * (result@ + 1) * (result@ + 1)))]

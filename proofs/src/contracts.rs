@@ -41,5 +41,6 @@ fn reversed_sections() {
 #[kani::proof_for_contract(block::step)]
 #[kani::unwind(5)]
 fn block_step() {
-    crate::block::any_step(&mut crate::engine::model::Kani);
+    let mut engine = crate::engine::model::Kani::ANY;
+    let _ = crate::block::any_step(&mut engine);
 }

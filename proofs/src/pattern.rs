@@ -12,6 +12,9 @@ use atc_kernel::telegram::Gradient;
 pub const ALL: &[Harness] =
     &[t_pat_1::HARNESS, t_pat_1_root::HARNESS, t_pat_2::HARNESS, t_pat_3::HARNESS, pat_3::HARNESS];
 
+/// How often the search for a root halves what is left of 4096 numbers: the longest loop.
+pub(crate) const HALVINGS: usize = 4096_u32.ilog2() as usize;
+
 /// An arbitrary brake.
 pub(crate) fn any_brake<E: Engine + ?Sized>(e: &mut E) -> Option<Deceleration> {
     let brake = Deceleration::brake(e.word("brake (mm/s²)", 600..=1200));
@@ -34,6 +37,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
+    solver kissat;
     claims {
         Energy: "the number of which the root is taken is 324·b·d, or 125·4096² − 1 where that is less",
         Root: "the speed of the pattern is the root of that number",
@@ -66,6 +71,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
+    solver kissat;
     claims {
         NeverAbove: "125·r² ≤ n: never above the real curve",
         NoLower: "n < 125·(r + 1)²: one unit more would be above it",
@@ -109,6 +116,7 @@ harness! {
     assumptions ["gravity"];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Falling: "falling: at least 9.84 mm/s² per thousandth less, or no deceleration",
         Rising: "rising: at most 9.69 mm/s² per thousandth more",
@@ -146,6 +154,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Gradient: "a worse gradient never gives a higher deceleration",
         Brake: "nor does a weaker brake",
@@ -171,6 +180,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Exact: "accepted if and only if it is 1 to 4095 mm/s², and kept as it is",
     }

@@ -101,7 +101,13 @@ pub const ENGINES: &[(&str, &str, bool, &str)] = &[
         true,
         "ci/install-provers && cargo run --release -p atc-prover -- prove",
     ),
-    ("kani", "the compiler's intermediate form (MIR), bit by bit", true, "cargo kani -p atc-proofs"),
+    (
+        "kani",
+        "the compiler's intermediate form (MIR), bit by bit",
+        true,
+        "cargo kani -p atc-proofs -Z function-contracts -Z unstable-options --export-json target/kani.json \
+         && cargo run -p atc-proofs -- kani import target/kani.json, then --import target/proofs/kani.json",
+    ),
     (
         "creusot",
         "the contracts of the arithmetic, over all numbers; for Creusot 0.11, Why3 1.8.2, Z3 4.13.3, cvc5 1.3.2",

@@ -221,6 +221,10 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
             }
         }
     }
+    result.unwound = answers.iter().map(|(proof, _)| proof.unwound).max().unwrap_or(0);
+    if let Some(reason) = crate::unwound::beyond(harness, result.unwound) {
+        return unproven(harness, Verdict::Error, reason);
+    }
     for (number, claim) in result.claims.iter_mut().enumerate() {
         let verdict = |(proof, reach): &(&Answer, &Answer)| match (proof.claim(number), reach.claim(number)) {
             (Some(false), _) => Verdict::Failed,

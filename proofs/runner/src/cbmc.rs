@@ -122,6 +122,8 @@ pub struct Answer {
     pub holds: BTreeMap<String, bool>,
     /// Description of a failed assertion → the arbitrary values that make it fail, in order.
     pub values: BTreeMap<String, Vec<u16>>,
+    /// The most iterations of a loop.
+    pub unwound: usize,
 }
 
 impl Answer {
@@ -142,7 +144,7 @@ impl Answer {
 
     /// The answer to [`Ask::Both`] as those to the proof and to what can be reached.
     fn apart(self) -> (Self, Self) {
-        let (mut proof, mut reach) = (Self::default(), Self::default());
+        let (mut proof, mut reach) = (Self { unwound: self.unwound, ..Self::default() }, Self::default());
         for (description, holds) in self.holds {
             if let Some(number) = description.strip_prefix("reach ") {
                 reach.holds.insert(format!("claim {number}"), holds);
@@ -362,7 +364,8 @@ pub fn parse(text: &str) -> Result<Answer, String> {
         let said: Vec<_> = errors.map(|(_, text)| text).collect();
         return Err(format!("cbmc gave no status: {}", said.join("; ")));
     }
-    let mut answer = Answer::default();
+    let unwound = crate::unwound::largest(messages().map(|(_, text)| text));
+    let mut answer = Answer { unwound, ..Answer::default() };
     for property in document.iter().flat_map(|item| &item.result) {
         let description = property.description.to_string();
         let holds = match &*property.status {

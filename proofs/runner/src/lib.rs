@@ -10,6 +10,7 @@ mod cbmc;
 mod compile;
 mod control;
 mod joins;
+pub mod kani;
 mod loops;
 pub mod mutants;
 pub mod native;
@@ -21,6 +22,7 @@ pub mod selftest;
 mod together;
 mod tools;
 mod twin;
+pub mod unwound;
 
 use std::path::{Path, PathBuf};
 

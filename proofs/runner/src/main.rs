@@ -1,7 +1,9 @@
 //! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
-use atc_prover::{Options, Tools, campaign, end_all_on_interrupt, harnesses, mutants, native, root, select, selftest};
+use atc_prover::{
+    Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
+};
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
@@ -58,10 +60,34 @@ enum Command {
         #[arg(long, value_name = "NAME")]
         keep: Option<String>,
     },
+    /// Kani's names of the harnesses, and what Kani says of them.
+    Kani {
+        #[command(subcommand)]
+        what: Kani,
+    },
     /// Tests the cbmc engine on harnesses whose verdicts are known.
     Selftest {
         #[command(flatten)]
         run: Run,
+    },
+}
+
+#[derive(Subcommand)]
+enum Kani {
+    /// Lists Kani's names: harnesses, then contracts.
+    Names,
+    /// Compares the list that `cargo kani list --format json` has written with ours.
+    Compare {
+        /// kani-list.json
+        list: PathBuf,
+    },
+    /// Turns the export of `cargo kani --export-json` of this very checkout into results for the case.
+    Import {
+        /// The export.
+        export: PathBuf,
+        /// Where the JSON goes [default: target/proofs/kani.json].
+        #[arg(long)]
+        json: Option<PathBuf>,
     },
 }
 
@@ -131,10 +157,34 @@ fn run(command: Command) -> Result<bool, String> {
             try_mutants(&names, json, &Options { alone, ..run.options() })
         }
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
+        Command::Kani { what } => of_kani(what),
         Command::Selftest { run } => {
             selftest::check(&Tools::find(&root())?, &run.options())?;
             println!("the cbmc engine passes its self-test");
             Ok(true)
+        }
+    }
+}
+
+fn of_kani(what: Kani) -> Result<bool, String> {
+    let read = |path: &Path| std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()));
+    match what {
+        Kani::Names => {
+            let names = harnesses().into_iter().flat_map(kani::names).chain(kani::contracts());
+            names.for_each(|name| println!("{name}"));
+            Ok(true)
+        }
+        Kani::Compare { list } => {
+            println!("{}", kani::compare(&read(&list)?)?);
+            Ok(true)
+        }
+        Kani::Import { export, json } => {
+            let result = kani::import(&read(&export)?)?;
+            result.harnesses.iter().for_each(|harness| println!("{}", line(harness)));
+            save(&json.unwrap_or_else(|| default("kani.json")), &result)?;
+            let proved = result.harnesses.iter().filter(|harness| harness.verdict == Verdict::Proved).count();
+            println!("{proved} of {} harnesses proved", result.harnesses.len());
+            Ok(proved == result.harnesses.len())
         }
     }
 }

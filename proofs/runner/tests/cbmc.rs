@@ -1,6 +1,6 @@
 //! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
 
-use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select};
+use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select, unwound};
 
 const DONE: &str = r#"[{"program":"CBMC"},{"result":[
   {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
@@ -43,6 +43,21 @@ fn code_that_the_prover_does_not_see_is_an_error() {
     assert!(parse_cbmc(&warned).unwrap_err().contains("no body"));
     let property = DONE.replace("claim 0", "no body for callee f");
     assert!(parse_cbmc(&property).unwrap_err().contains("no body"));
+}
+
+#[test]
+fn the_longest_loop_is_read_and_held_against_the_bound_for_kani() {
+    let loops = [("w2c_h_sup_3_0.0", 3), ("w2c_h_sup_3_0.1", 64), ("w2c_h_memcpy.2", 300), ("load_bytes.0", 768)];
+    let messages = loops.map(|(name, times)| {
+        format!(r#"{{"messageText":"Unwinding loop {name} iteration {times} (67 max) file driver.c line 9 thread 0"}}"#)
+    });
+    let looped = DONE.replace(r#"{"program":"CBMC"}"#, &messages.join(","));
+    assert_eq!(parse_cbmc(&looped).unwrap().unwound, 64);
+    assert_eq!(parse_cbmc(DONE).unwrap().unwound, 0);
+    let harness = select(&["t_ilk_2".to_owned()]).unwrap()[0];
+    assert_eq!(harness.unwind, 65);
+    assert_eq!(unwound::beyond(harness, 64), None);
+    assert!(unwound::beyond(harness, 65).unwrap().contains("65"));
 }
 
 #[test]

@@ -15,6 +15,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Inductive: "the state after a cycle is valid",
         Initial: "the initial state is valid, displays nothing, and has nothing heard, lost, accepted or displayed before",
@@ -56,6 +57,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         One: "at most one aspect is displayed, and it is satisfied",
     }
@@ -82,6 +84,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Same: "the two ways give the same aspect, for all sets of 16",
         Sides: "what is above the lowest, and what is below the highest, by looking at one after the other",

@@ -15,6 +15,7 @@ harness! {
     assumptions [];
     bound "";
     cases 12;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Together: "a round adds the digit's worth to the quotient and that times the rise to the product, or nothing to either",
         Down: "the product is not above the dividend",
@@ -65,6 +66,8 @@ harness! {
     assumptions ["printed-sizes"];
     bound "wholes of 1 to 64 decimetres";
     cases 7;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
+    apart [0 1 2 3 4 5 6];
     claims {
         Rounds: "the part is the quotient after twelve rounds",
     }
