@@ -53,6 +53,13 @@ impl Solver {
         }
     }
 
+    /// CBMC calls Z3 by its name: it must find the one that was installed, wherever it was.
+    fn path(self, tools: &Tools) -> Option<(&'static str, String)> {
+        let own = tools.path("z3").parent()?.display().to_string();
+        let others = std::env::var("PATH").unwrap_or_default();
+        (self == Self::Z3).then(|| ("PATH", format!("{own}:{others}")))
+    }
+
     /// The one for what the first solver is known to have no answer to in its time.
     #[must_use]
     pub fn at_once(self, tools: &Tools) -> Self {
@@ -243,7 +250,7 @@ pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
     let output = folder.join(format!("cbmc-{case}{name}.json"));
     let limits = Limits { time: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
-    let job = Job { program: &program, arguments: &arguments, variable: None, folder, output: &output, limits };
+    let job = Job { program: &program, arguments: &arguments, variable: question.solver.path(tools), folder, output: &output, limits };
     let (end, took) = run(&job).map_err(Silence::Broken)?;
     match end {
         End::Late => return Err(Silence::Late),

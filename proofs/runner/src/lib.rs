@@ -16,6 +16,7 @@ pub mod provenance;
 pub mod report;
 pub mod selftest;
 mod tools;
+pub mod traps;
 
 use std::path::{Path, PathBuf};
 
