@@ -16,6 +16,9 @@ extern "C" fn shifts() {
     let long = black_box(u64::from(value) << 31).wrapping_shr(by);
     claim(5, u32::from(by != 95 || long == u64::from(value)));
     claim(6, u32::from(by < 64 || long == 0)); // false
-    claim(7, u32::from(black_box(value).rotate_left(by) == left | black_box(value).wrapping_shr(32_u32.wrapping_sub(by))));
+    claim(
+        7,
+        u32::from(black_box(value).rotate_left(by) == left | black_box(value).wrapping_shr(32_u32.wrapping_sub(by))),
+    );
     cover(0, u32::from(by == 99));
 }

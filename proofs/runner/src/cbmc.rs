@@ -250,7 +250,14 @@ pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
     let output = folder.join(format!("cbmc-{case}{name}.json"));
     let limits = Limits { time: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
-    let job = Job { program: &program, arguments: &arguments, variable: question.solver.path(tools), folder, output: &output, limits };
+    let job = Job {
+        program: &program,
+        arguments: &arguments,
+        variable: question.solver.path(tools),
+        folder,
+        output: &output,
+        limits,
+    };
     let (end, took) = run(&job).map_err(Silence::Broken)?;
     match end {
         End::Late => return Err(Silence::Late),

@@ -1,4 +1,4 @@
-//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
+//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest | traps`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
 use atc_prover::traps::table;
