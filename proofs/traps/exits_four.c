@@ -1,4 +1,5 @@
-/* Four blocks within each other, with jumps from the innermost to each of the four joins and from each join to the ones behind it. */
+/* Four blocks within each other, with jumps from the innermost to each of the four joins, and from each join to the
+   ones behind it. */
 void w2c_h_exits_four(w2c_h* instance) {
   u32 var_l0 = 0, var_l1 = 0;
   FUNC_PROLOGUE;
@@ -26,11 +27,12 @@ void w2c_h_exits_four(w2c_h* instance) {
   if (var_i0) {goto var_B0;}
   var_l1 += 4u;
   var_B1:;
-  w2c_prover_claim(instance->w2c_prover_instance, 4u, (var_l0 & 7u) == 3u ? var_l1 == 0u : var_l1 >= 4u && var_l0 >= 8u);
+  var_i0 = (var_l0 & 7u) == 3u;
+  w2c_prover_claim(instance->w2c_prover_instance, 4u, var_i0 ? var_l1 == 0u : var_l1 >= 4u && var_l0 >= 8u);
   w2c_prover_claim(instance->w2c_prover_instance, 5u, var_l1 != 6u); /* false: 1 + 8 n */
   var_l1 += 8u;
   var_B0:;
-  w2c_prover_claim(instance->w2c_prover_instance, 6u, var_l1 == 0u || var_l1 == 1u || var_l1 == 2u || var_l1 == 3u || var_l1 == 8u || var_l1 == 12u || var_l1 == 14u || var_l1 == 15u);
+  w2c_prover_claim(instance->w2c_prover_instance, 6u, var_l1 < 16u && (0xd10fu >> var_l1 & 1u)); /* 0 to 3, 8, 12, 14, 15 */
   w2c_prover_claim(instance->w2c_prover_instance, 7u, var_l1 != 1u); /* false: 56, over two joins */
   w2c_prover_cover(instance->w2c_prover_instance, 0u, var_l1 == 15u);
   w2c_prover_cover(instance->w2c_prover_instance, 1u, var_l1 == 3u);

@@ -29,7 +29,7 @@ void w2c_h_exits_if(w2c_h* instance) {
   var_l1 += 8u;
   var_B0:;
   w2c_prover_claim(instance->w2c_prover_instance, 5u, ((var_l0 & 7u) == 7u) == (var_l1 == 0u));
-  w2c_prover_claim(instance->w2c_prover_instance, 6u, var_l1 == 0u || var_l1 == 8u || var_l1 == 9u || var_l1 == 14u || var_l1 == 15u);
+  w2c_prover_claim(instance->w2c_prover_instance, 6u, var_l1 < 16u && (0xc301u >> var_l1 & 1u)); /* 0, 8, 9, 14, 15 */
   w2c_prover_claim(instance->w2c_prover_instance, 7u, var_l1 != 9u); /* false: 3 */
   w2c_prover_cover(instance->w2c_prover_instance, 0u, var_l1 == 14u);
   FUNC_EPILOGUE;

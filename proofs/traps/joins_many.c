@@ -26,7 +26,8 @@ void w2c_h_joins_many(w2c_h* instance) {
   if (var_i0) {goto var_B0;}
   var_l1 += 8u;
   var_B1:;
-  w2c_prover_claim(instance->w2c_prover_instance, 2u, (var_l0 & 1u) ? var_l1 == 1u : var_l1 == 11u || (var_l1 == 13u && !var_l2));
+  var_i0 = var_l1 == 11u || (var_l1 == 13u && !var_l2);
+  w2c_prover_claim(instance->w2c_prover_instance, 2u, (var_l0 & 1u) ? var_l1 == 1u : var_i0);
   w2c_prover_claim(instance->w2c_prover_instance, 3u, var_l1 != 11u); /* false */
   if (var_l2) {goto var_B0;}
   var_l1 += 16u;

@@ -1,5 +1,5 @@
-/* A loop with a conditional jump back in its middle, and a way out over what follows that jump, which the second round takes for
-   certain. No compiler can be made to write it. proofs/runner/src/loops.rs says what CBMC makes of it as it stands here. */
+/* A loop with a conditional jump back in its middle, and a way out over what follows that jump, which the second round
+   takes for certain. No compiler can be made to write it. proofs/runner/src/loops.rs says what CBMC makes of it. */
 void w2c_h_loops(w2c_h* instance) {
   u32 var_l0 = 0, var_l1 = 0;
   FUNC_PROLOGUE;

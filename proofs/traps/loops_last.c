@@ -1,4 +1,5 @@
-/* Two loops, one after the other, each with its conditional jump back at its end. What follows a loop sees every number of rounds. */
+/* Two loops, one after the other, each with its conditional jump back at its end.
+   What follows a loop sees every number of rounds. */
 void w2c_h_loops_last(w2c_h* instance) {
   u32 var_l0 = 0, var_l1 = 0, var_l2 = 0;
   FUNC_PROLOGUE;

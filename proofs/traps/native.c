@@ -1,7 +1,8 @@
 /* Runs a trap as a program: for each run the values are given or drawn, and a claim that fails once has failed.
 
-   The driver (or the trap itself, where it has none) is the very text that CBMC reads: what it asks of CBMC is a function here.
-   Arguments: runs with given values, such as 7,65535. After them come 65536 drawn ones; the first value takes every value there is.
+   The driver (or the trap itself, where it has none) is the very text that CBMC reads: what it asks of CBMC is a
+   function here. Arguments: runs with given values, such as 7,65535. After them come 65536 drawn ones, in which the
+   first value takes every value that there is.
    Output: one line for each assertion that was come by, `0` (held) or `1` (failed once) and its description. */
 #include <setjmp.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* An array with an index that is no constant, behind a claim that fails: the form in which external solvers were seen to differ. */
+/* An array with an index that is no constant, behind a claim that fails: the form in which external
+   solvers were seen to differ. */
 int main(void) {
   unsigned cells[2] = {0, 0}, index = nondet_u32();
   if (index < 1) {

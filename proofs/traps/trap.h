@@ -1,4 +1,5 @@
-/* What stands before a trap in C: as wasm2c begins the C of a harness. The trap is a function in wasm2c's manner, w2c_h_NAME. */
+/* What stands before a trap in C: as wasm2c begins the C of a harness. The trap is a function in
+   wasm2c's manner, w2c_h_NAME. */
 #include <stdint.h>
 #include "wasm-rt.h"
 

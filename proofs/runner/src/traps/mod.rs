@@ -1,7 +1,8 @@
 //! The traps: small programs whose verdicts are known, on which an engine is tried before it is believed.
 //!
-//! `proofs/traps/traps.toml` declares each of them: its file, and what every engine must say of it. The self-test tries the engine
-//! that is about to be used; the table tries all of them. `proofs/SOUNDNESS.md` says which way to a false proof each trap guards.
+//! `proofs/traps/traps.toml` declares each of them: its file, and what every engine must say of it. The self-test tries
+//! the engine that is about to be used; the table tries all of them. `proofs/SOUNDNESS.md` says which way to a false
+//! proof each trap guards.
 
 mod native;
 mod table;
@@ -55,7 +56,8 @@ pub struct Trap {
     pub every_way: bool,
     /// It says nothing when it is run as a program, and why.
     pub not_native: Option<String>,
-    /// Engines with their version that are known to be wrong here. The self-test passes it over: another trap has the guard.
+    /// Engines with their version that are known to be wrong here. The self-test passes it over: another trap tests
+    /// the guard.
     #[serde(default)]
     pub known_wrong: Vec<String>,
 }

@@ -1,6 +1,7 @@
 //! The traps as programs: the same C, compiled by the machine's own compiler and run on drawn values.
 //!
-//! It tests what `traps.toml` declares: a claim that holds never fails, and one that fails does with the values that are named.
+//! It tests what `traps.toml` declares: a claim that holds never fails, and one that fails does with the values that
+//! are named.
 
 use super::Trap;
 use crate::cbmc::{Answer, Silence};

@@ -147,7 +147,7 @@ impl Trap {
             return Outcome::Wrong(format!("`{other}` fails"));
         }
         let numbers = |answer: &dyn Fn(usize) -> bool| (0..8).filter(|number| answer(*number)).collect::<Vec<_>>();
-        // The driver has a place for each number; those of other claims, and of claims that no path leads to, say nothing.
+        // The driver has a place for each number; those of no claim, or of one that no path leads to, say nothing.
         let reached = self.reached();
         let holding = numbers(&|number| proof.claim(number) == Some(true) && reached.contains(&number));
         let found = [
