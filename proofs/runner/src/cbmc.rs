@@ -55,6 +55,13 @@ impl Solver {
         }
     }
 
+    /// CBMC calls Z3 by its name: it must find the one that was installed, wherever it was.
+    fn path(self, tools: &Tools) -> Option<(&'static str, String)> {
+        let own = tools.path("z3").parent()?.display().to_string();
+        let others = std::env::var("PATH").unwrap_or_default();
+        (self == Self::Z3).then(|| ("PATH", format!("{own}:{others}")))
+    }
+
     /// The one for what the first solver is known to have no answer to in its time.
     #[must_use]
     pub fn at_once(self, tools: &Tools) -> Self {
@@ -288,8 +295,9 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
     let limits = Limits { cpu: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
     // CBMC puts the problem of an external solver into a file.
-    let variable = Some(("TMPDIR", folder.display().to_string()));
-    let job = Job { program: &program, arguments: &arguments, variable, folder, output: &output, limits };
+    let temporary = ("TMPDIR", folder.display().to_string());
+    let variables: Vec<_> = question.solver.path(tools).into_iter().chain([temporary]).collect();
+    let job = Job { program: &program, arguments: &arguments, variables: &variables, folder, output: &output, limits };
     let (end, took) = run(&job).map_err(Silence::Broken)?;
     match end {
         End::Late => return Err(Silence::Late),

@@ -142,7 +142,7 @@ impl Compiled {
         let mut link: Vec<String> = LINK.iter().map(ToString::to_string).collect();
         link.extend([format!("--export={name}"), format!("-zstack-size={stack}"), "-o".to_owned()]);
         link.extend([wasm.display().to_string(), self.library.display().to_string()]);
-        tool(tools, "wasm-ld", &link, None, &folder)?;
+        tool(tools, "wasm-ld", &link, &[], &folder)?;
         let source = folder.join("harness.c");
         let convert = [
             "-n".to_owned(),
@@ -151,7 +151,7 @@ impl Compiled {
             "-o".to_owned(),
             source.display().to_string(),
         ];
-        tool(tools, "wasm2c", &convert, None, &folder)?;
+        tool(tools, "wasm2c", &convert, &[], &folder)?;
         let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
         let original = one_way_back(&without_accessors(&text)?)?;
         write(&folder.join("original.c"), &original)?;
@@ -209,19 +209,19 @@ fn rustc(tools: &Tools, source: &Path, output: &Path, options: &[String], aspect
     arguments.push(format!("--crate-name={name}"));
     arguments.extend(options.iter().cloned());
     arguments.extend(["-o".to_owned(), output.display().to_string(), source.display().to_string()]);
-    tool(tools, "rustc", &arguments, Some(("ATC_ASPECTS", aspects.to_string())), folder)
+    tool(tools, "rustc", &arguments, &[("ATC_ASPECTS", aspects.to_string())], folder)
 }
 
 fn tool(
     tools: &Tools,
     name: &str,
     arguments: &[String],
-    variable: Option<(&str, String)>,
+    variables: &[(&str, String)],
     folder: &Path,
 ) -> Result<(), String> {
     let output = folder.join(format!("{name}.out"));
     let program = tools.path(name);
-    let job = Job { program: &program, arguments, variable, folder, output: &output, limits: LIMITS };
+    let job = Job { program: &program, arguments, variables, folder, output: &output, limits: LIMITS };
     match run(&job)?.0 {
         End::Code(0) => Ok(()),
         end => {

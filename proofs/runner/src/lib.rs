@@ -21,6 +21,7 @@ mod schemata;
 pub mod selftest;
 mod together;
 mod tools;
+pub mod traps;
 mod twin;
 pub mod unwound;
 

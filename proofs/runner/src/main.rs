@@ -1,6 +1,7 @@
-//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
+//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest | traps`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
+use atc_prover::traps::table;
 use atc_prover::{
     Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
 };
@@ -65,8 +66,13 @@ enum Command {
         #[command(subcommand)]
         what: Kani,
     },
-    /// Tests the cbmc engine on harnesses whose verdicts are known.
+    /// Tests the cbmc engine on small programs whose verdicts are known.
     Selftest {
+        #[command(flatten)]
+        run: Run,
+    },
+    /// Tries every engine on those programs: engine, version, right or wrong (target/proofs/traps.json and traps.md).
+    Traps {
         #[command(flatten)]
         run: Run,
     },
@@ -163,6 +169,7 @@ fn run(command: Command) -> Result<bool, String> {
             println!("the cbmc engine passes its self-test");
             Ok(true)
         }
+        Command::Traps { run } => try_traps(&run.options()),
     }
 }
 
@@ -247,6 +254,15 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())
+}
+
+fn try_traps(options: &Options) -> Result<bool, String> {
+    let table = table(&Tools::find(&root())?, options)?;
+    let (text, path) = (table.markdown(), default("traps.md"));
+    println!("{text}");
+    std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    save(&default("traps.json"), &table)?;
+    Ok(table.is_right())
 }
 
 fn replay(name: &str, values: Option<Vec<u16>>, keep: Option<String>) -> Result<bool, String> {

@@ -84,8 +84,8 @@ pub struct Job<'a> {
     pub program: &'a Path,
     /// Its arguments.
     pub arguments: &'a [String],
-    /// A variable to set.
-    pub variable: Option<(&'a str, String)>,
+    /// Variables to set.
+    pub variables: &'a [(&'a str, String)],
     /// The current folder.
     pub folder: &'a Path,
     /// The file that its output goes to; its errors go to the same name with `.err` added, its CPU times to that with `.times`.
@@ -148,7 +148,7 @@ pub fn run(job: &Job) -> Result<(End, Duration), String> {
         .arg(&times)
         .arg(job.program)
         .args(job.arguments)
-        .envs(job.variable.clone())
+        .envs(job.variables.iter().map(|(name, value)| (name, value)))
         .current_dir(job.folder)
         .stdin(Stdio::piped())
         .stdout(output)
@@ -210,7 +210,7 @@ mod tests {
         let limits = Limits { cpu: Duration::from_secs(cpu), memory_kib: 1 << 22 };
         let output = folder.join("out");
         let program = Path::new("/bin/sh");
-        let job = Job { program, arguments: &arguments, variable: None, folder: &folder, output: &output, limits };
+        let job = Job { program, arguments: &arguments, variables: &[], folder: &folder, output: &output, limits };
         let ended = run(&job).expect("it runs");
         std::fs::remove_dir_all(&folder).expect("removed");
         ended

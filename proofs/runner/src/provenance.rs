@@ -37,7 +37,7 @@ pub fn of(root: &Path, tools: BTreeMap<String, String>, flags: Vec<String>) -> R
 /// A source file cannot be read.
 pub fn sources_sha256(root: &Path) -> Result<String, String> {
     let mut files = Vec::new();
-    for folder in ["arithmetic/src", "kernel/src", "proofs/src", "proofs/cbmc", "proofs/runner/src"] {
+    for folder in ["arithmetic/src", "kernel/src", "proofs/src", "proofs/cbmc", "proofs/traps", "proofs/runner/src"] {
         collect(&root.join(folder), &mut files)?;
     }
     files.push(root.join("proofs").join("mutants.toml"));

@@ -45,7 +45,7 @@ pub fn build(
     arguments.extend(["-o".to_owned(), program.display().to_string(), "driver.c".to_owned(), "-lm".to_owned()]);
     let output = folder.join("gcc.out");
     let job =
-        Job { program: Path::new("gcc"), arguments: &arguments, variable: None, folder, output: &output, limits: LIMITS };
+        Job { program: Path::new("gcc"), arguments: &arguments, variables: &[], folder, output: &output, limits: LIMITS };
     match run(&job)?.0 {
         End::Code(0) => Ok(program),
         end => {
@@ -73,7 +73,7 @@ pub fn happens(program: &Path, tapes: &[Tape]) -> Result<Vec<Vec<String>>, Strin
     crate::compile::write(&tape, &input)?;
     let arguments = ["-c".to_owned(), "exec \"$0\" <\"$1\"".to_owned(), beside(""), tape.display().to_string()];
     let shell = Path::new("sh");
-    let job = Job { program: shell, arguments: &arguments, variable: None, folder, output: &output, limits: LIMITS };
+    let job = Job { program: shell, arguments: &arguments, variables: &[], folder, output: &output, limits: LIMITS };
     let (end, _) = run(&job)?;
     if end != End::Code(0) {
         return Err(format!("{}: {end:?}", program.display()));
