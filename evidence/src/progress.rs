@@ -16,6 +16,8 @@ const TERMINAL: Duration = Duration::from_secs(1);
 const TRUST: f64 = 20.0;
 /// How many items are named.
 const NAMED: usize = 3;
+/// The programs that are named where no item is.
+const TOOLS: [&str; 6] = ["rustc", "wasm2c", "goto-cc", "cbmc", "kissat", "spin"];
 
 /// A phase that is to come: its name, and its items with about how many seconds of a processor each takes.
 #[derive(Clone, Debug, Default)]
@@ -193,6 +195,10 @@ fn now(state: &State) -> Vec<String> {
     let mut found: Vec<_> = pending.iter().filter(|_| pending.len() <= NAMED).map(ToString::to_string).collect();
     if found.is_empty() {
         found = in_programs(&pending).into_iter().take(NAMED).collect();
+    }
+    if found.is_empty() {
+        // What is common to many items, such as the compilation of the kernel.
+        found = in_programs(&TOOLS.into()).into_iter().collect();
     }
     found
 }

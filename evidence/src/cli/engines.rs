@@ -245,6 +245,9 @@ impl Engines<'_> {
     /// Searches every model, one after the other, each with all cores; then asks another checker.
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
         let entries = self.entries();
+        if entries.is_empty() {
+            return Ok(());
+        }
         let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
         Self::phase(live, MODELS, || {
             let mut items = Vec::new();
