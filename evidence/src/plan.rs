@@ -137,6 +137,12 @@ impl Plan {
                 }
             }
         }
+        for id in data.costs.longest.keys().filter(|id| !known.contains(id)) {
+            take(dangling(
+                "evidence/costs.toml",
+                format!("{id} is no harness, model, wrong kernel or measured target"),
+            ));
+        }
         let theorems: BTreeSet<_> = self.harnesses.iter().map(|harness| harness.theorem.as_str()).collect();
         let named = self
             .harnesses

@@ -84,7 +84,9 @@ pub fn ending(case: &Case) -> Markup {
             dt { "Aspects in sized harnesses" } dd { (provenance.aspects) }
             dt { "Required" } dd { (case.status.required.as_deref().unwrap_or("nothing beyond no defect")) }
             dt { "Exit code" } dd { (case.status.exit_code) }
+            @if !case.run.joined.is_empty() { dt { "Joined from" } dd { (case.run.joined.join(", ")) } }
         }
+        (super::times::render(&case.run))
         @if !case.status.reasons.is_empty() {
             h4 { "Why the exit code is not 0" }
             ul { @for reason in &case.status.reasons { li { (reason) } } }

@@ -9,6 +9,7 @@ use crate::case::{Claim, Cover, Engine, EngineResult, Evidence, Kind};
 use crate::error::{Fault, read};
 use crate::verdict::Verdict;
 use atc_prover::report::{Campaign, HarnessResult, Verdict as Said};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -83,7 +84,7 @@ pub fn places(root: &Path) -> Result<BTreeMap<String, String>, Fault> {
 }
 
 /// One engine's campaign, and whether it belongs to these sources.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Campaigned {
     /// The results.
     pub campaign: Campaign,
@@ -171,6 +172,7 @@ fn one(harness: &Catalogue, campaigns: &[Campaigned]) -> Evidence {
         at: harness.at.clone(),
         verdict: judgement.verdict,
         detail: if judgement.bound.is_empty() { engine.to_owned() } else { judgement.bound },
+        left_out: false,
         reason: judgement.reason,
         requirements: harness.requirements.clone(),
         assumptions: harness.assumptions.clone(),
