@@ -43,6 +43,8 @@ pub struct Arsenal {
     pub restart: usize,
     /// Points may take a command a cycle late.
     pub slow_points: bool,
+    /// Trains hear no telegram that is for the other way, as if each said so.
+    pub directed: bool,
     /// The drivers: those of telegrams, those of signals.
     pub drivers: [bool; 2],
 }
@@ -66,6 +68,7 @@ impl Arsenal {
         pace: 1,
         restart: 0,
         slow_points: false,
+        directed: true,
         drivers: [true, true],
     };
 
@@ -116,6 +119,7 @@ pub struct Attacker {
     driver: Option<Driver>,
     unblock: Option<i64>,
     interval: usize,
+    later: Vec<(i64, Move)>,
 }
 
 impl Attacker {
@@ -128,7 +132,7 @@ impl Attacker {
             [false, true] => Some(Driver::Signals),
             _ => dice.pick(&[None, Some(Driver::Telegrams), Some(Driver::Telegrams), Some(Driver::Signals)]).flatten(),
         };
-        Self { dice, arsenal, driver, unblock: None, interval }
+        Self { dice, arsenal, driver, unblock: None, interval, later: Vec::new() }
     }
 
     /// What is fixed for the episode.
@@ -139,6 +143,7 @@ impl Attacker {
             manner: Manner { overlaps: self.dice.once_in(2), late },
             slow: if self.arsenal.slow_points { slow } else { 0 },
             throw_percent: self.dice.within(30, 100),
+            directed: self.arsenal.directed,
         }
     }
 
@@ -166,6 +171,8 @@ impl Attacker {
             self.unblock = None;
             moves.push(Move::Command(Commands { unblock: all(ground), lift: all(ground), ..Commands::default() }));
         }
+        moves.extend(self.later.iter().filter(|(when, _)| *when == now).map(|(_, it)| *it));
+        self.later.retain(|(when, _)| *when > now);
         if self.arsenal.one + self.arsenal.many + self.arsenal.lose > 0 {
             for train in &world.trains {
                 if at_joint(ground, train) && self.dice.once_in(8) {
@@ -203,6 +210,9 @@ impl Attacker {
                 // Mostly away from where it lies.
                 let reverse = world.points.lies(point) == self.dice.once_in(8);
                 moves.push(Move::Ask(Ask::Drive(point, reverse)));
+                if self.arsenal.slow_points && self.dice.once_in(2) {
+                    self.leave_late(world, point);
+                }
             }
             3 => self.on_line(world, moves),
             4 => {
@@ -257,9 +267,46 @@ impl Attacker {
             }
             14 if self.dice.once_in(8) => {
                 moves.push(Move::Restart);
-                self.unblock = Some(world.truth.now + self.dice.within(1, 60));
+                let unblock = world.truth.now + self.dice.within(1, 60);
+                self.unblock = Some(unblock);
+                self.turn_after(world, unblock, moves);
             }
             _ => {}
+        }
+    }
+
+    /// A route over a point that was just driven, for a train that hears of it and then nothing more.
+    fn leave_late(&mut self, world: &World, point: usize) {
+        let ground = world.ground;
+        let Some(train) = world.trains.get(self.dice.below(world.trains.len())) else { return };
+        let here = bit(train.front_circuit(ground));
+        let lies = world.points.lies(point);
+        let over = |route: &usize| {
+            ground.routes[*route].entry_mask() & here != 0 && ground.routes[*route].points.contains(&(point, lies))
+        };
+        let wanted: Vec<usize> = (0..ground.routes.len()).filter(over).collect();
+        if let Some(route) = self.dice.pick(&wanted) {
+            let now = world.truth.now;
+            self.later.push((now + 1, Move::Ask(Ask::Set(route))));
+            self.later.push((now + 2, Move::Deaf(train.number, ground.life)));
+        }
+    }
+
+    /// A line with a train on it is turned as soon as the device that forgot the train obeys.
+    fn turn_after(&mut self, world: &World, unblock: i64, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        if self.arsenal.line == 0 || self.dice.once_in(2) {
+            return;
+        }
+        let busy = |line: &usize| world.trains.iter().any(|train| train.under & ground.lines[*line].mask != 0);
+        let lines: Vec<usize> = (0..ground.lines.len()).filter(busy).collect();
+        if let Some(line) = self.dice.pick(&lines) {
+            moves.push(Move::Consent(line, false));
+            self.later.push((unblock + 1, Move::Ask(Ask::Turn(line, false))));
+            for wait in [3, 10, ground.turn] {
+                let arrival = self.arrival(ground);
+                self.later.push((unblock + wait, Move::Send(line, arrival)));
+            }
         }
     }
 

@@ -71,8 +71,8 @@ pub struct Telegram {
     pub hold: Mask,
     /// The highest code.
     pub code: u8,
-    /// The joint towards which it is for: `None` where a telegram does not say so, and a train takes it whichever way it faces.
-    pub towards: Option<usize>,
+    /// The circuit, alone, towards which the train must face; `None` where a telegram does not say so.
+    pub towards: Option<Mask>,
 }
 
 /// A device.

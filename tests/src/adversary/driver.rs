@@ -23,7 +23,12 @@ struct Sight {
 }
 
 /// The train hears the telegram of the circuit with its front.
-pub fn hear(train: &mut Train, ground: &Ground, device: &dyn Device, neighbour: Option<Heard>) {
+pub fn hear(
+    train: &mut Train,
+    (ground, points): (&Ground, &Points),
+    (device, directed): (&dyn Device, bool),
+    neighbour: Option<Heard>,
+) {
     if train.deaf > 0 {
         train.deaf -= 1;
         train.heard.age += 1;
@@ -38,8 +43,13 @@ pub fn hear(train: &mut Train, ground: &Ground, device: &dyn Device, neighbour: 
     }
     let circuit = train.front_circuit(ground);
     let telegram = if circuit < ground.seen { device.telegram(circuit) } else { super::device::Telegram::default() };
-    let towards = telegram.towards.is_none_or(|joint| joint == train.front().exit);
-    train.heard = if telegram.hold != 0 && towards {
+    // Where the telegram does not say which way it is for, a train takes it; unless the ground sees to it that only the right one hears it.
+    let ahead = || ahead(train, ground, points, train.to_joint() + 1);
+    let meant = match telegram.towards {
+        Some(next) => ahead() & next != 0,
+        None => !directed || ahead() & telegram.hold != 0,
+    };
+    train.heard = if telegram.hold != 0 && meant {
         Heard {
             limit: train.run + train.to_joint() + length(ground, telegram.hold),
             speed: ground.codes[usize::from(telegram.code)],
@@ -52,18 +62,19 @@ pub fn hear(train: &mut Train, ground: &Ground, device: &dyn Device, neighbour: 
     };
 }
 
-/// The circuits ahead of the front within `distance`.
+/// The circuits ahead of the front within `distance`, the first of them at least.
 pub fn ahead(train: &Train, ground: &Ground, points: &Points, distance: i64) -> Mask {
     let (mut found, mut covered) = (0, train.to_joint());
     let (mut piece, mut joint) = (train.front().piece, train.front().exit);
-    while covered < distance {
+    let here = bit(train.front_circuit(ground));
+    while covered < distance || found & !here == 0 {
         let Some(next) = ground.across(joint, piece) else { break };
         let reverse = ground.pieces[next].point.is_some_and(|point| points.lies(point));
         found |= bit(ground.pieces[next].circuit);
         covered += ground.pieces[next].length;
         (joint, piece) = (ground.leave(next, joint, reverse).0, next);
     }
-    found & !bit(train.front_circuit(ground))
+    found & !here
 }
 
 /// What the driver decides for the next cycle: how far the train may run. The authority is noted.
@@ -72,7 +83,8 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: u64)
     let by_telegram = (told.limit - train.run).max(0);
     let (distance, speed) = match train.driver {
         Driver::Telegrams => {
-            train.authority = if told.speed > 0 && by_telegram > 0 { ahead(train, ground, points, by_telegram) } else { 0 };
+            train.authority =
+                if told.speed > 0 && by_telegram > 0 { ahead(train, ground, points, by_telegram) } else { 0 };
             (by_telegram, told.speed)
         }
         Driver::Signals if told.neighbour => {
@@ -101,9 +113,8 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight 
     let limits = train.legs.iter().map(|leg| leg.limit).min().unwrap_or(i64::MAX);
     let mut sight = Sight { distance: train.to_joint(), speed: limits.min(ground.fastest), ahead: 0 };
     let (mut piece, mut joint, mut route) = (front.piece, front.exit, train.route);
-    let at_signal = |joint: usize, circuit: usize| {
-        ground.routes.iter().any(|route| route.start == joint && route.entry == circuit)
-    };
+    let at_signal =
+        |joint: usize, circuit: usize| ground.routes.iter().any(|route| route.start == joint && route.entry == circuit);
     if on_line && !at_signal(joint, here) {
         sight.speed = sight.speed.min(train.heard.speed);
     }

@@ -57,6 +57,13 @@ pub struct Route {
     pub release: i64,
 }
 
+impl Route {
+    /// The circuit in rear of the signal, as a set.
+    pub const fn entry_mask(&self) -> Mask {
+        bit(self.entry)
+    }
+}
+
 /// A line to a neighbour.
 #[derive(Clone, Debug)]
 pub struct Line {

@@ -17,7 +17,7 @@ pub enum Family {
     Restriction,
     /// A worker struck whose block was confirmed.
     Worker,
-    /// Two trains that both have authority over one circuit.
+    /// Two trains that both have authority over one circuit, or still run on it.
     Authority,
     /// A train with authority over a route that nobody has requested, or that was withdrawn since.
     Unasked,
@@ -110,10 +110,10 @@ pub fn judge(ground: &Ground, trains: &[Train], points: &Points, truth: &Truth, 
                 let text = format!("trains {} and {} meet on {}", train.number, other.number, ground.named(both));
                 return found(Family::Collision, text);
             }
-            let both = train.authority & other.authority;
+            let both = train.claim & other.claim;
             if seek(Family::Authority) && both != 0 {
                 let place = ground.named(both);
-                let text = format!("trains {} and {} both have authority over {place}", train.number, other.number);
+                let text = format!("trains {} and {} may both run over {place}", train.number, other.number);
                 return found(Family::Authority, text);
             }
         }
@@ -170,8 +170,8 @@ fn inside(ground: &Ground) -> Mask {
 }
 
 fn unasked(ground: &Ground, train: &Train, truth: &Truth) -> Option<String> {
-    let mut left = train.authority & inside(ground);
-    if train.driver == Driver::Signals || left == 0 {
+    let mut left = (train.heard.hold | train.first_ahead) & inside(ground);
+    if train.driver == Driver::Signals || train.authority == 0 || left == 0 {
         return None;
     }
     for (route, (asked, withdrawn)) in ground.routes.iter().zip(&truth.asked) {

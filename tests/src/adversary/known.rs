@@ -23,6 +23,8 @@ pub struct Fault {
     pub ends_in: &'static [Family],
     /// The station on which it is looked for.
     pub layout: &'static str,
+    /// A seed with which it is found soon.
+    pub seed: u64,
 }
 
 const TELEGRAMS: Arsenal = Arsenal { drivers: [true, false], ..Arsenal::RUNNING };
@@ -37,6 +39,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { many: 12, point: 12, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "bobbing circuit",
@@ -45,6 +48,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { one: 16, point: 12, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "withdrawn route grants again",
@@ -53,6 +57,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { withdraw: 10, ..TELEGRAMS },
         ends_in: &[Family::Unasked],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "point leaves after an individual command",
@@ -61,6 +66,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { point: 30, deaf: 10, slow_points: true, ..TELEGRAMS },
         ends_in: &[Family::Derailment],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "speed of the tail",
@@ -69,6 +75,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: TELEGRAMS,
         ends_in: &[Family::Speed],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "restriction under the tail",
@@ -77,6 +84,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { restrict: 6, ..TELEGRAMS },
         ends_in: &[Family::Restriction],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "consent ended",
@@ -85,6 +93,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { neighbour_work: 10, line: 40, ..TELEGRAMS },
         ends_in: &[Family::Worker, Family::Collision, Family::Authority],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "turned while occupied after a restart",
@@ -93,6 +102,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { line: 60, restart: 8, ..TELEGRAMS },
         ends_in: &[Family::Collision, Family::Authority],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "restart forgets the approach",
@@ -101,13 +111,15 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { restart: 20, point: 20, ..TELEGRAMS },
         ends_in: &[Family::Derailment],
         layout: LOOP,
+        seed: 1,
     },
     Fault {
         name: "telegram against the direction",
         session: "telegram-against-the-direction",
         must: "a telegram says for which direction of travel it is, and a train that faces the other way has none",
-        arsenal: Arsenal { face: 10, ..TELEGRAMS },
+        arsenal: Arsenal { face: 10, directed: false, ..TELEGRAMS },
         ends_in: &[Family::Unasked, Family::Derailment],
         layout: LOOP,
+        seed: 1,
     },
 ];

@@ -6,7 +6,7 @@
 //! * [`moves`], [`arsenal`]: what the adversary may do, and how it draws that from a seed.
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
-//! * [`known`]: the faults that it must find while they are there.
+//! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
 
 pub mod arsenal;
 pub mod conditions;
@@ -20,6 +20,7 @@ pub mod known;
 pub mod moves;
 pub mod neighbour;
 pub mod point;
+pub mod stations;
 pub mod train;
 pub mod words;
 pub mod world;

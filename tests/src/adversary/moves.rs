@@ -106,7 +106,10 @@ impl Move {
                 format!("the neighbour sends a train on line {}: {}", ground.lines[*line].name, train.words())
             }
             Self::NeighbourWork(line, true) => {
-                format!("the neighbour has confirmed a block on line {} and puts a worker there", ground.lines[*line].name)
+                format!(
+                    "the neighbour has confirmed a block on line {} and puts a worker there",
+                    ground.lines[*line].name
+                )
             }
             Self::NeighbourWork(line, false) => {
                 format!("the neighbour's worker leaves line {}", ground.lines[*line].name)

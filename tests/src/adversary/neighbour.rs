@@ -101,9 +101,11 @@ impl Neighbour {
         may && turns && outside
     }
 
-    /// It puts a worker on the line.
+    /// It puts a worker on the line, once every train that could count on its consent must have stopped.
     pub const fn work(&mut self, ground: &Ground) -> bool {
-        let may = !self.consents && self.withdrawn >= ground.turn && !self.sends && self.clear_for > ground.clear;
+        let stops = ground.fastest * 1000 / (ground.brake * ground.cycle_ms) + ground.life + ground.loss + 2;
+        let alone = !self.consents && self.withdrawn >= ground.turn + stops && !self.sends;
+        let may = alone && self.clear_for > ground.clear;
         if may {
             self.works = true;
         }

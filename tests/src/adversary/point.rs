@@ -9,8 +9,8 @@ struct Blade {
     reverse: bool,
     /// The cycles that its stroke yet takes; 0 if it is at rest.
     left: i64,
-    /// A command that takes effect a cycle late.
-    late: Option<bool>,
+    /// A command that takes effect after so many reports more.
+    late: Option<(bool, i64)>,
     /// Whether commands take effect a cycle late.
     slow: bool,
     /// The time of its stroke.
@@ -66,10 +66,13 @@ impl Points {
             blade.driven += 1;
             if blade.left > 0 {
                 blade.left -= 1;
-            } else if let Some(reverse) = blade.late.take() {
-                // A command of the cycle before last: it leaves in the cycle after the drive (`points-leave-while-driven`).
-                self.latest = self.latest.max(blade.driven - 1);
-                (blade.reverse, blade.left) = (reverse, blade.throw);
+            } else if let Some((reverse, reports)) = blade.late {
+                blade.late = (reports > 0).then_some((reverse, reports - 1));
+                if reports == 0 {
+                    // It leaves in the cycle after the drive, after that cycle's report (`points-leave-while-driven`).
+                    self.latest = self.latest.max(blade.driven - 1);
+                    (blade.reverse, blade.left) = (reverse, blade.throw);
+                }
             }
         }
     }
@@ -87,7 +90,7 @@ impl Points {
                 continue;
             }
             if blade.slow && blade.left == 0 {
-                blade.late = Some(wanted);
+                blade.late = blade.late.or(Some((wanted, 1)));
             } else {
                 (blade.reverse, blade.left) = (wanted, blade.throw);
             }

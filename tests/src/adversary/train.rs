@@ -84,6 +84,10 @@ pub struct Train {
     pub target: i64,
     /// The circuits ahead that it has authority for.
     pub authority: Mask,
+    /// The circuit that comes next, if it has authority to enter it.
+    pub first_ahead: Mask,
+    /// The same as the authority, and those that it runs over if it brakes now.
+    pub claim: Mask,
     /// The circuits under it.
     pub under: Mask,
 }
@@ -160,9 +164,8 @@ impl Train {
     fn enter(&mut self, ground: &Ground, points: &Points, piece: usize, from: Leg) {
         let came = ground.pieces[from.piece].circuit;
         let circuit = ground.pieces[piece].circuit;
-        let lies = |route: &super::ground::Route| {
-            route.points.iter().all(|(point, reverse)| points.lies(*point) == *reverse)
-        };
+        let lies =
+            |route: &super::ground::Route| route.points.iter().all(|(point, reverse)| points.lies(*point) == *reverse);
         let begins = |route: &super::ground::Route| route.start == from.exit && route.entry == came;
         if let Some(route) = ground.routes.iter().position(|route| begins(route) && lies(route)) {
             self.route = Some(route);

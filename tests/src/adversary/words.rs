@@ -56,7 +56,7 @@ fn story(device: &mut dyn Device, ground: &Ground, scenario: &Scenario, last: i6
             }
         }
         let after = state(&world);
-        if after != before || !moves.is_empty() || now == last {
+        if after != before || now == last {
             lines.push(format!("cycle {now}:     {}", truth(&world)));
         }
         before = after;
@@ -77,7 +77,11 @@ fn truth(world: &World) -> String {
         let kmh = train.speed * 36 / 10_000;
         let under = members(train.under).map(|circuit| ground.circuits[circuit].as_str()).collect::<Vec<_>>().join("+");
         let front = &ground.circuits[train.front_circuit(ground)];
-        let mut part = format!("train {} on {under}, front {} m before the end of {front}, {kmh} km/h", train.number, train.to_joint() / 1000);
+        let mut part = format!(
+            "train {} on {under}, front {} m before the end of {front}, {kmh} km/h",
+            train.number,
+            train.to_joint() / 1000
+        );
         if train.authority != 0 {
             part.push_str(&format!(", may enter {}", ground.named(train.authority)));
         }

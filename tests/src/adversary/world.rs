@@ -2,7 +2,7 @@
 
 use super::conditions::Measured;
 use super::device::{Ask, Device, Read, Said, all};
-use super::driver::{decide, hear};
+use super::driver::{ahead, decide, hear};
 use super::ground::{Ground, Mask, NEIGHBOUR_SIGNAL_MM, OUTSIDE_MM, bit, members};
 use super::judge::{Accident, Family, Truth, judge};
 use super::moves::{Arrival, Move};
@@ -19,6 +19,8 @@ pub struct Setting {
     pub slow: u32,
     /// The stroke of the points, in per cent of the longest.
     pub throw_percent: i64,
+    /// A train hears no telegram that is for the other way.
+    pub directed: bool,
 }
 
 /// The world.
@@ -93,7 +95,8 @@ impl<'a> World<'a> {
         self.pass_neighbours();
         for number in 0..self.trains.len() {
             let neighbour = self.neighbour_says(number);
-            hear(&mut self.trains[number], self.ground, device, neighbour);
+            let directed = self.setting.directed;
+            hear(&mut self.trains[number], (self.ground, &self.points), (device, directed), neighbour);
             self.measured.age = self.measured.age.max(self.trains[number].heard.age);
         }
         self.authorities();
@@ -150,7 +153,9 @@ impl<'a> World<'a> {
                     train.pace = speed;
                 }
             }
-            Move::Work(circuit, true) if self.said.confirmed & all(ground) & bit(circuit) != 0 => self.truth.workers |= bit(circuit),
+            Move::Work(circuit, true) if self.said.confirmed & all(ground) & bit(circuit) != 0 => {
+                self.truth.workers |= bit(circuit)
+            }
             Move::Work(_, true) => {}
             Move::Work(circuit, false) => self.truth.workers &= !bit(circuit),
             Move::Consent(line, true) => {
@@ -192,7 +197,11 @@ impl<'a> World<'a> {
         let (piece, far) = (it.piece, it.far);
         if it.ways[0] && self.neighbours[line].take(self.ground) {
             let at = OUTSIDE_MM - NEIGHBOUR_SIGNAL_MM;
-            self.appear(piece, far, at, Arrival { length: arrival.length.min(at), ..arrival });
+            // It passes the signal at a speed at which it can keep to a restriction behind the border.
+            let slow = self.truth.restricted[it.outermost].0.min(self.ground.fastest);
+            let most = (slow * slow + 2 * self.ground.brake * (NEIGHBOUR_SIGNAL_MM - 10_000)).isqrt();
+            let speed = arrival.speed.min(most).min(self.ground.fastest);
+            self.appear(piece, far, at, Arrival { length: arrival.length.min(at), speed, ..arrival });
         }
     }
 
@@ -206,7 +215,7 @@ impl<'a> World<'a> {
         if self.truth.now == 0 && !taken {
             let length = ground.pieces[piece].length;
             let enter = ground.pieces[piece].joints[usize::from(arrival.about)];
-            let at = length - arrival.gap.clamp(1000, length / 4);
+            let at = length - arrival.gap.clamp(300, length / 4);
             if let Some(line) = line {
                 // Either the neighbour has sent it, or the station with the neighbour's consent.
                 let inward = !self.outward(line, leg(ground, &self.points, piece, enter, None).exit, piece);
@@ -253,6 +262,8 @@ impl<'a> World<'a> {
             slid: false,
             target: 0,
             authority: 0,
+            first_ahead: 0,
+            claim: 0,
             under: 0,
         };
         train.settle(self.ground);
@@ -360,8 +371,9 @@ impl<'a> World<'a> {
         let outward = train.front().exit == line.far || train.front().exit == line.border && here == line.outermost;
         if outward {
             // It takes the train in if its stretch is clear, and it sends nobody.
-            let others = self.trains.iter().any(|other| other.number != train.number && other.under & bit(line.outside) != 0);
-            let blocked = neighbour.works || neighbour.sends || others;
+            let others =
+                self.trains.iter().any(|other| other.number != train.number && other.under & bit(line.outside) != 0);
+            let blocked = neighbour.works || neighbour.sends || others || !neighbour.consents;
             let inside = here == line.outside;
             let to_end = train.to_joint() + if inside { 0 } else { OUTSIDE_MM };
             let limit = if inside || !blocked { train.run + to_end - 1000 } else { return None };
@@ -377,7 +389,10 @@ impl<'a> World<'a> {
         let clear = neighbour.outermost_clear > ground.clear;
         let open = neighbour.is_permitted(ground) && neighbour.sends && clear;
         let limit = train.run + train.to_joint() + ground.lengths[line.outermost];
-        let heard = Heard { limit, speed: ground.fastest, hold: bit(line.outermost), age: 0, neighbour: true };
+        // The neighbour knows the restriction behind its border (`limits-reach-over-the-border`).
+        let slow = self.truth.restricted[line.outermost].0.min(ground.fastest);
+        let speed = (slow * slow + 2 * ground.brake * (train.to_joint() - 5_000).max(0)).isqrt().min(ground.fastest);
+        let heard = Heard { limit, speed, hold: bit(line.outermost), age: 0, neighbour: true };
         Some(if open { heard } else { Heard { neighbour: true, ..Heard::STOP } })
     }
 
@@ -385,6 +400,14 @@ impl<'a> World<'a> {
     fn authorities(&mut self) {
         for train in &mut self.trains {
             train.next = decide(train, self.ground, &self.points, self.said.proceed);
+            // What it may yet run over: what it has authority for, and where it runs if it brakes now.
+            let braking = train.speed * train.speed / (2 * self.ground.brake);
+            let to_joint = train.to_joint();
+            train.first_ahead = train.authority & ahead(train, self.ground, &self.points, to_joint);
+            train.claim = train.authority;
+            if braking > to_joint {
+                train.claim |= ahead(train, self.ground, &self.points, braking);
+            }
         }
     }
 }
