@@ -39,7 +39,7 @@ fn all_weapons_on_every_station() {
     for description in descriptions {
         let (mut kernel, ground) = device::kernel(&description).expect("a sound layout");
         let wanted =
-            Hunt { seed: 1, cycles: 20_000, episode: 3000, arsenal: Arsenal::ALL, sought: Family::ALL.to_vec() };
+            Hunt { seed: 1, cycles: 300_000, episode: 3000, arsenal: Arsenal::ALL, sought: Family::ALL.to_vec() };
         let (find, tally) = hunt(&mut *kernel, &ground, &wanted);
         assert_eq!(tally.discarded, 0, "{}", ground.name);
         let told = find.as_ref().map(|find| words::tell(&mut *kernel, &ground, find));

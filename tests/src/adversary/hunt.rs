@@ -1,6 +1,7 @@
 //! The hunt: episode after episode until an accident, and the scenario made as small as it gets.
 
-use super::arsenal::{Arsenal, Attacker};
+use super::arsenal::Arsenal;
+use super::attacker::Attacker;
 use super::conditions::{Measured, broken};
 use super::device::Device;
 use super::ground::Ground;

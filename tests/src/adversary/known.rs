@@ -39,7 +39,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { many: 12, point: 12, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 1,
+        seed: 18,
     },
     Fault {
         name: "bobbing circuit",
@@ -48,7 +48,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { one: 16, point: 12, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 1,
+        seed: 38,
     },
     Fault {
         name: "withdrawn route grants again",
@@ -57,7 +57,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { withdraw: 10, ..TELEGRAMS },
         ends_in: &[Family::Unasked],
         layout: LOOP,
-        seed: 1,
+        seed: 11,
     },
     Fault {
         name: "point leaves after an individual command",
@@ -66,7 +66,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { point: 30, deaf: 10, slow_points: true, ..TELEGRAMS },
         ends_in: &[Family::Derailment],
         layout: LOOP,
-        seed: 1,
+        seed: 6,
     },
     Fault {
         name: "speed of the tail",
@@ -75,7 +75,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: TELEGRAMS,
         ends_in: &[Family::Speed],
         layout: LOOP,
-        seed: 1,
+        seed: 40,
     },
     Fault {
         name: "restriction under the tail",
@@ -84,7 +84,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { restrict: 6, ..TELEGRAMS },
         ends_in: &[Family::Restriction],
         layout: LOOP,
-        seed: 1,
+        seed: 4,
     },
     Fault {
         name: "consent ended",
@@ -93,7 +93,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { neighbour_work: 10, line: 40, ..TELEGRAMS },
         ends_in: &[Family::Worker, Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 1,
+        seed: 20,
     },
     Fault {
         name: "turned while occupied after a restart",
@@ -102,7 +102,7 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { line: 60, restart: 8, ..TELEGRAMS },
         ends_in: &[Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 1,
+        seed: 27,
     },
     Fault {
         name: "restart forgets the approach",
