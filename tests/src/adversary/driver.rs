@@ -132,8 +132,10 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight 
         }
         let Some(next) = ground.across(joint, piece) else { return sight };
         let to = ground.pieces[next].circuit;
-        let line = to >= ground.seen || ground.lines.iter().any(|line| line.mask & bit(to) != 0);
-        if line && train.heard.hold & bit(to) == 0 {
+        // Onto plain line, and off it where no signal stands, he keeps to the telegram.
+        let is_line = |circuit: usize| ground.lines.iter().any(|line| line.mask & bit(circuit) != 0);
+        let by_telegram = to >= ground.seen || is_line(to) || is_line(circuit) && !at_signal(joint, circuit);
+        if by_telegram && train.heard.hold & bit(to) == 0 {
             return sight;
         }
         if route.is_some_and(|route| ground.routes[route].mask & bit(to) == 0) {
