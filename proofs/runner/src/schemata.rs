@@ -218,7 +218,8 @@ impl<'ast> Visit<'ast> for Finder {
                 self.place(&call.func);
                 call.args.iter().for_each(|one| self.argument(one));
             }
-            Expr::Cast(cast) => self.value(&cast.expr),
+            // Its type may change with it.
+            Expr::Cast(cast) => self.place(&cast.expr),
             Expr::Closure(closure) => self.value(&closure.body),
             Expr::If(branch) => {
                 self.value(&branch.cond);

@@ -52,6 +52,9 @@ struct Group<'a> {
 /// Harnesses in a group: few enough that most of its mutants concern each of them.
 const SIZE: usize = 8;
 
+/// Bytes of the stack: what may be chosen keeps more in memory. (Were it too small, paths would end there and mutants survive.)
+const ROOM: u32 = 2 * STACK;
+
 /// CPU time for mutants that are asked for together. It is there for many answers at once, not for hard ones.
 const TOGETHER: Duration = Duration::from_secs(40);
 
@@ -190,12 +193,12 @@ pub(crate) struct Asked<'a> {
 
 impl<'a> Asked<'a> {
     pub fn new(tools: &'a Tools, compiled: &Compiled, harness: &'static Harness, options: &'a Options) -> Result<Self, String> {
-        Ok(Self { tools, folder: compiled.to_c(tools, harness.name, STACK)?, harness, options })
+        Ok(Self { tools, folder: compiled.to_c(tools, harness.name, ROOM)?, harness, options })
     }
 
     fn question(&self, case: usize, ask: Ask) -> Question<'static> {
         let question = Question::proof(self.harness.name, self.options.solver, self.options.limit);
-        Question { case: (case, self.harness.cases), ask, ..question }
+        Question { case: (case, self.harness.cases), ask, stack: ROOM, ..question }
     }
 
     fn list(&self, numbers: impl IntoIterator<Item = usize>) -> Result<(), String> {
