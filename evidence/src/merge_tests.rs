@@ -25,6 +25,7 @@ fn harness(name: &str, verdict: Verdict) -> HarnessResult {
         claims: vec![],
         covers: vec![],
         counterexample: None,
+        unwound: 0,
     }
 }
 

@@ -222,9 +222,6 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
         }
     }
     result.unwound = answers.iter().map(|(proof, _)| proof.unwound).max().unwrap_or(0);
-    if let Some(reason) = crate::unwound::beyond(harness, result.unwound) {
-        return unproven(harness, Verdict::Error, reason);
-    }
     for (number, claim) in result.claims.iter_mut().enumerate() {
         let verdict = |(proof, reach): &(&Answer, &Answer)| match (proof.claim(number), reach.claim(number)) {
             (Some(false), _) => Verdict::Failed,
@@ -259,7 +256,9 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
     } else {
         let which: Vec<_> =
             result.claims.iter().filter(|claim| claim.verdict == worst).map(|claim| claim.name.as_str()).collect();
-        result.reason = (worst != Verdict::Proved).then(|| format!("claims: {}", which.join(", ")));
+        // A bound that is too small for Kani takes nothing from what is proved here: it is told beside it.
+        let beyond = crate::unwound::beyond(harness, result.unwound);
+        result.reason = if worst == Verdict::Proved { beyond } else { Some(format!("claims: {}", which.join(", "))) };
         result.verdict = worst;
     }
     result

@@ -236,7 +236,10 @@ mod tests {
         ]);
         let written = no_crossing(&text).unwrap_or_default();
         let order: Vec<_> = written.lines().filter(|line| line.contains("if (var_JB1 ==")).collect();
-        assert!(order.len() == 2 && order[0].contains("goto var_B3;") && order[1].contains("goto var_B2;"), "{written}");
+        assert!(
+            order.len() == 2 && order[0].contains("goto var_B3;") && order[1].contains("goto var_B2;"),
+            "{written}"
+        );
     }
 
     #[test]

@@ -159,9 +159,7 @@ fn run(command: Command) -> Result<bool, String> {
             save(&json.unwrap_or_else(|| default("native.json")), &result)?;
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
         }
-        Command::Mutants { names, json, alone, run } => {
-            try_mutants(&names, json, &Options { alone, ..run.options() })
-        }
+        Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
         Command::Kani { what } => of_kani(what),
         Command::Selftest { run } => {

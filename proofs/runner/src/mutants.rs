@@ -110,9 +110,8 @@ pub fn mutants(
     let mut controls = Vec::new();
     match &tools {
         Ok(tools) => {
-            let (together, alone): (Vec<_>, Vec<_>) = (0..chosen.len()).partition(|index| {
-                !options.alone && !chosen[*index].alone && selectable(&root, chosen[*index])
-            });
+            let (together, alone): (Vec<_>, Vec<_>) = (0..chosen.len())
+                .partition(|index| !options.alone && !chosen[*index].alone && selectable(&root, chosen[*index]));
             let picked: Vec<_> = together.iter().map(|index| chosen[*index]).collect();
             let told = |index: usize, name: &str, judged| tally.judge(together[index], name, judged);
             controls = together::judge(tools, &root, options, &picked, &told)?;
@@ -183,7 +182,8 @@ impl<'a> Tally<'a> {
     /// The mutants of which a harness has no answer yet.
     fn unanswered(&self) -> Vec<usize> {
         let all = lock(&self.judged);
-        let mut open: Vec<_> = all.iter().filter(|(_, judged)| !judged.is_final()).map(|((index, _), _)| *index).collect();
+        let mut open: Vec<_> =
+            all.iter().filter(|(_, judged)| !judged.is_final()).map(|((index, _), _)| *index).collect();
         open.dedup();
         open
     }
@@ -217,7 +217,11 @@ impl<'a> Tally<'a> {
             file: mutant.path(),
             change: [mutant.find.clone(), mutant.replace.clone()],
             verdict,
-            killed_by: if matches!(verdict, MutantVerdict::Error | MutantVerdict::NotRun) { Vec::new() } else { killed_by },
+            killed_by: if matches!(verdict, MutantVerdict::Error | MutantVerdict::NotRun) {
+                Vec::new()
+            } else {
+                killed_by
+            },
             reason: (!reasons.is_empty()).then(|| reasons.join("; ")),
             seconds,
         }
@@ -235,4 +239,3 @@ pub const SLOW: [&str; 5] = ["t_per_4", "t_per_4_fix", "t_per_7", "per_machine",
 
 /// What is wrong is found more easily than that nothing is: MiniSat gets some time, and Kissat what that leaves.
 pub(crate) const FIRST: Duration = Duration::from_secs(40);
-

@@ -70,9 +70,8 @@ fn choice(text: &str, parts: &BTreeSet<Part>, change: &Change) -> Result<Choice,
     let to = start + find.len() - tail;
     // The change is before the end of what holds it.
     let grown = |end: usize| end + replace.len() - find.len();
-    let fits = |(first, last, form): &&Part| {
-        *first <= from && to <= *last && after.contains(&(*first, grown(*last), *form))
-    };
+    let fits =
+        |(first, last, form): &&Part| *first <= from && to <= *last && after.contains(&(*first, grown(*last), *form));
     let (first, last, form) = parts
         .iter()
         .filter(fits)
@@ -210,8 +209,15 @@ impl<'ast> Visit<'ast> for Finder {
             }
             Expr::Binary(both) => {
                 let assigns = both.op.span().source_text().is_some_and(|op| op.ends_with('=') && op.len() > 1)
-                    && !matches!(both.op, syn::BinOp::Eq(_) | syn::BinOp::Le(_) | syn::BinOp::Ge(_) | syn::BinOp::Ne(_));
-                if assigns { self.place(&both.left) } else { self.value(&both.left) }
+                    && !matches!(
+                        both.op,
+                        syn::BinOp::Eq(_) | syn::BinOp::Le(_) | syn::BinOp::Ge(_) | syn::BinOp::Ne(_)
+                    );
+                if assigns {
+                    self.place(&both.left)
+                } else {
+                    self.value(&both.left)
+                }
                 self.value(&both.right);
             }
             Expr::Call(call) => {

@@ -43,20 +43,39 @@ impl Judged {
     }
 }
 
-/// Harnesses that are compiled at once, and the mutants that they are to reject: by number, which is one more than their place.
+/// Harnesses that are compiled at once, and the mutants that they are to reject: by number from 1, each with its place among all.
 struct Group<'a> {
     harnesses: Vec<&'static Harness>,
-    mutants: BTreeMap<usize, &'a Mutant>,
+    mutants: BTreeMap<usize, (usize, &'a Mutant)>,
 }
 
 /// Harnesses in a group: few enough that most of its mutants concern each of them.
 const SIZE: usize = 8;
 
+/// How mutants are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// All of them in one question.
+    Together,
+    /// Each alone, and not for long.
+    Quick,
+    /// Each alone, until there is an answer.
+    Whole,
+}
+
+const WAYS: [Way; 3] = [Way::Together, Way::Quick, Way::Whole];
+
+/// CPU time for a mutant in a case in which it may not fail at all.
+const QUICK: Duration = Duration::from_secs(12);
+
 /// Bytes of the stack: what may be chosen keeps more in memory. (Were it too small, paths would end there and mutants survive.)
 const ROOM: u32 = 2 * STACK;
 
+/// Bytes for the selectors of a group.
+const SELECTORS: u32 = 512;
+
 /// CPU time for mutants that are asked for together. It is there for many answers at once, not for hard ones.
-const TOGETHER: Duration = Duration::from_secs(40);
+const TOGETHER: Duration = Duration::from_secs(30);
 
 /// The harnesses that are to reject some of the mutants, in groups of neighbours.
 fn groups<'a>(mutants: &[&'a Mutant]) -> Vec<Group<'a>> {
@@ -65,9 +84,10 @@ fn groups<'a>(mutants: &[&'a Mutant]) -> Vec<Group<'a>> {
     for module in atc_proofs::HARNESSES {
         let wanted: Vec<_> = module.iter().filter(|harness| names.contains(harness.name)).collect();
         for harnesses in wanted.chunks(SIZE) {
-            let concerned = |mutant: &Mutant| harnesses.iter().any(|one| mutant.killed_by.iter().any(|name| name == one.name));
-            let numbered = mutants.iter().enumerate().map(|(place, mutant)| (place + 1, *mutant));
-            let mutants = numbered.filter(|(_, mutant)| concerned(mutant)).collect();
+            let concerned =
+                |mutant: &Mutant| harnesses.iter().any(|one| mutant.killed_by.iter().any(|name| name == one.name));
+            let wanted = mutants.iter().copied().enumerate().filter(|(_, mutant)| concerned(mutant));
+            let mutants = (1..).zip(wanted).collect();
             groups.push(Group { harnesses: harnesses.to_vec(), mutants });
         }
     }
@@ -100,11 +120,11 @@ pub fn judge(
     let controls = in_parallel(options.jobs, jobs.len(), |job| {
         let (place, harness) = jobs[job];
         let started = Instant::now();
-        let mine: BTreeMap<usize, &Mutant> = groups[place]
+        let mine: BTreeMap<usize, usize> = groups[place]
             .mutants
             .iter()
-            .filter(|(_, mutant)| mutant.killed_by.iter().any(|name| name == harness.name))
-            .map(|(number, mutant)| (*number, *mutant))
+            .filter(|(_, (_, mutant))| mutant.killed_by.iter().any(|name| name == harness.name))
+            .map(|(number, (place, _))| (*number, *place))
             .collect();
         let asked = match &compiled[place] {
             Ok(compiled) => Asked::new(tools, compiled, harness, options).and_then(|asked| {
@@ -123,12 +143,12 @@ pub fn judge(
             (Ok(asked), _) => Ok(asked.judge(&mine.keys().copied().collect())),
             (Err(reason), _) => Err(Judged::Error(reason.clone())),
         };
-        for number in mine.keys() {
+        for (number, place) in &mine {
             let verdict = match &judged {
                 Ok(all) => all.get(number).cloned().unwrap_or(Judged::Passes),
                 Err(verdict) => verdict.clone(),
             };
-            told(number - 1, harness.name, verdict);
+            told(*place, harness.name, verdict);
         }
         let seconds = started.elapsed().as_secs_f64();
         control.map(|control| Control { harness: harness.name.to_owned(), reason: control.err(), seconds })
@@ -141,7 +161,7 @@ fn build(tools: &Tools, root: &Path, folder: &Path, options: &Options, group: &G
     let sources = folder.join("sources");
     copy(root, &sources)?;
     let mut files: BTreeMap<&str, Vec<Change>> = BTreeMap::new();
-    for (number, mutant) in &group.mutants {
+    for (number, (_, mutant)) in &group.mutants {
         let change = Change { number: *number, find: &mutant.find, replace: &mutant.replace };
         files.entry(&mutant.file).or_default().push(change);
     }
@@ -192,13 +212,18 @@ pub(crate) struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    pub fn new(tools: &'a Tools, compiled: &Compiled, harness: &'static Harness, options: &'a Options) -> Result<Self, String> {
+    pub fn new(
+        tools: &'a Tools,
+        compiled: &Compiled,
+        harness: &'static Harness,
+        options: &'a Options,
+    ) -> Result<Self, String> {
         Ok(Self { tools, folder: compiled.to_c(tools, harness.name, ROOM)?, harness, options })
     }
 
     fn question(&self, case: usize, ask: Ask) -> Question<'static> {
         let question = Question::proof(self.harness.name, self.options.solver, self.options.limit);
-        Question { case: (case, self.harness.cases), ask, stack: ROOM, ..question }
+        Question { case: (case, self.harness.cases), ask, stack: ROOM + SELECTORS, ..question }
     }
 
     fn list(&self, numbers: impl IntoIterator<Item = usize>) -> Result<(), String> {
@@ -215,7 +240,9 @@ impl<'a> Asked<'a> {
             let (answer, _) = answer.map_err(|silence| silence.of(self.harness.name))?;
             match (answer.mutant(0), answer.other_failure()) {
                 (Some(true), None) => {}
-                (_, Some(failure)) => return Err(format!("{failure} in {} with no mutant selected", self.harness.name)),
+                (_, Some(failure)) => {
+                    return Err(format!("{failure} in {} with no mutant selected", self.harness.name));
+                }
                 _ => return Err(format!("a claim of {} does not hold with no mutant selected", self.harness.name)),
             }
         }
@@ -228,30 +255,26 @@ impl<'a> Asked<'a> {
         let mut found = BTreeMap::new();
         let mut judged = BTreeMap::new();
         // A panic is what the theorem of totality is about; claims come first, since there are far fewer places to look at.
-        let mut together = true;
-        let cases = 0..self.harness.cases;
-        let asks = [Ask::Mutants, Ask::Panics];
-        for (ask, case) in asks.into_iter().flat_map(|ask| cases.clone().map(move |case| (ask, case))) {
-            // Together while that has answers. What cannot fail in this case is hard to tell of many at once.
-            let groups = if together { vec![left.clone()] } else { Vec::new() };
-            let mut alone = if together { BTreeSet::new() } else { left.clone() };
-            for group in groups.into_iter().filter(|group| !group.is_empty()) {
-                match self.ask(case, ask, &group) {
-                    Ok(rejected) => found.extend(rejected),
-                    Err(Silence::Late) if group.len() > 1 => {
-                        together = false;
-                        alone.extend(group);
+        // What fails is found more easily than that nothing does, and each mutant fails in some case: first all of them at once, then each
+        // alone for a short time in every case, and only then for as long as it takes. Claims come before panics.
+        'asking: for ask in [Ask::Mutants, Ask::Panics] {
+            for (way, case) in WAYS.iter().flat_map(|way| (0..self.harness.cases).map(move |case| (way, case))) {
+                left.retain(|number| !found.contains_key(number) && !judged.contains_key(number));
+                let groups: Vec<BTreeSet<usize>> = match way {
+                    Way::Together => vec![left.clone()],
+                    Way::Quick | Way::Whole => left.iter().map(|number| BTreeSet::from([*number])).collect(),
+                };
+                if left.is_empty() {
+                    break 'asking;
+                }
+                for group in groups {
+                    match self.ask(case, ask, &group, *way) {
+                        Ok(rejected) => found.extend(rejected),
+                        Err(Silence::Late) if *way != Way::Whole => {}
+                        Err(silence) => judged.extend(group.iter().map(|number| (*number, self.silent(&silence)))),
                     }
-                    Err(silence) => judged.extend(group.iter().map(|number| (*number, self.silent(&silence)))),
                 }
             }
-            for number in alone {
-                match self.ask(case, ask, &BTreeSet::from([number])) {
-                    Ok(rejected) => found.extend(rejected),
-                    Err(silence) => judged.extend([(number, self.silent(&silence))]),
-                }
-            }
-            left.retain(|number| !found.contains_key(number) && !judged.contains_key(number));
         }
         match self.confirm(&found) {
             Ok(kills) => judged.extend(kills),
@@ -261,22 +284,31 @@ impl<'a> Asked<'a> {
     }
 
     fn silent(&self, silence: &Silence) -> Judged {
-        if *silence == Silence::Late { Judged::Unanswered } else { Judged::Error(silence.clone().of(self.harness.name)) }
+        if *silence == Silence::Late {
+            Judged::Unanswered
+        } else {
+            Judged::Error(silence.clone().of(self.harness.name))
+        }
     }
 
     /// The mutants that fail in this case, with what makes them.
-    fn ask(&self, case: usize, ask: Ask, numbers: &BTreeSet<usize>) -> Result<BTreeMap<usize, Tape>, Silence> {
+    fn ask(
+        &self,
+        case: usize,
+        ask: Ask,
+        numbers: &BTreeSet<usize>,
+        way: Way,
+    ) -> Result<BTreeMap<usize, Tape>, Silence> {
         self.list(numbers.iter().copied()).map_err(Silence::Broken)?;
         let slow = SLOW.contains(&self.harness.name);
         let mut question = self.question(case, ask);
-        let answer = match (numbers.len(), numbers.first()) {
-            (1, Some(only)) => {
-                question.only = Some(*only);
-                ask_in_turn(self.tools, &self.folder, &question, (!slow).then_some(FIRST))
-            }
-            _ => {
+        question.only = numbers.first().copied().filter(|_| numbers.len() == 1);
+        let answer = match way {
+            Way::Whole => ask_in_turn(self.tools, &self.folder, &question, (!slow).then_some(FIRST)),
+            Way::Together | Way::Quick => {
                 let solver = if slow { question.solver.at_once(self.tools) } else { question.solver };
-                let limit = question.limit.min(if slow { TOGETHER * 4 } else { TOGETHER });
+                let most = if way == Way::Together { TOGETHER } else { QUICK };
+                let limit = question.limit.min(if slow { most * 4 } else { most });
                 cbmc::ask(self.tools, &self.folder, &Question { solver, limit, ..question })
             }
         };
@@ -295,7 +327,8 @@ impl<'a> Asked<'a> {
             return Ok(BTreeMap::new());
         }
         self.list(found.keys().copied())?;
-        let program = twin::build(self.tools, &self.folder, &self.question(0, Ask::Mutants), "harness.c", &["-DMUTANTS"])?;
+        let program =
+            twin::build(self.tools, &self.folder, &self.question(0, Ask::Mutants), "harness.c", &["-DMUTANTS"])?;
         let both = found.values().flat_map(|tape| [tape.clone(), Tape { mutant: 0, ..tape.clone() }]);
         let runs = twin::happens(&program, &both.collect::<Vec<_>>())?;
         let judge = |((number, tape), run): ((&usize, &Tape), &[Vec<String>])| {

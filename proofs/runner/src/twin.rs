@@ -35,8 +35,7 @@ pub fn build(
     more: &[&str],
 ) -> Result<PathBuf, String> {
     let program = folder.join(format!("{source}.run"));
-    let mut arguments: Vec<String> =
-        ["-O0", "-w", "-DNATIVE"].iter().chain(more).map(ToString::to_string).collect();
+    let mut arguments: Vec<String> = ["-O0", "-w", "-DNATIVE"].iter().chain(more).map(ToString::to_string).collect();
     arguments.extend(defines(question));
     arguments.push(format!("-DHARNESS_C=\"{source}\""));
     for include in [folder, &tools.include] {
@@ -44,8 +43,14 @@ pub fn build(
     }
     arguments.extend(["-o".to_owned(), program.display().to_string(), "driver.c".to_owned(), "-lm".to_owned()]);
     let output = folder.join("gcc.out");
-    let job =
-        Job { program: Path::new("gcc"), arguments: &arguments, variables: &[], folder, output: &output, limits: LIMITS };
+    let job = Job {
+        program: Path::new("gcc"),
+        arguments: &arguments,
+        variables: &[],
+        folder,
+        output: &output,
+        limits: LIMITS,
+    };
     match run(&job)?.0 {
         End::Code(0) => Ok(program),
         end => {
@@ -68,7 +73,8 @@ pub fn happens(program: &Path, tapes: &[Tape]) -> Result<Vec<Vec<String>>, Strin
         }
         input.push('\n');
     }
-    let (folder, beside) = (program.parent().unwrap_or(program), |ending: &str| format!("{}{ending}", program.display()));
+    let (folder, beside) =
+        (program.parent().unwrap_or(program), |ending: &str| format!("{}{ending}", program.display()));
     let (tape, output) = (PathBuf::from(beside(".in")), PathBuf::from(beside(".out")));
     crate::compile::write(&tape, &input)?;
     let arguments = ["-c".to_owned(), "exec \"$0\" <\"$1\"".to_owned(), beside(""), tape.display().to_string()];
