@@ -342,10 +342,9 @@ struct Property<'a> {
 }
 
 #[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
 struct Step<'a> {
-    #[serde(borrow)]
-    step_type: Option<Cow<'a, str>>,
+    #[serde(borrow, rename = "stepType")]
+    kind: Option<Cow<'a, str>>,
     #[serde(borrow)]
     lhs: Option<Cow<'a, str>>,
     #[serde(borrow)]
@@ -396,7 +395,7 @@ pub fn parse(text: &str) -> Result<Answer, String> {
 
 /// The arbitrary values of a trace, in order. One that is not in it may be any: 0.
 fn drawn(trace: &[Step]) -> Vec<u16> {
-    let drawn = |step: &&Step| step.step_type.as_deref() == Some("assignment") && step.lhs.as_deref() == Some("drawn");
+    let drawn = |step: &&Step| step.kind.as_deref() == Some("assignment") && step.lhs.as_deref() == Some("drawn");
     let number = |step: &Step| u32::from_str_radix(step.value.as_ref()?.binary?, 2).ok();
     let mut values = Vec::new();
     for word in trace.iter().filter(drawn).filter_map(number) {

@@ -158,7 +158,8 @@ fn rewrite(lines: &[&str], written: &mut String) -> Result<(), String> {
             body.extend(function.leave(name));
         }
     }
-    let declared: String = function.onward.keys().map(|name| format!("  u32 var_J{name} = 0u;\n")).collect();
+    let declare = |name: &&str| ["  u32 var_J", name, " = 0u;\n"].concat();
+    let declared: String = function.onward.keys().map(declare).collect();
     let mut declared = Some(declared).filter(|text| !text.is_empty());
     for (number, line) in body.iter().enumerate() {
         written.push_str(line);

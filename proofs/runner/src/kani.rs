@@ -124,7 +124,9 @@ fn result(harness: &Harness, proofs: &BTreeMap<String, Vec<&Value>>) -> HarnessR
             Some(_) => (Verdict::Error, Some("more than one result".to_owned())),
         };
         if matches!(one, Verdict::NotRun | Verdict::Error) {
-            claims.iter_mut().for_each(|claim| *claim = (*claim).max(one));
+            for claim in &mut claims {
+                *claim = (*claim).max(one);
+            }
         }
         verdict = verdict.max(one);
         reasons.extend(reason.map(|reason| format!("{name}: {reason}")));

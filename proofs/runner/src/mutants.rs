@@ -114,7 +114,7 @@ pub fn mutants(
                 .partition(|index| !options.alone && !chosen[*index].alone && selectable(&root, chosen[*index]));
             let picked: Vec<_> = together.iter().map(|index| chosen[*index]).collect();
             let told = |index: usize, name: &str, judged| tally.judge(together[index], name, judged);
-            controls = together::judge(tools, &root, options, &picked, &told)?;
+            controls = together::judge(tools, &root, options, &picked, &told);
             // What has no answer together may have one alone.
             let alone: Vec<_> = alone.into_iter().chain(tally.unanswered()).collect();
             in_parallel(options.jobs, alone.len(), |job| {

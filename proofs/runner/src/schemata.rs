@@ -95,11 +95,11 @@ fn written(text: &str, range: Range<usize>, choices: &[&Choice]) -> String {
         out.push_str(&text[at..part.start]);
         out.push_str(if *form == Form::Value { "(" } else { "" });
         for choice in here {
-            out.push_str(&format!("if crate::selected({}) {{ {} }} else ", choice.number, choice.new));
+            out.extend(["if crate::selected(", &choice.number.to_string(), ") { ", &choice.new, " } else "]);
         }
         // What is left may lie in it; also the same part in the other form: a statement, and the value that it is.
         let old = written(text, part.clone(), &others);
-        out.push_str(&format!("{{ {old} }}"));
+        out.extend(["{ ", &old, " }"]);
         out.push_str(if *form == Form::Value { ")" } else { "" });
         at = part.end;
     }
@@ -214,9 +214,9 @@ impl<'ast> Visit<'ast> for Finder {
                         syn::BinOp::Eq(_) | syn::BinOp::Le(_) | syn::BinOp::Ge(_) | syn::BinOp::Ne(_)
                     );
                 if assigns {
-                    self.place(&both.left)
+                    self.place(&both.left);
                 } else {
-                    self.value(&both.left)
+                    self.value(&both.left);
                 }
                 self.value(&both.right);
             }

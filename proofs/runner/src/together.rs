@@ -96,16 +96,13 @@ fn groups<'a>(mutants: &[&'a Mutant]) -> Vec<Group<'a>> {
 
 /// Judges the mutants by all their harnesses; `told` hears of each mutant (by place) and harness. Returns the controls: how the kernel
 /// fares with none of the mutants selected, before those harnesses that are smaller than in their proof.
-///
-/// # Errors
-/// The sources cannot be read or written.
 pub fn judge(
     tools: &Tools,
     root: &Path,
     options: &Options,
     mutants: &[&Mutant],
     told: &(dyn Fn(usize, &str, Judged) + Sync),
-) -> Result<Vec<Control>, String> {
+) -> Vec<Control> {
     let groups = groups(mutants);
     let folder = root.join("target").join("proofs").join("mutants");
     let compiled = in_parallel(options.jobs, groups.len(), |place| {
@@ -127,9 +124,9 @@ pub fn judge(
             .map(|(number, (place, _))| (*number, *place))
             .collect();
         let asked = match &compiled[place] {
-            Ok(compiled) => Asked::new(tools, compiled, harness, options).and_then(|asked| {
+            Ok(compiled) => Asked::new(tools, compiled, harness, options).map(|asked| {
                 let control = if is_smaller(harness) { Some(asked.control()) } else { None };
-                Ok((asked, control))
+                (asked, control)
             }),
             Err(reason) => Err(reason.clone()),
         };
@@ -153,7 +150,7 @@ pub fn judge(
         let seconds = started.elapsed().as_secs_f64();
         control.map(|control| Control { harness: harness.name.to_owned(), reason: control.err(), seconds })
     });
-    Ok(controls.into_iter().flatten().collect())
+    controls.into_iter().flatten().collect()
 }
 
 /// A copy of the sources with the mutants of the group in it, compiled.

@@ -215,21 +215,21 @@ fn a_harness_in_cases_needs_all_of_them() {
     // A cover point need be reached in one case only; a claim must hold in each.
     assert_eq!(
         with("t_ilk_1", |case, proof| if case == 0 {
-            set(proof, "cover 1", "Unsatisfiable")
+            set(proof, "cover 1", "Unsatisfiable");
         })
         .verdict,
         Verdict::Proved
     );
     assert_eq!(
         with("t_ilk_1", |case, proof| if case == 1 {
-            set(proof, "claim 2", "Failure")
+            set(proof, "claim 2", "Failure");
         })
         .verdict,
         Verdict::Failed
     );
     let missing = with("t_ilk_1", |case, proof| {
         if case == 1 {
-            proof["harness_id"] = json!("another")
+            proof["harness_id"] = json!("another");
         }
     });
     assert_eq!(missing.verdict, Verdict::NotRun);

@@ -210,14 +210,14 @@ impl Attacker {
     /// A route that somebody wants, or any.
     fn route(&mut self, world: &World) -> usize {
         let ground = world.ground;
-        if !self.dice.once_in(4) {
-            if let Some(train) = world.trains.get(self.dice.below(world.trains.len())) {
-                let here = bit(train.front_circuit(ground));
-                let wanted: Vec<usize> =
-                    (0..ground.routes.len()).filter(|route| ground.routes[*route].approach & here != 0).collect();
-                if let Some(route) = self.dice.pick(&wanted) {
-                    return route;
-                }
+        if !self.dice.once_in(4)
+            && let Some(train) = world.trains.get(self.dice.below(world.trains.len()))
+        {
+            let here = bit(train.front_circuit(ground));
+            let wanted: Vec<usize> =
+                (0..ground.routes.len()).filter(|route| ground.routes[*route].approach & here != 0).collect();
+            if let Some(route) = self.dice.pick(&wanted) {
+                return route;
             }
         }
         self.dice.below(ground.routes.len())

@@ -170,7 +170,7 @@ impl Ground {
             clear: i64::from(model.values.clear),
             loss: cycles(station.times.shunt_loss_ms.value).min(i64::from(model.values.clear) - 2).max(0),
             life: cycles(model.values.telegram_age_ms),
-            turn: i64::try_from(model.values.turn.0).unwrap_or(i64::MAX),
+            turn: i64::from(model.values.turn.0),
             brake: i64::from(station.braking.deceleration_mm_s2.value),
             codes: model.values.speeds_kmh.iter().map(|kmh| mm_s(i64::from(*kmh))).collect(),
             reverse: 0,
@@ -225,7 +225,7 @@ impl Ground {
                 points: passed.map(|passed| (passed.point, passed.position == Position::Reverse)).collect(),
                 limit: self.codes[usize::from(route.speed.0)],
                 lines: [route.from, route.to],
-                release: i64::try_from(route.release.0).unwrap_or(i64::MAX),
+                release: i64::from(route.release.0),
             });
         }
     }

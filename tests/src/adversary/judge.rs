@@ -87,22 +87,22 @@ pub fn judge(ground: &Ground, trains: &[Train], points: &Points, truth: &Truth, 
             let place = ground.named(train.under & truth.workers);
             return found(Family::Worker, format!("train {} strikes a worker on {place}", train.number));
         }
-        if seek(Family::Derailment) {
-            if let Some(text) = derailed(ground, train, points) {
-                return found(Family::Derailment, text);
-            }
+        if seek(Family::Derailment)
+            && let Some(text) = derailed(ground, train, points)
+        {
+            return found(Family::Derailment, text);
         }
         for family in [Family::Speed, Family::Restriction] {
-            if seek(family) {
-                if let Some(text) = too_fast(ground, train, truth, family) {
-                    return found(family, text);
-                }
+            if seek(family)
+                && let Some(text) = too_fast(ground, train, truth, family)
+            {
+                return found(family, text);
             }
         }
-        if seek(Family::Unasked) {
-            if let Some(text) = unasked(ground, train, truth) {
-                return found(Family::Unasked, text);
-            }
+        if seek(Family::Unasked)
+            && let Some(text) = unasked(ground, train, truth)
+        {
+            return found(Family::Unasked, text);
         }
         for other in &trains[number + 1..] {
             let both = train.under & other.under;

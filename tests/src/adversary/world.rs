@@ -143,11 +143,11 @@ impl<'a> World<'a> {
             }
             Move::Blind(point, cycles) => self.points.blind(point, cycles),
             Move::Face(train) => {
-                if let Some(train) = self.train(train).filter(|train| train.speed == 0) {
-                    if train.tail_to_joint() >= 0 {
-                        train.face_about();
-                        train.settle(ground);
-                    }
+                if let Some(train) = self.train(train).filter(|train| train.speed == 0)
+                    && train.tail_to_joint() >= 0
+                {
+                    train.face_about();
+                    train.settle(ground);
                 }
             }
             Move::Pace(train, speed) => {
@@ -156,7 +156,7 @@ impl<'a> World<'a> {
                 }
             }
             Move::Work(circuit, true) if self.said.confirmed & all(ground) & bit(circuit) != 0 => {
-                self.truth.workers |= bit(circuit)
+                self.truth.workers |= bit(circuit);
             }
             Move::Work(_, true) => {}
             Move::Work(circuit, false) => self.truth.workers &= !bit(circuit),

@@ -249,7 +249,9 @@ fn fields(file: &syn::File, known: &mut Known) {
 pub fn found(texts: &[String]) -> Vec<Vec<String>> {
     let files: Vec<_> = texts.iter().map(|text| syn::parse_file(text).expect("a Rust file")).collect();
     let mut known = Known::new();
-    files.iter().for_each(|file| fields(file, &mut known));
+    for file in &files {
+        fields(file, &mut known);
+    }
     let look = |(file, text): (&syn::File, &String)| {
         let mut finder = Finder { fields: known.clone(), ..Finder::default() };
         finder.visit_file(file);

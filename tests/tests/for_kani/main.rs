@@ -31,7 +31,9 @@ fn verified() -> Vec<PathBuf> {
         assert!(crates.contains(&root.join(name).join("src")), "{name} is not among {crates:?}");
     }
     let mut files = Vec::new();
-    crates.iter().for_each(|folder| sources(folder, &mut files));
+    for folder in &crates {
+        sources(folder, &mut files);
+    }
     files
 }
 

@@ -40,6 +40,9 @@ impl Way {
     }
 }
 
+/// How each trap is to be asked.
+pub type Ways<'a> = dyn Fn(&Trap) -> Vec<Way> + Sync + 'a;
+
 /// How an engine did.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
@@ -72,7 +75,7 @@ pub fn trials(
     tools: &Tools,
     root: &Path,
     folder: &Path,
-    (traps, ways): (&[Trap], &(dyn Fn(&Trap) -> Vec<Way> + Sync)),
+    (traps, ways): (&[Trap], &Ways),
     (jobs, limit): (usize, Duration),
 ) -> Result<Vec<Trial>, String> {
     let sources = root.join("proofs/traps");
