@@ -83,7 +83,7 @@ fn truth(world: &World) -> String {
             train.to_joint() / 1000
         );
         if train.authority != 0 {
-            part.extend([", may enter ", ground.named(train.authority)]);
+            part.extend([", may enter ", &ground.named(train.authority)]);
         }
         parts.push(part);
     }
