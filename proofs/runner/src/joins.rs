@@ -16,7 +16,7 @@
 //!
 //! So a jump that *crosses* another (that begins behind it, and ends behind its end) goes to the end of that one first, and from there on: a
 //! variable of the place says where to. The number is 0 for whoever stays. The self-test has programs of this kind, and the rewritten C is
-//! run against the original on the same drawn values ([`crate::twin`]).
+//! run as a program on drawn values (`traps/native.rs`).
 
 use std::collections::BTreeMap;
 
@@ -42,7 +42,7 @@ struct Jump<'a> {
 /// The C in which no jump forward crosses another at a place where paths meet.
 ///
 /// # Errors
-/// Text that is not as [`crate::loops::one_way_back`] leaves it.
+/// Text that is not as `loops.rs` leaves it.
 pub fn no_crossing(text: &str) -> Result<String, String> {
     let mut written = String::with_capacity(text.len() + text.len() / 4);
     let mut function: Vec<&str> = Vec::new();

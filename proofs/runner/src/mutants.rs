@@ -1,6 +1,6 @@
 //! Named mutants. Each is a change of a line or two in a copy of the kernel and its arithmetic; a theorem that is proved of the kernel must fail on it.
 //!
-//! Most are compiled together and selected at run time ([`crate::together`]); those that cannot be are compiled alone ([`crate::alone`]).
+//! Most are compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
 
 use crate::alone::attempt;
 use crate::campaign::{Options, flags, in_parallel, lock};
