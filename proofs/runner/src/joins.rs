@@ -18,6 +18,7 @@
 //! variable of the place says where to. The number is 0 for whoever stays. The self-test has programs of this kind, and the rewritten C is
 //! run as a program on drawn values (`traps/native.rs`).
 
+use crate::loops::by_function;
 use std::collections::BTreeMap;
 
 /// The harnesses whose C is written so: found by running them, and a matter of time only. Elsewhere it can cost far more than it saves, since
@@ -44,18 +45,7 @@ struct Jump<'a> {
 /// # Errors
 /// Text that is not as `loops.rs` leaves it.
 pub fn no_crossing(text: &str) -> Result<String, String> {
-    let mut written = String::with_capacity(text.len() + text.len() / 4);
-    let mut function: Vec<&str> = Vec::new();
-    for line in text.lines() {
-        function.push(line);
-        // wasm2c closes a function, and nothing else, in the first column.
-        if line.starts_with('}') {
-            rewrite(&function, &mut written)?;
-            function.clear();
-        }
-    }
-    rewrite(&function, &mut written)?;
-    Ok(written)
+    by_function(text, rewrite)
 }
 
 /// The name that a line jumps to.
