@@ -2,9 +2,10 @@
 
 use crate::argument;
 use crate::case::{
-    Case, Condition, Engine, EngineResult, Evidence, Kind, Provenance, SCHEMA, Severity, Station, Status, Technique,
-    Tool,
+    Case, Condition, Engine, EngineResult, Evidence, Kind, OpenItem, Phase, Provenance, Run as About, SCHEMA, Severity,
+    Station, Status, Technique, Tool,
 };
+use crate::error::Fault;
 use crate::hazard;
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::Opinion;
@@ -12,17 +13,25 @@ use crate::inputs::tests::{self, Run};
 use crate::inputs::{faults, measured, models, mutants, proofs, second};
 use crate::open;
 use crate::plan::Plan;
+use crate::scope::{Chosen, Scope};
 use crate::srac;
 use crate::station;
 use crate::trace;
 use crate::verdict::{Verdict, list};
 use atc_models::Outcome;
 use atc_prover::report::Mutants;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// What the engines have said.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Results {
+    /// What was to be looked at.
+    pub scope: Scope,
+    /// More is to come.
+    pub running: bool,
+    /// The shards that these results were joined from.
+    pub joined: Vec<String>,
     /// The campaigns, run or imported.
     pub campaigns: Vec<Campaigned>,
     /// The mutants, and whether they belong to other sources.
@@ -33,10 +42,14 @@ pub struct Results {
     pub no_outcome: String,
     /// What another checker says of the models.
     pub opinions: Vec<Opinion>,
-    /// What was measured of signal and position.
-    pub measured: measured::Run,
-    /// The tests.
-    pub tests: Run,
+    /// What was measured of signal and position; nothing if it is another shard's.
+    pub measured: Option<measured::Run>,
+    /// The tests; nothing if they are another shard's.
+    pub tests: Option<Run>,
+    /// What is open beyond the results: shards that contradict each other.
+    pub open: Vec<OpenItem>,
+    /// Where the time went.
+    pub phases: Vec<Phase>,
     /// What all of it belongs to.
     pub provenance: Provenance,
 }
@@ -51,7 +64,11 @@ pub enum Required {
 }
 
 /// Builds the case.
-pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
+///
+/// # Errors
+/// The part that the results are about does not exist.
+pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, Fault> {
+    let chosen = Chosen::of(plan, &results.scope)?;
     let (mut evidence, mut engines) = proofs::evidence(&plan.harnesses, &results.campaigns);
     let (modelled, models) = models::evidence(&plan.models, &results.outcomes, &results.no_outcome);
     evidence.extend(modelled);
@@ -60,12 +77,17 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     engines.push(second::engine(&second_opinions));
     let (killed, stale) = results.mutants.as_ref().map_or((None, false), |(all, stale)| (Some(all), *stale));
     let mut rejected = mutants::evidence(&plan.mutants, killed, stale);
-    mutants::only_by_what_holds(&mut rejected, &evidence);
+    let pending = |harness: &str| results.running || !chosen.has(&format!("harness:{harness}"));
+    mutants::only_by_what_holds(&mut rejected, &evidence, &pending);
     evidence.extend(rejected);
-    let (targets, measurements) = measured::evidence(&results.measured);
+    let absent = || results.scope.why();
+    let none = measured::Run::NotRun(absent());
+    let (targets, measurements) = measured::evidence(results.measured.as_ref().unwrap_or(&none));
     engines.push(measured::engine(&targets, &measurements));
     evidence.extend(targets);
-    evidence.extend(suites(plan, &results.tests));
+    let none = Run::NotRun(absent());
+    evidence.extend(suites(plan, results.tests.as_ref().unwrap_or(&none), &results.scope));
+    left_out(&mut evidence, &chosen, &results.scope);
 
     let mut conditions = srac::conditions(&plan.data.assumptions, &plan.uses);
     // A bound that only this run has (another number of aspects) is carried by the same conditions.
@@ -85,6 +107,13 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
                 permitted speed, train position, interlocking and its ATC"
             .to_owned(),
         conclusions: argument::conclusions(&nodes, &evidence, &conditions),
+        run: About {
+            part: results.scope.part(),
+            shard: results.scope.shard().map(|shard| shard.to_string()),
+            running: results.running,
+            joined: results.joined,
+            phases: results.phases,
+        },
         status: Status::default(),
         open_items: Vec::new(),
         requirements: trace::table(&plan.requirements, &plan.citations, &plan.mentions, &evidence),
@@ -107,8 +136,12 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Case {
     };
     case.conclusions.extend(case.station.as_ref().map(station::conclusion));
     case.open_items = open::items(plan, &case);
+    if !results.open.is_empty() {
+        case.open_items.extend(results.open);
+        case.open_items = open::grouped(std::mem::take(&mut case.open_items));
+    }
     case.status = status(&case, required);
-    case
+    Ok(case)
 }
 
 /// Makes a case the one of this station: what it says of the machine is what it said before.
@@ -134,14 +167,38 @@ fn used(conditions: &mut [Condition], user: &str, uses: impl Fn(&str) -> bool) {
     }
 }
 
+/// Marks what has no result and was not to have one.
+fn left_out(evidence: &mut [Evidence], chosen: &Chosen, scope: &Scope) {
+    let why = scope.why();
+    for one in evidence.iter_mut() {
+        // The measurements are one run: it measures also what belongs to another part.
+        if one.kind != Kind::Test && !chosen.has(&one.id) && matches!(one.verdict, Verdict::NotRun | Verdict::Measured)
+        {
+            one.verdict = Verdict::NotRun;
+            one.left_out = true;
+            one.reason = Some(why.clone());
+        }
+        if one.kind == Kind::Test && one.verdict == Verdict::NotRun && one.reason.as_ref() == Some(&why) {
+            one.left_out = *scope != Scope::Whole;
+        }
+    }
+}
+
 /// The suites of the run, and those that are named somewhere and are not there.
-fn suites(plan: &Plan, run: &Run) -> Vec<Evidence> {
+fn suites(plan: &Plan, run: &Run, scope: &Scope) -> Vec<Evidence> {
     let mut found = tests::evidence(run);
+    if matches!(scope, Scope::Part(_)) {
+        // Some tests are not all.
+        found.retain(|one| one.id != "test:all");
+    }
     for id in plan.tests_named() {
         if !found.iter().any(|one| one.id == id) {
             let name = id.trim_start_matches("test:");
             found.push(match run {
                 Run::NotRun(why) => tests::one(name, Verdict::NotRun, String::new(), Some(why.clone())),
+                Run::Ran { .. } if matches!(scope, Scope::Part(_)) => {
+                    tests::one(name, Verdict::NotRun, String::new(), Some(scope.why()))
+                }
                 Run::Ran { .. } => {
                     let reason = "the argument names this suite, and it is not in the run".to_owned();
                     tests::one(name, Verdict::Undecided, String::new(), Some(reason))
@@ -232,7 +289,7 @@ pub fn status(case: &Case, required: Required) -> Status {
     }
     if required == Required::Proved {
         let mut weak: BTreeMap<(Verdict, &str), Vec<String>> = BTreeMap::new();
-        for one in case.evidence.iter().filter(|one| !one.verdict.is_defect()) {
+        for one in case.evidence.iter().filter(|one| !one.verdict.is_defect() && !one.left_out) {
             let enough = match one.kind {
                 Kind::Harness => {
                     one.engines.iter().any(|engine| engine.engine == "cbmc" && engine.verdict <= Verdict::ProvedBounded)
@@ -257,7 +314,8 @@ pub fn status(case: &Case, required: Required) -> Status {
         }
     }
     Status {
-        complete: missing.is_empty(),
+        // A part, a shard and a run that goes on are never whole, whatever they have.
+        complete: missing.is_empty() && case.run.partial().is_none(),
         missing,
         required: (required == Required::Proved).then(|| "proved".to_owned()),
         exit_code: u8::from(!reasons.is_empty()),

@@ -1,9 +1,10 @@
-//! The case's own sources: `spec/assumptions.toml`, `hazards.toml`, `argument.toml`, `techniques.toml` and
-//! `evidence/ratchet.toml`.
+//! The case's own sources: `spec/assumptions.toml`, `hazards.toml`, `argument.toml`, `techniques.toml`,
+//! `evidence/ratchet.toml` and `evidence/costs.toml`.
 
 use crate::error::{Fault, line_of, read};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// All of them.
@@ -19,6 +20,8 @@ pub struct Data {
     pub techniques: Techniques,
     /// The least numbers.
     pub ratchet: Ratchet,
+    /// How long items take, about.
+    pub costs: Costs,
 }
 
 /// Something that is assumed: becomes a safety-related application condition.
@@ -232,7 +235,50 @@ impl Data {
             argument: file(root, "spec/argument.toml")?,
             techniques: file(root, "spec/techniques.toml")?,
             ratchet: file(root, "evidence/ratchet.toml")?,
+            costs: file(root, "evidence/costs.toml")?,
         })
+    }
+}
+
+/// About how many seconds of one processor items take. No verdict depends on it.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Costs {
+    /// Of those that are not named.
+    pub each: Each,
+    /// Of those that take longest, by evidence id.
+    pub longest: BTreeMap<String, f64>,
+}
+
+/// About how long one item of a kind takes, in seconds.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Each {
+    /// A theorem.
+    pub harness: f64,
+    /// A wrong kernel.
+    pub mutant: f64,
+    /// A model.
+    pub model: f64,
+    /// All measurements.
+    pub measured: f64,
+    /// A theorem, tested natively.
+    pub native: f64,
+    /// All tests.
+    pub test: f64,
+}
+
+impl Costs {
+    /// That of one piece of evidence.
+    pub fn of(&self, id: &str) -> f64 {
+        let each = match id.split(':').next() {
+            Some("harness") => self.each.harness,
+            Some("mutant") => self.each.mutant,
+            Some("model") => self.each.model,
+            Some("measured") => self.each.measured,
+            _ => self.each.test,
+        };
+        self.longest.get(id).copied().unwrap_or(each)
     }
 }
 

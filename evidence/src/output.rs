@@ -12,6 +12,8 @@ use std::{fs, io};
 pub const MARKER: &str = "incomplete";
 /// The hashes of the files of a case, in the form of `sha256sum`.
 pub const SUMS: &str = "SHA256SUMS";
+/// The page.
+pub const PAGE: &str = "index.html";
 /// The short case of the station.
 pub const STATION: &str = "station.html";
 
@@ -45,18 +47,46 @@ impl Folder {
         Ok(Self { out: out.to_path_buf(), stage })
     }
 
+    /// Takes away what an earlier run has left, so that nothing of it can be taken for this one, and shows this page.
+    ///
+    /// # Errors
+    /// A file cannot be written or taken away.
+    pub fn clear(&self, page: &str) -> Result<(), Fault> {
+        let fault = |error: io::Error| Fault::new(&self.out.display(), error);
+        self.show(page)?;
+        for entry in fs::read_dir(&self.out).map_err(fault)? {
+            let path = entry.map_err(fault)?.path();
+            if path.ends_with(MARKER) || path.ends_with(PAGE) {
+                continue;
+            }
+            if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) }.map_err(fault)?;
+        }
+        Ok(())
+    }
+
+    /// Puts a page in place at once, while the run goes on.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn show(&self, page: &str) -> Result<(), Fault> {
+        let new = self.out.join("index.html.new");
+        let put = fs::write(&new, page).and_then(|()| fs::rename(&new, self.out.join(PAGE)));
+        put.map_err(|error| Fault::new(&new.display(), error))
+    }
+
     /// Where files of the run may be put while it goes on.
     pub fn stage(&self) -> &Path {
         &self.stage
     }
 
-    /// Writes the case, takes the mark away if nothing is missing, and puts the folder in place.
+    /// Writes the case, and what the engines said if it is known; takes the mark away if nothing is missing, and puts the folder in place.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn finish(self, case: &Case) -> Result<(), Fault> {
+    pub fn finish(self, case: &Case, results: Option<String>) -> Result<(), Fault> {
         let fault = |error: io::Error| Fault::new(&self.out.display(), error);
-        let files = files(case)?;
+        let mut files = files(case)?;
+        files.extend(results.map(|results| (crate::results::FILE.to_owned(), results)));
         let mut sums = String::new();
         for (name, contents) in &files {
             let path = self.stage.join(name);
@@ -97,7 +127,7 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
     let fault = |name: &str, error: String| Fault::new(&name, error);
     let json = serde_json::to_string_pretty(case).map_err(|error| fault("case.json", error.to_string()))?;
     let mut files = vec![
-        ("index.html".to_owned(), html::document(case)),
+        (PAGE.to_owned(), html::document(case)),
         ("case.json".to_owned(), format!("{json}\n")),
         ("case.schema.json".to_owned(), schema()),
         ("junit.xml".to_owned(), junit::xml(case).map_err(|error| fault("junit.xml", error))?),

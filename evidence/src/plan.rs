@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The folders whose comments may quote a requirement.
-const QUOTING: &[&str] = &["kernel", "proofs/src", "models", "oracle", "tests"];
+const QUOTING: &[&str] = &["kernel", "arithmetic/src", "proofs/src", "models", "oracle", "tests"];
 
 /// Everything that is known without a result.
 #[derive(Clone, Debug)]
@@ -136,6 +136,12 @@ impl Plan {
                     take(dangling("spec/techniques.toml", format!("\"{}\": {text}", technique.name)));
                 }
             }
+        }
+        for id in data.costs.longest.keys().filter(|id| !known.contains(id)) {
+            take(dangling(
+                "evidence/costs.toml",
+                format!("{id} is no harness, model, wrong kernel or measured target"),
+            ));
         }
         let theorems: BTreeSet<_> = self.harnesses.iter().map(|harness| harness.theorem.as_str()).collect();
         let named = self

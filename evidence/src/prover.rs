@@ -1,9 +1,9 @@
 //! The proof campaign and the wrong kernels, run by `atc-prover`.
 
 use crate::error::Fault;
+use atc_proofs::Harness;
 use atc_prover::Options;
-use atc_prover::report::{Campaign, Mutants};
-use indicatif::ProgressBar;
+use atc_prover::report::{Campaign, HarnessResult, MutantResult, Mutants};
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,36 +21,51 @@ pub fn options(jobs: usize, seconds: u64) -> Options {
     Options { jobs, limit: Duration::from_secs(seconds), tests: 4_000, ..Options::default() }
 }
 
-/// Runs the cbmc engine on every harness.
+/// The harnesses of these names, in this order.
+///
+/// # Errors
+/// There is none of such a name.
+pub fn harnesses(names: &[String]) -> Result<Vec<&'static Harness>, Fault> {
+    let known = atc_prover::harnesses();
+    let find = |name: &String| {
+        let found = known.iter().copied().find(|harness| harness.name == name);
+        found.ok_or_else(|| Fault::new(&"harnesses", format!("there is none of the name {name}")))
+    };
+    names.iter().map(find).collect()
+}
+
+/// Runs the cbmc engine on these harnesses.
 ///
 /// # Errors
 /// The sources cannot be read. Tools that are missing are no error: every harness is not run then.
-pub fn campaign(options: &Options, bar: &ProgressBar) -> Result<Campaign, Fault> {
-    let progress = |result: &atc_prover::report::HarnessResult| {
-        bar.set_message(format!("{} {}", result.name, result.verdict.as_str()));
-        bar.inc(1);
-    };
-    let all = atc_prover::harnesses();
-    atc_prover::campaign(options, &all, &progress).map_err(|error| Fault::new(&"the provers", error))
+pub fn campaign(
+    options: &Options,
+    harnesses: &[&Harness],
+    progress: &(dyn Fn(&HarnessResult) + Sync),
+) -> Result<Campaign, Fault> {
+    atc_prover::campaign(options, harnesses, progress).map_err(|error| Fault::new(&"the provers", error))
 }
 
-/// Tests every harness natively.
+/// Tests these harnesses natively.
 ///
 /// # Errors
 /// The sources cannot be read.
-pub fn native(options: &Options) -> Result<Campaign, Fault> {
-    let all = atc_prover::harnesses();
-    atc_prover::campaign::native_campaign(options, &all).map_err(|error| Fault::new(&"the native engine", error))
+pub fn native(options: &Options, harnesses: &[&Harness]) -> Result<Campaign, Fault> {
+    atc_prover::campaign::native_campaign(options, harnesses).map_err(|error| Fault::new(&"the native engine", error))
 }
 
-/// Runs the wrong kernels.
+/// Runs these wrong kernels, at least one: the runner takes no name for all.
 ///
 /// # Errors
-/// The sources cannot be read.
-pub fn mutants(options: &Options, bar: &ProgressBar) -> Result<Mutants, Fault> {
-    let progress = |result: &atc_prover::report::MutantResult| {
-        bar.set_message(result.name.clone());
-        bar.inc(1);
-    };
-    atc_prover::mutants(options, &[], &progress).map_err(|error| Fault::new(&"the wrong kernels", error))
+/// The sources cannot be read, or no name is given.
+pub fn mutants(
+    options: &Options,
+    names: &[String],
+    progress: &(dyn Fn(&MutantResult) + Sync),
+) -> Result<Mutants, Fault> {
+    let fault = |error: String| Fault::new(&"the wrong kernels", error);
+    if names.is_empty() {
+        return Err(fault("none is named".to_owned()));
+    }
+    atc_prover::mutants(options, names, progress).map_err(fault)
 }

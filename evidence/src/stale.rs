@@ -9,7 +9,7 @@ use crate::verdict::Verdict;
 /// Whether a change in this folder makes this kind of evidence stale.
 fn touches(folder: &str, kind: Kind) -> bool {
     match folder {
-        "kernel" | "Cargo.lock" => true,
+        "kernel" | "arithmetic" | "Cargo.lock" => true,
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
         "waveform" => matches!(kind, Kind::Measured | Kind::Test),

@@ -1,7 +1,8 @@
 //! The summary that the run prints.
 
-use crate::case::{Case, Kind, Severity};
+use crate::case::{Case, Evidence, Kind, Severity};
 use crate::html::headline;
+use crate::times;
 use crate::verdict::Verdict;
 use comfy_table::{Attribute, Cell, Color, Table, presets::NOTHING};
 use std::fmt::Write;
@@ -10,7 +11,8 @@ use std::fmt::Write;
 pub fn summary(case: &Case) -> String {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_header(["evidence", "verdict", "what belongs with it", "seconds"]);
-    for one in case.evidence.iter().filter(|one| matches!(one.kind, Kind::Harness | Kind::Model | Kind::Measured)) {
+    let shown = |one: &&Evidence| !one.left_out && matches!(one.kind, Kind::Harness | Kind::Model | Kind::Measured);
+    for one in case.evidence.iter().filter(shown) {
         let detail = one.reason.clone().unwrap_or_else(|| one.detail.clone());
         let detail: String = detail.chars().take(60).collect();
         table.add_row([
@@ -40,7 +42,7 @@ pub fn summary(case: &Case) -> String {
     for reason in &case.status.reasons {
         let _ = writeln!(text, "exit {}: {reason}", case.status.exit_code);
     }
-    format!("{text}\n{}\n", headline(case).1)
+    format!("{text}\n{}\n{}\n", times::table(&case.run.phases), headline(case).1)
 }
 
 fn cell(verdict: Verdict) -> Cell {

@@ -23,8 +23,8 @@ impl Millimetres {
         if metres > 0xFFFF {
             return Metres(0xFFFF);
         }
-        let [low, high, ..] = metres.to_le_bytes();
-        Metres(u16::from_le_bytes([low, high]))
+        let bytes = metres.to_le_bytes();
+        Metres(u16::from_le_bytes([bytes[0], bytes[1]]))
     }
 
     /// What is left after `other` is taken off; 0 if `other` is longer.

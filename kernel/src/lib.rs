@@ -1,8 +1,9 @@
 //! The verified kernel of an automatic train control (ATC) system.
 //!
 //! Every module is one part of the railway, written as a small *pure* state machine:
-//! `step(state, input) -> (state, output)` by value, total, without heap, clock, floating point,
-//! panic path or dependency. What is claimed of a machine stands as a sentence in `spec/`, above the
+//! `step(state, input) -> (state, output)` by value, total, without heap, clock, floating point
+//! or panic path. No dependency but the project's own [`atc_arithmetic`], whose functions have
+//! contracts over all numbers. What is claimed of a machine stands as a sentence in `spec/`, above the
 //! line that keeps it, and as a theorem in `proofs/`.
 //!
 //! | module | part | patent |

@@ -9,8 +9,7 @@
 use crate::distance::Metres;
 use crate::speed::KmhTenths;
 use crate::telegram::Gradient;
-#[cfg(creusot)]
-use creusot_std::prelude::*;
+use atc_arithmetic::{energy, root};
 
 /// The highest speed that the pattern gives: 409.5 km/h. Its square, and that of every lower speed, has 24 bits.
 pub const MAX_SPEED: KmhTenths = KmhTenths(4095);
@@ -56,51 +55,5 @@ impl Deceleration {
 pub const fn pattern(deceleration: Deceleration, distance: Metres) -> KmhTenths {
     //= spec/pattern.md#pat-1-the-pattern
     //# The speed v MUST be the greatest, up to 409.5 km/h, with v² ≤ 2·b·d.
-    KmhTenths(root(energy(deceleration, distance)))
-}
-
-/// What is over the energy of every speed of the pattern: 125·4096².
-pub const ENERGY_END: u32 = 125 << 24;
-
-/// 250·b·d in squares of tenths of km/h, which is 125 times the square of the speed; at most [`ENERGY_END`] − 1.
-///
-/// 1 m/s is 36 tenths of km/h, so 2·b·d is 2 · 36² / 1000 · b · d = 324·b·d / 125.
-#[cfg_attr(creusot, ensures(result@ < 2_097_152_000 && result@ <= 324 * deceleration.0@ * distance.0@))]
-#[cfg_attr(creusot, ensures(result@ == 2_097_151_999 || result@ == 324 * deceleration.0@ * distance.0@))]
-#[inline]
-pub const fn energy(deceleration: Deceleration, distance: Metres) -> u32 {
-    let product = deceleration.0 as u32 * distance.0 as u32;
-    // 324 times a product under 2²³ has 32 bits, and 324 times 2²³ is over the end.
-    let energy = if product < 1 << 23 { product * 324 } else { ENERGY_END };
-    if energy < ENERGY_END { energy } else { ENERGY_END - 1 }
-}
-
-/// The greatest r with 125·r² ≤ `energy`, which is under [`ENERGY_END`]; so at most 4095.
-#[cfg_attr(kani, kani::requires(energy < ENERGY_END))]
-#[cfg_attr(kani, kani::ensures(|root| 125 * u32::from(*root) * u32::from(*root) <= energy))]
-#[cfg_attr(kani, kani::ensures(|root| 125 * (u32::from(*root) + 1) * (u32::from(*root) + 1) > energy))]
-#[cfg_attr(creusot, requires(energy@ < 2_097_152_000))]
-#[cfg_attr(creusot, ensures(125 * result@ * result@ <= energy@))]
-#[cfg_attr(creusot, ensures(energy@ < 125 * (result@ + 1) * (result@ + 1)))]
-#[inline]
-pub const fn root(energy: u32) -> u16 {
-    let mut root = 0_u32;
-    // 125 times its square.
-    let mut spent = 0_u32;
-    // The root is in root .. root + width. The width halves twelve times.
-    let mut width = 4096_u32;
-    #[cfg_attr(creusot, invariant(width@ >= 1 && root@ + width@ <= 4096))]
-    #[cfg_attr(creusot, invariant(spent@ == 125 * root@ * root@ && spent@ <= energy@))]
-    #[cfg_attr(creusot, invariant(energy@ < 125 * (root@ + width@) * (root@ + width@)))]
-    while width > 1 {
-        let half = width / 2;
-        let more = 125 * (2 * root + half) * half;
-        if spent + more <= energy {
-            root += half;
-            spent += more;
-        }
-        width -= half;
-    }
-    let [low, high, ..] = root.to_le_bytes();
-    u16::from_le_bytes([low, high])
+    KmhTenths(root(energy(deceleration.0, distance.0)))
 }

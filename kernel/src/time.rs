@@ -3,8 +3,7 @@
 //! The kernel has no clock. A [`Cycle`] turns the milliseconds of a configuration into [`Ticks`], and there is no
 //! conversion that rounds to nearest: the caller says which direction is the safe one.
 
-#[cfg(creusot)]
-use creusot_std::prelude::*;
+use atc_arithmetic::{divide_down, divide_up};
 
 /// The longest time that any parameter may have: 60 000 logic cycles (ten minutes at 10 ms).
 pub const MAX_TICKS: u16 = 60_000;
@@ -45,29 +44,6 @@ impl Cycle {
     pub fn at_most(self, time: Millis) -> Option<Ticks> {
         narrow(divide_down(time.0, self.0))
     }
-}
-
-/// `dividend / divisor`, rounded up. The divisor is 1 or more.
-#[cfg_attr(kani, kani::requires(divisor > 0))]
-#[cfg_attr(kani, kani::ensures(|q| u64::from(*q) * u64::from(divisor) >= u64::from(dividend)))]
-#[cfg_attr(kani, kani::ensures(|q| *q == 0 || (u64::from(*q) - 1) * u64::from(divisor) < u64::from(dividend)))]
-#[cfg_attr(creusot, requires(divisor@ > 0))]
-#[cfg_attr(creusot, ensures(result@ * divisor@ >= dividend@))]
-#[cfg_attr(creusot, ensures((result@ - 1) * divisor@ < dividend@))]
-pub const fn divide_up(dividend: u32, divisor: u32) -> u32 {
-    let whole = dividend / divisor;
-    if dividend % divisor == 0 { whole } else { whole + 1 }
-}
-
-/// `dividend / divisor`, rounded down. The divisor is 1 or more.
-#[cfg_attr(kani, kani::requires(divisor > 0))]
-#[cfg_attr(kani, kani::ensures(|q| u64::from(*q) * u64::from(divisor) <= u64::from(dividend)))]
-#[cfg_attr(kani, kani::ensures(|q| (u64::from(*q) + 1) * u64::from(divisor) > u64::from(dividend)))]
-#[cfg_attr(creusot, requires(divisor@ > 0))]
-#[cfg_attr(creusot, ensures(result@ * divisor@ <= dividend@))]
-#[cfg_attr(creusot, ensures((result@ + 1) * divisor@ > dividend@))]
-pub const fn divide_down(dividend: u32, divisor: u32) -> u32 {
-    dividend / divisor
 }
 
 #[cfg_attr(kani, kani::ensures(|t| t.is_some() == (ticks <= 60_000)))]

@@ -5,6 +5,13 @@
    -DMEMORY=bytes      linear memory: the stack and the constant data, a multiple of 4
    -DREACH             replaces every claim by false: each one that can be reached must then FAIL
    -DBOTH              asks both in one run: beside each claim, `reach` of its number is such a false one
+   -DMUTANTS           the code has mutants in it, and `mutants.h` lists those to ask for: MUTANTS(M) is M(number) for each. One of them
+                       is selected, and `mutant` of its number holds if no claim fails then. 0 is none of them
+   -DONLY=number       with -DMUTANTS: this one is selected, which CBMC can count on
+   -DCONTROL           with -DMUTANTS: everything else that a proof asks, too
+   -DTRAPS             with -DMUTANTS: a panic is as good as a claim that fails
+   -DNATIVE            no CBMC: a program that prints what happens. Each line of its input is a run: the number of a mutant (0: none),
+                       the case, and the arbitrary values in order
 
    Claims and cover points have numbers; each number is an assertion of its own, so that it has a verdict of its own.
    A trap (panic, overflow check, index out of bounds, division by zero, unreachable) is an assertion too.
@@ -13,11 +20,38 @@
    __builtin_memcpy, which CBMC does not see into; an access that is out of bounds is an assertion. */
 #include "harness.h"
 
+#ifdef NATIVE
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+static jmp_buf end_of_run;
+/* Everything that happens is a line. An assumption that does not hold ends the run. */
+static void happens(const char *what, u32 holds) { printf("%s %u\n", what, holds != 0); }
+static void end_run(void) { longjmp(end_of_run, 1); }
+#define __CPROVER_assert(holds, text) ((holds) ? (void)0 : happens(text, 0))
+#define __CPROVER_assume(holds) ((holds) ? (void)0 : end_run())
+#endif
+
+#ifdef MUTANTS
+#include "mutants.h"
+static u32 chosen;
+#define REJECTED(n) __CPROVER_assert(holds || chosen != n, "mutant " #n);
+static void claimed(u32 holds) { MUTANTS(REJECTED) }
+#endif
+
+#if defined(MUTANTS) && !defined(NATIVE) && !defined(CONTROL)
+/* Of a mutant only what rejects it is asked. */
+#define CHECK(holds, text) ((void)0)
+#else
+#define CHECK(holds, text) __CPROVER_assert(holds, text)
+#endif
+
 static u32 words[MEMORY / 4];
 
 /* The word of an access that lies in one: n bytes, at a multiple of n. */
 #define AT(a, n) \
-  (__CPROVER_assert((a) + (n) <= MEMORY, "trap: out of bounds (memory, or the stack has run out)"), \
+  (CHECK((a) + (n) <= MEMORY, "trap: out of bounds (memory, or the stack has run out)"), \
    __CPROVER_assume((a) + (n) <= MEMORY), \
    words[(a) / 4])
 static inline u32 i32_load8_u(wasm_rt_memory_t *m, u64 a) { return (u8)(AT(a, 1) >> (8 * (a & 3))); }
@@ -75,11 +109,17 @@ static void load_bytes(u32 to, const u8 *from, u32 count) {
 }
 #define LOAD_DATA(m, o, i, s) load_bytes(o, i, s)
 
-#include "harness.c"
+#ifndef HARNESS_C
+#define HARNESS_C "harness.c"
+#endif
+#include HARNESS_C
 
 void wasm_rt_trap(wasm_rt_trap_t code) {
-  __CPROVER_assert(code != WASM_RT_TRAP_UNREACHABLE, "trap: panic");
-  __CPROVER_assert(code == WASM_RT_TRAP_UNREACHABLE, "trap: other");
+  CHECK(code != WASM_RT_TRAP_UNREACHABLE, "trap: panic");
+  CHECK(code == WASM_RT_TRAP_UNREACHABLE, "trap: other");
+#if defined(MUTANTS) && defined(TRAPS)
+  claimed(code != WASM_RT_TRAP_UNREACHABLE);
+#endif
   __CPROVER_assume(0);
   while (1) {}
 }
@@ -96,22 +136,57 @@ void wasm_rt_allocate_memory(wasm_rt_memory_t *m, uint64_t pages, uint64_t max, 
 
 struct w2c_prover { u32 unused; };
 
+#ifdef NATIVE
+static char *tape;
+/* 0 when they run out. */
+static u32 nondet_u32(void) { return (u32)strtoul(tape, &tape, 10); }
+#else
 u32 nondet_u32(void);
+#endif
+
+/* The arbitrary values in a trace: what is assigned to this, with a number from 1 above them. What no assertion depends on is not in a
+   trace, so that their order alone does not say which is which. */
+static u32 drawn;
+static u32 draws;
 
 u32 w2c_prover_word(struct w2c_prover *p) {
-  u32 drawn = nondet_u32() & 0xffff;
-  return drawn;
+  draws += 1;
+  drawn = (nondet_u32() & 0xffff) | draws << 16;
+  return drawn & 0xffff;
 }
 
 /* The case of a harness that is proven case by case: -DCASE=number of -DCASES. */
+#ifdef NATIVE
+static u32 picked;
+#endif
+
 u32 w2c_prover_choose(struct w2c_prover *p, u32 cases) {
-  __CPROVER_assert(cases == CASES, "trap: number of cases");
+#ifdef NATIVE
+  return picked;
+#else
+  CHECK(cases == CASES, "trap: number of cases");
   return CASE;
+#endif
 }
+
+#ifdef MUTANTS
+/* The others are constant: what they change is not there for the prover. */
+#define SELECTED(n) case n: return chosen == n;
+u32 w2c_prover_selected(struct w2c_prover *p, u32 number) {
+  switch (number) {
+    MUTANTS(SELECTED)
+    default: return 0;
+  }
+}
+#endif
 
 void w2c_prover_assume(struct w2c_prover *p, u32 holds) { __CPROVER_assume(holds != 0); }
 
-#if defined(REACH)
+#if defined(NATIVE)
+#define CLAIM(n) case n: happens("claim " #n, holds); break;
+#elif defined(MUTANTS)
+#define CLAIM(n) case n: claimed(holds != 0); break;
+#elif defined(REACH)
 #define CLAIM(n) case n: __CPROVER_assert(0, "claim " #n); break;
 #elif defined(BOTH)
 #define CLAIM(n) case n: __CPROVER_assert(holds != 0, "claim " #n); __CPROVER_assert(0, "reach " #n); break;
@@ -123,19 +198,25 @@ void w2c_prover_assume(struct w2c_prover *p, u32 holds) { __CPROVER_assume(holds
 #else
 #define COVERED(reached) 1
 #endif
+#if defined(NATIVE)
+#define COVER(n) case n: happens("cover " #n, reached); break;
+#elif defined(MUTANTS)
+#define COVER(n) case n: break;
+#else
 #define COVER(n) case n: __CPROVER_assert(COVERED(reached), "cover " #n); break;
+#endif
 
 void w2c_prover_claim(struct w2c_prover *p, u32 number, u32 holds) {
   switch (number) {
     CLAIM(0) CLAIM(1) CLAIM(2) CLAIM(3) CLAIM(4) CLAIM(5) CLAIM(6) CLAIM(7)
-    default: __CPROVER_assert(0, "trap: number of a claim");
+    default: CHECK(0, "trap: number of a claim");
   }
 }
 
 void w2c_prover_cover(struct w2c_prover *p, u32 number, u32 reached) {
   switch (number) {
     COVER(0) COVER(1) COVER(2) COVER(3) COVER(4) COVER(5) COVER(6) COVER(7)
-    default: __CPROVER_assert(0, "trap: number of a cover point");
+    default: CHECK(0, "trap: number of a cover point");
   }
 }
 
@@ -144,8 +225,40 @@ void w2c_prover_cover(struct w2c_prover *p, u32 number, u32 reached) {
 static struct w2c_prover prover;
 static w2c_h instance;
 
+#ifdef NATIVE
+void wasm_rt_free_memory(wasm_rt_memory_t *m) {}
+
 int main(void) {
+  static char line[1 << 20];
+  while (fgets(line, sizeof line, stdin)) {
+    u32 selected = (u32)strtoul(line, &tape, 10);
+    picked = nondet_u32();
+#ifdef MUTANTS
+    chosen = selected;
+#endif
+    printf("run %u\n", selected);
+    memset(words, 0, sizeof words);
+    if (setjmp(end_of_run)) {
+      puts("assumed away");
+    } else {
+      wasm2c_h_instantiate(&instance, &prover);
+      JOIN(w2c_h_, HARNESS)(&instance);
+      puts("end");
+    }
+  }
+  return 0;
+}
+#else
+#define OR_CHOSEN(n) || chosen == n
+int main(void) {
+#ifdef ONLY
+  chosen = ONLY;
+#elif defined(MUTANTS)
+  chosen = nondet_u32();
+  __CPROVER_assume(0 MUTANTS(OR_CHOSEN));
+#endif
   wasm2c_h_instantiate(&instance, &prover);
   JOIN(w2c_h_, HARNESS)(&instance);
   return 0;
 }
+#endif

@@ -41,6 +41,9 @@ fn entry<T: Copy>(table: &[[Option<T>; MAX_CODES]; MAX_CODES], main: Option<u8>,
 /// By how much the codes of the sub carrier are above those of the main carrier: more than a band is wide.
 const SUB: u32 = 5;
 
+/// The codes of a carrier where no other number says.
+const CODES: usize = if cfg!(kani) { 4 } else { MAX_CODES };
+
 /// Some frequencies of a carrier with `count` codes; `above` those of the main carrier.
 fn carrier<E: Engine + ?Sized>(e: &mut E, count: usize, above: u32) -> Option<CodeFrequencies> {
     let eight = [10, 20, 30, 40, 50, 60, 70, 80].map(|frequency| Millihertz(frequency + above));
@@ -75,6 +78,7 @@ harness! {
     assumptions ["printed-sizes"];
     bound "1 to 3 code frequencies";
     cases 3;
+    unwind 33 = 1 + 4 * MAX_CODES;
     claims {
         Exact: "the code is named if and only if the frequency is within the tolerance of that code's, ends included",
         Alone: "a frequency is within the tolerance of one code at most",
@@ -123,6 +127,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + 4 * MAX_CODES;
+    under_kani "4 codes of each carrier";
     claims {
         Exact: "the speed is that of the pair in the table",
         Missing: "a missing code names no speed",
@@ -134,7 +140,7 @@ harness! {
         Beside: "one measured frequency in no band",
     }
     {
-        let (Some(main), Some(sub)) = (carrier(e, MAX_CODES, 0), carrier(e, MAX_CODES, SUB)) else { return };
+        let (Some(main), Some(sub)) = (carrier(e, CODES, 0), carrier(e, CODES, SUB)) else { return };
         let speeds = any_speeds(e);
         let Ok(table) = CodeTable::new(main, sub, speeds) else { return e.assume(false) };
         let (main, sub) = (any_code(e, "main code (8: none)"), any_code(e, "sub code (8: none)"));
@@ -163,6 +169,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + 4 * MAX_CODES;
+    under_kani "4 codes of each carrier";
     claims {
         Detected: "if it does, a listed pair of which one code is taken for another names no speed",
         Undetected: "if it does not, there is a listed pair of which one code can be taken for another so that it names a speed",
@@ -173,7 +181,7 @@ harness! {
         Column: "a table in which two pairs share a sub code, and none a main code",
     }
     {
-        let (Some(main), Some(sub)) = (carrier(e, MAX_CODES, 0), carrier(e, MAX_CODES, SUB)) else { return };
+        let (Some(main), Some(sub)) = (carrier(e, CODES, 0), carrier(e, CODES, SUB)) else { return };
         let speeds = any_speeds(e);
         let Ok(table) = CodeTable::new(main, sub, speeds) else { return e.assume(false) };
         let says = table.detects_one_wrong_code();
@@ -211,6 +219,7 @@ harness! {
     assumptions ["printed-sizes"];
     bound "0 to 3 code frequencies, and 9";
     cases 5;
+    unwind 33 = 1 + 4 * MAX_CODES;
     claims {
         Exact: "accepted if and only if there are 1 to 8, no band reaches 0 or beyond the highest number, and each band is above the one before it",
         Told: "the error names the first rule that is broken, and the first place where bands touch",
@@ -267,6 +276,8 @@ harness! {
     assumptions [];
     bound "";
     cases MAX_CODES;
+    unwind 33 = 1 + 4 * MAX_CODES;
+    apart [0 1 2 3 4 5 6 7];
     claims {
         Exact: "accepted if and only if it names a speed, and none for a code that is not in use",
         Told: "the error names the rule that is broken, and the first pair, by main code and then by sub code",

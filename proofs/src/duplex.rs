@@ -36,6 +36,7 @@ harness! {
     assumptions ["single-fault", "same-input"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         SafeOrSame: "with one bit flipped the output is the safe one or the one without the fault",
         NoneLatent: "after the cycle the two channels are equal, or the safe output is latched",
@@ -109,6 +110,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Agreement: "there is an output if and only if both channels agree in all three and neither has tripped",
         Value: "it is the output of both",
@@ -149,6 +151,7 @@ harness! {
     assumptions ["same-input"];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Transparent: "without a fault the output and the state are those of one machine",
         Latched: "once tripped, also with one bit flipped, the output stays the safe one and the channels stay tripped",

@@ -17,8 +17,18 @@ pub struct Harness {
     pub assumptions: &'static [&'static str],
     /// The bound of the proof in words; empty if there is none.
     pub bound: &'static str,
+    /// The same as far as Kani proves it, which may be less.
+    pub bound_kani: &'static str,
     /// How many cases [`Engine::choose`] splits it into; 1 if it does not.
     pub cases: usize,
+    /// How often Kani unwinds each loop: once more than the longest one needs.
+    pub unwind: usize,
+    /// The same, derived from the sizes of the harness. Kani takes a number only, so the two stand side by side and are compared.
+    pub derived: usize,
+    /// The cases that Kani proves one by one, each in a proof of its own; none if one proof has them all.
+    pub apart: &'static [usize],
+    /// The module in which Kani's proofs of it stand.
+    pub module: &'static str,
     /// Its claims, by number.
     pub claims: &'static [Point],
     /// Its cover points, by number.
@@ -39,6 +49,11 @@ pub struct Point {
 /// Defines a harness as a module with `run` (its body), `HARNESS` and, for the provers, an entry point.
 ///
 /// Claims and cover points are enums: one that the body never names is a compiler warning (an error in `ci/test`).
+///
+/// For Kani: `unwind 17 = 1 + SECTIONS;` is how often it unwinds loops. It works on MIR, where every loop over an array is one, and every
+/// comparison of arrays of numbers is one over their bytes. `solver kissat;` is a solver that is known to be better than the default one,
+/// `apart [0 1 2];` has the cases proved one by one, the last one with all that follow it, and `under_kani "…";` is the bound where sizes are
+/// smaller under `cfg(kani)`.
 macro_rules! harness {
     (
         $(#[doc = $statement:literal])+
@@ -48,6 +63,10 @@ macro_rules! harness {
         assumptions [$($assumption:literal),* $(,)?];
         bound $bound:expr;
         cases $cases:expr;
+        unwind $unwind:literal = $derived:expr;
+        $(solver $solver:ident;)?
+        $(apart [$($apart:tt)+];)?
+        $(under_kani $bound_kani:expr;)?
         claims { $($claim:ident: $claim_text:literal,)+ }
         covers { $($cover:ident: $cover_text:literal,)+ }
         $body:block
@@ -78,7 +97,15 @@ macro_rules! harness {
                     requirements: &[$($requirement),*],
                     assumptions: &[$($assumption),*],
                     bound: $bound,
+                    bound_kani: {
+                        let bounds = [$bound $(, $bound_kani)?];
+                        bounds[bounds.len() - 1]
+                    },
                     cases: $cases,
+                    unwind: $unwind,
+                    derived: $derived,
+                    apart: $crate::harness::counting_up(&[$($($apart),+)?]),
+                    module: module_path!(),
                     claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
                     covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
                     run: |engine| run(engine),
@@ -88,21 +115,31 @@ macro_rules! harness {
                 #[inline(always)]
                 pub fn run<E: $crate::Engine + ?Sized>($engine: &mut E) $body
 
+                // Sizes may be smaller than those of which the number is derived, never greater.
+                #[allow(clippy::int_plus_one, reason = "the bound is one more than a size")]
+                const _: () = assert!($unwind >= $derived, "loops are not unwound far enough");
+
                 #[cfg(kani)]
-                #[kani::proof]
-                #[kani::unwind(18)]
-                fn kani() {
-                    run(&mut $crate::engine::model::Kani);
-                }
+                kani_proofs!([$unwind $($solver)?] [$($($apart)+)?]);
 
                 #[cfg(engine = "cbmc")]
                 #[unsafe(no_mangle)]
                 extern "C" fn $name() {
-                    run(&mut $crate::engine::cbmc::Cbmc);
+                    run(&mut $crate::engine::cbmc::Cbmc::start());
                 }
             }
         }
     };
+}
+
+/// The numbers, which are 0, 1, 2, …; anything else stops the compiler.
+pub(crate) const fn counting_up(numbers: &'static [usize]) -> &'static [usize] {
+    let mut place = 0;
+    while place < numbers.len() {
+        assert!(numbers[place] == place, "the cases that are proved apart are 0 1 2 and so on");
+        place += 1;
+    }
+    numbers
 }
 
 /// A decimal number of one or two digits; anything else stops the compiler.

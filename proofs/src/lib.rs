@@ -9,6 +9,9 @@
 #![no_std]
 #![cfg_attr(not(engine = "cbmc"), forbid(unsafe_code))]
 
+#[cfg(kani)]
+#[macro_use]
+mod kani_proofs;
 #[macro_use]
 mod harness;
 mod engine;

@@ -1,8 +1,9 @@
 //! The braking pattern: theorem T-PAT-1 to T-PAT-3.
 
 use crate::{Engine, Harness, any_byte, any_u32};
+use atc_arithmetic::{ENERGY_END, energy, root};
 use atc_kernel::distance::Metres;
-use atc_kernel::pattern::{Deceleration, ENERGY_END, MAX_SPEED, energy, pattern, root};
+use atc_kernel::pattern::{Deceleration, MAX_SPEED, pattern};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
 
@@ -10,6 +11,9 @@ use atc_kernel::telegram::Gradient;
 #[cfg(not(chosen))]
 pub const ALL: &[Harness] =
     &[t_pat_1::HARNESS, t_pat_1_root::HARNESS, t_pat_2::HARNESS, t_pat_3::HARNESS, pat_3::HARNESS];
+
+/// How often the search for a root halves what is left of 4096 numbers: the longest loop.
+pub(crate) const HALVINGS: usize = 4096_u32.ilog2() as usize;
 
 /// An arbitrary brake.
 pub(crate) fn any_brake<E: Engine + ?Sized>(e: &mut E) -> Option<Deceleration> {
@@ -33,6 +37,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
+    solver kissat;
     claims {
         Energy: "the number of which the root is taken is 324·b·d, or 125·4096² − 1 where that is less",
         Root: "the speed of the pattern is the root of that number",
@@ -45,7 +51,7 @@ harness! {
         let Some(brake) = any_brake(e) else { return };
         let deceleration = brake.on(any_gradient(e, "gradient (‰, two's complement)"));
         let distance = e.word("distance (m)", 0..=10_000);
-        let number = energy(deceleration, Metres(distance));
+        let number = energy(deceleration.mm_s2(), distance);
         let product = u32::from(deceleration.mm_s2()) * u32::from(distance);
         // The least product of which 324 times is not under 125·4096² = 2 097 152 000.
         let over = 6_472_692;
@@ -65,6 +71,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
+    solver kissat;
     claims {
         NeverAbove: "125·r² ≤ n: never above the real curve",
         NoLower: "n < 125·(r + 1)²: one unit more would be above it",
@@ -108,6 +116,7 @@ harness! {
     assumptions ["gravity"];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Falling: "falling: at least 9.84 mm/s² per thousandth less, or no deceleration",
         Rising: "rising: at most 9.69 mm/s² per thousandth more",
@@ -145,6 +154,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Gradient: "a worse gradient never gives a higher deceleration",
         Brake: "nor does a weaker brake",
@@ -170,6 +180,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 13 = 1 + crate::pattern::HALVINGS;
     claims {
         Exact: "accepted if and only if it is 1 to 4095 mm/s², and kept as it is",
     }

@@ -81,6 +81,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 2 = 1 + 1;
     claims {
         Above: "above the permitted speed the brake is on",
         NotAbove: "not above it, and with no brake on before, it is released",
@@ -120,6 +121,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 2 = 1 + 1;
     claims {
         Emergency: "a missing, negative or too high speed, or a missing or negative permission, commands the emergency brake, and nothing else does",
     }
@@ -147,6 +149,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 2 = 1 + 1;
     claims {
         Exact: "accepted if and only if the maximum is above 0 and the margin not above it; kept as asked; the error names the broken rule",
     }
@@ -176,6 +179,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 2 = 1 + 1;
     claims {
         Step: "the machine commands, and remembers, what the step says",
         Start: "the initial state and the safe output are the emergency brake",

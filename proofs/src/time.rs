@@ -11,6 +11,9 @@ pub const ALL: &[Harness] = &[time_rounding::HARNESS, time_constructor::HARNESS]
 /// The cycle of the rounding proof in milliseconds: a constant, as no prover divides by an arbitrary number.
 pub const CYCLE_MS: u32 = 10;
 
+/// The times of a line, T1 to T5: the longest loop goes over 16 bits of each, byte by byte.
+const TIMES: usize = 5;
+
 harness! {
     /// A time whose lapse permits something (T1, T5) is rounded up to whole cycles; a time during which a permission
     /// persists (T2, T3, T4) is rounded down.
@@ -20,6 +23,7 @@ harness! {
     assumptions ["cycle-10ms"];
     bound "cycle 10 ms; other cycles are tested";
     cases 1;
+    unwind 11 = 1 + 2 * TIMES;
     claims {
         Up: "rounded up, a time lasts at least what was asked, and less than a cycle more",
         Down: "rounded down, it lasts at most what was asked, and less than a cycle less",
@@ -77,6 +81,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 11 = 1 + 2 * TIMES;
     claims {
         Exact: "accepted if and only if no rule of TIME-2 is broken",
         Kept: "accepted times are the ones that were asked for, T4 at most T2+T3 less one",

@@ -51,6 +51,9 @@ pub struct Evidence {
     pub verdict: Verdict,
     /// Bound, states and parameters, or numbers: what belongs with the verdict.
     pub detail: String,
+    /// The run was not to look at it: another part of the railway, or another shard.
+    #[serde(default)]
+    pub left_out: bool,
     /// Why the verdict is not better.
     pub reason: Option<String>,
     /// Requirement ids.
@@ -87,6 +90,7 @@ impl Evidence {
             at: None,
             verdict,
             detail: String::new(),
+            left_out: false,
             reason: None,
             requirements: Vec::new(),
             assumptions: Vec::new(),

@@ -5,6 +5,7 @@ mod faults;
 mod line;
 mod measured;
 mod register;
+mod run;
 mod station;
 
 use crate::verdict::Verdict;
@@ -17,21 +18,24 @@ pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
 pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
 pub use measured::{Figure, Measurements, Plot};
 pub use register::{Condition, Hazard, Requirement, Technique, Tool};
+pub use run::{Phase, Run};
 pub use station::{Asked, Check, Confirm, DataCheck, Finding, NeededRule, Origin, Station, StationCondition};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 5;
+pub const SCHEMA: u32 = 6;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 5.
+    /// The version of this shape: 6.
     pub schema: u32,
     /// What the case is about.
     pub title: String,
     /// What it is bound to.
     pub provenance: Provenance,
+    /// What the run looked at, and where its time went.
+    pub run: Run,
     /// How the run ended.
     pub status: Status,
     /// One for each root of the argument.

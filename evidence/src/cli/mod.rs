@@ -1,9 +1,17 @@
 //! The commands.
 
+mod engines;
+mod merge;
 mod render;
 mod run;
 
-use crate::error::Fault;
+use crate::build::Required;
+use crate::config;
+use crate::error::{Fault, read};
+use crate::inputs::mutants;
+use crate::plan::{Plan, plan};
+use crate::scope::{Scope, Shard};
+use crate::station;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -22,6 +30,15 @@ pub struct Cli {
 enum Command {
     /// Run the engines and write the case.
     Run(Box<Run>),
+    /// Join the shards of one run into one case.
+    Merge(Box<Merge>),
+    /// Compare two cases without their times: exit code 1 and what differs, if anything does.
+    Compare {
+        /// The folder of a case.
+        one: PathBuf,
+        /// The folder of another.
+        other: PathBuf,
+    },
     /// Write a case again from its case.json, for a station if a layout is given; results of other sources become stale.
     Render {
         /// The folder of a case.
@@ -60,6 +77,12 @@ pub struct Run {
     /// What must be so for the exit code 0, beyond nothing having gone wrong.
     #[arg(long)]
     require: Option<Require>,
+    /// Only this part of the railway (aspect, supervision, block, …): its theorems, wrong kernels, models and tests.
+    #[arg(long, conflicts_with = "shard")]
+    part: Option<String>,
+    /// Only this shard, such as 2/4; `safety-case merge` joins them.
+    #[arg(long)]
+    shard: Option<Shard>,
     /// A line's parameters (TOML); without this, the example of the patent.
     #[arg(long)]
     config: Option<PathBuf>,
@@ -107,6 +130,57 @@ pub struct Run {
     root: Option<PathBuf>,
 }
 
+impl Run {
+    /// What it is about.
+    fn scope(&self) -> Scope {
+        match (&self.part, self.shard) {
+            (Some(part), _) => Scope::Part(part.clone()),
+            (None, Some(shard)) => Scope::Shard(shard),
+            (None, None) => Scope::Whole,
+        }
+    }
+}
+
+/// What `merge` takes.
+#[derive(Clone, Debug, Args)]
+pub struct Merge {
+    /// The folders that the shards were written to.
+    #[arg(required = true)]
+    shards: Vec<PathBuf>,
+    /// Where to write the case.
+    #[arg(long)]
+    out: PathBuf,
+    /// What must be so for the exit code 0, beyond nothing having gone wrong.
+    #[arg(long)]
+    require: Option<Require>,
+    /// A line's parameters (TOML); without this, the example of the patent.
+    #[arg(long)]
+    config: Option<PathBuf>,
+    /// A station's layout (TOML, railML 3 or OSRD).
+    #[arg(long)]
+    layout: Option<PathBuf>,
+    /// The checkout; without this, the one that holds the current folder.
+    #[arg(long)]
+    root: Option<PathBuf>,
+}
+
+/// What the build of a case is told to require.
+fn required(require: Option<Require>) -> Required {
+    if require == Some(Require::Proved) { Required::Proved } else { Required::NoDefect }
+}
+
+/// The plan for this line and station.
+fn planned(root: &Path, config: Option<&Path>, layout: Option<&Path>) -> Result<Plan, Vec<Fault>> {
+    let one = |fault: Fault| vec![fault];
+    let line = match config {
+        Some(path) => config::parse(&path.display().to_string(), &read(path).map_err(one)?),
+        None => config::parse("evidence/examples/my-line.toml", config::EXAMPLE),
+    }
+    .map_err(one)?;
+    let station = layout.map(station::read).transpose()?;
+    plan(root, (line, station), mutants::catalogue(root).map_err(one)?)
+}
+
 /// What may be required.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Require {
@@ -118,6 +192,8 @@ pub enum Require {
 pub fn main(cli: Cli) -> u8 {
     let result = match cli.command {
         Command::Run(options) => run::run(&options),
+        Command::Merge(options) => merge::merge(&options),
+        Command::Compare { one, other } => merge::compare(&one, &other),
         Command::Render { from, layout, out, root } => {
             render::render(&from, layout.as_deref(), out.as_deref(), root.as_deref())
         }

@@ -12,7 +12,8 @@ use crate::station;
 use crate::terminal;
 use std::path::Path;
 
-fn load(from: &Path) -> Result<Case, Fault> {
+/// The case in a folder.
+pub(super) fn load(from: &Path) -> Result<Case, Fault> {
     let path = from.join("case.json");
     let case: Case = serde_json::from_str(&read(&path)?)
         .map_err(|error| Fault::new(&path.display(), format!("no case: {error}")))?;
@@ -48,8 +49,10 @@ pub fn render(from: &Path, layout: Option<&Path>, out: Option<&Path>, root: Opti
     if let Some(station) = &station {
         at_station(&mut case, station);
     }
+    // What the engines said stays with it.
+    let results = std::fs::read_to_string(from.join(crate::results::FILE)).ok();
     let folder = Folder::begin(out.unwrap_or(from)).map_err(one)?;
-    folder.finish(&case).map_err(one)?;
+    folder.finish(&case, results).map_err(one)?;
     println!("{}", terminal::summary(&case));
     Ok(case.status.exit_code)
 }

@@ -9,6 +9,7 @@ mod registers;
 mod report;
 mod station;
 mod theorems;
+mod times;
 
 use crate::case::Case;
 use crate::verdict::Verdict;
@@ -26,6 +27,7 @@ pub fn document(case: &Case) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                @if case.run.running { meta http-equiv="refresh" content="10"; }
                 title { (title) }
                 style { (PreEscaped(include_str!("style.css"))) }
             }

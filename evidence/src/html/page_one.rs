@@ -15,6 +15,11 @@ pub fn headline(case: &Case) -> (&'static str, String) {
     let (stop, open) = (count(Severity::Stop), count(Severity::Open));
     let worst = Verdict::worst(case.conclusions.iter().map(|one| one.verdict)).unwrap_or(Verdict::NotRun);
     let missing = case.status.missing.len();
+    if let Some(partial) = case.run.partial() {
+        let (all, some) = (case.evidence.len(), case.evidence.len() - missing);
+        let wrong = if stop > 0 { format!(" {} went wrong.", capital(&things(stop))) } else { String::new() };
+        return ("red", format!("{partial} {some} of {all} pieces of evidence have a result here.{wrong}"));
+    }
     if stop > 0 || worst.is_defect() || case.status.exit_code != 0 {
         ("red", format!("Not shown. {} went wrong, {} open.", things(stop.max(1)), items(open)))
     } else if missing > 0 || !worst.holds() {

@@ -10,7 +10,7 @@ pub fn definition(case: &Case) -> Markup {
         h2 #system { "1 System definition" }
         p { "The generic product is the kernel package " code { "atc-kernel" } ": the machines of an automatic train control \
              system, each a pure and total function from state and input to state and output, without heap, clock, floating \
-             point, unsafe code or dependency." }
+             point or unsafe code; its one dependency is the project's own " code { "atc-arithmetic" } "." }
         ul {
             li { strong { "Aspect acceptance" } " (JP3886280B2): from the codes that the receiver detects in each logic cycle to the \
                 one aspect that is displayed. Nothing displayed means stop." }
@@ -84,7 +84,9 @@ pub fn ending(case: &Case) -> Markup {
             dt { "Aspects in sized harnesses" } dd { (provenance.aspects) }
             dt { "Required" } dd { (case.status.required.as_deref().unwrap_or("nothing beyond no defect")) }
             dt { "Exit code" } dd { (case.status.exit_code) }
+            @if !case.run.joined.is_empty() { dt { "Joined from" } dd { (case.run.joined.join(", ")) } }
         }
+        (super::times::render(&case.run))
         @if !case.status.reasons.is_empty() {
             h4 { "Why the exit code is not 0" }
             ul { @for reason in &case.status.reasons { li { (reason) } } }

@@ -3,7 +3,7 @@
 use super::{document, headline, station_page};
 use crate::case::{
     Asked, Case, Chart, Check, Conclusion, CutSet, DataCheck, Derived, Evidence, Excluded, FailureMode, Figure, Kind,
-    Line, Measurements, OpenItem, Provenance, SCHEMA, SecondOpinion, Severity, Station, Status,
+    Line, Measurements, OpenItem, Provenance, Run, SCHEMA, SecondOpinion, Severity, Station, Status,
 };
 use crate::inputs::measured::HERE;
 use crate::verdict::Verdict;
@@ -19,6 +19,7 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
         schema: SCHEMA,
         title: "A kernel".to_owned(),
         provenance: Provenance::default(),
+        run: Run::default(),
         status: Status { complete: missing.is_empty(), missing, ..Status::default() },
         conclusions: vec![Conclusion {
             node: "G".to_owned(),

@@ -1,18 +1,59 @@
 //! Cargo, on the checkout that the case is about and with nothing of another one.
 
+use std::io;
+use std::os::unix::process::CommandExt;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
-/// Cargo at `root`, without an input. It builds into `root/target`, whatever the environment or a configuration file names: in a
+/// Runs a program and ends with it. However its own parent ends, the program and all that it has started end too: their group is
+/// killed when the other end of the pipe at its input is closed.
+const GUARD: &str = r#"
+exec 3<&0 </dev/null
+"$@" 3<&- &
+child=$!
+{ read -r _ <&3; kill -s KILL 0; } >/dev/null 2>&1 &
+watch=$!
+exec 3<&-
+wait "$child"
+status=$?
+kill -s KILL "$watch" 2>/dev/null
+exit "$status"
+"#;
+
+/// Cargo at `root`, without an input; to be run by [`status`]. It builds into `root/target`, whatever the environment or a configuration file names: in a
 /// folder that checkouts share, Cargo can take a binary of one for that of another, and its results would be credited to these
 /// sources.
 pub fn command(root: &Path) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = Command::new("sh");
+    command.args(["-c", GUARD, "sh"]).arg(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     let target = root.join("target");
     // The second is where newer versions put everything but what is asked for: test binaries as well.
     command.env("CARGO_TARGET_DIR", &target).env("CARGO_BUILD_BUILD_DIR", &target);
-    command.current_dir(root).stdin(Stdio::null());
+    command.current_dir(root).stdin(Stdio::piped()).process_group(0);
     command
+}
+
+/// Runs what [`command`] has made to its end, or to this limit: nothing then. Nothing that it started is left.
+///
+/// # Errors
+/// It cannot be started or waited for.
+pub fn status(command: &mut Command, limit: Option<Duration>) -> io::Result<Option<ExitStatus>> {
+    let mut child = command.spawn()?;
+    // Waiting would close it.
+    let pipe = child.stdin.take();
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if limit.is_some_and(|limit| start.elapsed() > limit) {
+            drop(pipe);
+            child.wait()?;
+            return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
 }
 
 #[cfg(test)]
@@ -52,7 +93,7 @@ mod checks {
         let good = checkout(&at("good"), &at("shared"), "#[test]\nfn one() {}\n", 3600);
         let bad = checkout(&at("bad"), &at("shared"), "#[test]\nfn one() {\n    panic!()\n}\n", 7200);
         for (root, counts) in [(good, (1, 0)), (bad, (0, 1))] {
-            let Run::Ran { suites, success } = tests::run(&root, &at("log")).expect("cargo runs") else {
+            let Run::Ran { suites, success } = tests::run(&root, &at("log"), None).expect("cargo runs") else {
                 panic!("it ran")
             };
             let log = fs::read_to_string(at("log")).expect("a log");

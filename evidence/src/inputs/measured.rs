@@ -6,14 +6,15 @@ mod bench;
 mod figures;
 
 pub use bench::Bench;
-pub use figures::shown;
+pub use figures::{SPEED, shown};
 
 use super::cargo;
 use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
 use crate::verdict::Verdict;
+use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::path::Path;
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// The waveform package, as an engine.
@@ -29,28 +30,39 @@ pub const HERE: &str = "run here";
 pub struct Target {
     /// Its name: evidence `measured:` and this.
     pub name: &'static str,
+    /// The part of the railway that it is about.
+    pub part: &'static str,
     /// What is shown when it is met.
     pub statement: &'static str,
 }
 
-const fn target(name: &'static str, statement: &'static str) -> Target {
-    Target { name, statement }
+const fn target(name: &'static str, part: &'static str, statement: &'static str) -> Target {
+    Target { name, part, statement }
 }
 
 /// Every target there is: part of the manifest before anything runs.
 pub const TARGETS: &[Target] = &[
-    target("ber-coherent", "Without codes, bits are received within 1 dB of theory at every ratio."),
-    target("ber-offset", "With carriers that are 1 Hz off, bits are received within 1 dB of theory at every ratio."),
-    target("ber-under-code", "Under the codes' modulation, bits are received within 1 dB of theory at every ratio."),
-    target("wrong-telegrams", "No telegram is heard that was not sent, at any ratio of signal to noise."),
-    target("wrong-speeds", "No speed is heard that was not sent, at any ratio of signal to noise."),
-    target("false-codes", "No pair of codes names a speed in noise alone."),
+    target("ber-coherent", "telegram", "Without codes, bits are received within 1 dB of theory at every ratio."),
+    target(
+        "ber-offset",
+        "telegram",
+        "With carriers that are 1 Hz off, bits are received within 1 dB of theory at every ratio.",
+    ),
+    target(
+        "ber-under-code",
+        "telegram",
+        "Under the codes' modulation, bits are received within 1 dB of theory at every ratio.",
+    ),
+    target("wrong-telegrams", "telegram", "No telegram is heard that was not sent, at any ratio of signal to noise."),
+    target("wrong-speeds", "code", "No speed is heard that was not sent, at any ratio of signal to noise."),
+    target("false-codes", "code", "No pair of codes names a speed in noise alone."),
     target(
         "level-tolerance",
+        "position",
         "A level that is measured from samples is within 0.1 dB, from 30 dB of signal over noise.",
     ),
-    target("position-inside", "Inside the limits of its table no interval is without the train."),
-    target("position-samples", "Nor is one whose levels were measured from samples, with noise."),
+    target("position-inside", "position", "Inside the limits of its table no interval is without the train."),
+    target("position-samples", "position", "Nor is one whose levels were measured from samples, with noise."),
 ];
 
 /// The evidence id of a target.
@@ -59,7 +71,7 @@ pub fn id(name: &str) -> String {
 }
 
 /// What became of the run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Run {
     /// Nobody asked for it, or it cannot be built here.
     NotRun(String),
@@ -70,7 +82,7 @@ pub enum Run {
 }
 
 /// A run that ended.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ran {
     /// Its figures.
     pub bench: Bench,
@@ -82,64 +94,47 @@ pub struct Ran {
     pub seconds: f64,
 }
 
-/// Builds the package at `root`, runs it with its results in `folder`, for at most `limit`, and reads them.
-pub fn run(root: &Path, folder: &Path, limit: Duration) -> Run {
-    let quiet = || {
+/// Builds the package at `root`, runs it with its results in `folder`, for at most `limit`, and reads them. `watch` hears of
+/// each log that is being written.
+pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -> Run {
+    if let Err(error) = fs::create_dir_all(folder) {
+        return Run::Failed(format!("{}: {error}", folder.display()));
+    }
+    let logged = |log: &Path| -> std::io::Result<Command> {
+        let file = File::create(log)?;
         let mut command = cargo::command(root);
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        command
+        command.stdout(file.try_clone()?).stderr(file);
+        watch(log);
+        Ok(command)
     };
-    let package = ["--release", "--quiet", "--package", "atc-waveform", "--bin", "waveform"];
-    match quiet().arg("build").args(package).status() {
+    let package = ["--release", "--color=never", "--package", "atc-waveform", "--bin", "waveform"];
+    let built = logged(&folder.join("build.log"))
+        .and_then(|mut command| cargo::status(command.arg("build").args(package), None));
+    match built {
         Err(error) => return Run::NotRun(format!("cargo cannot be started: {error}")),
-        Ok(status) if !status.success() => {
+        Ok(status) if !status.is_some_and(|status| status.success()) => {
             return Run::NotRun("atc-waveform cannot be built here: see `cargo build -p atc-waveform`".to_owned());
         }
         Ok(_) => {}
     }
-    if let Err(error) = fs::create_dir_all(folder) {
-        return Run::Failed(format!("{}: {error}", folder.display()));
-    }
     let log = folder.join("bench.log");
     let start = Instant::now();
-    let mut command = quiet();
-    command.arg("run").args(package).args(["--", "bench", "--quick", "--out"]).arg(folder);
-    if let Ok(file) = File::create(&log) {
-        if let Ok(second) = file.try_clone() {
-            command.stdout(second);
-        }
-        command.stderr(file);
-    }
-    match ended(&mut command, limit) {
-        Err(reason) => Run::Failed(reason),
-        Ok(status) if !status.success() => {
+    let ended = logged(&log).and_then(|mut command| {
+        command.args(["run", "--quiet"]).args(package).args(["--", "bench", "--quick", "--out"]).arg(folder);
+        cargo::status(&mut command, Some(limit))
+    });
+    match ended {
+        Err(error) => Run::Failed(format!("the measurement cannot be started: {error}")),
+        Ok(None) => Run::Failed(format!("no result within {} s", limit.as_secs())),
+        Ok(Some(status)) if !status.success() => {
             let text = fs::read_to_string(&log).unwrap_or_default();
             let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
             Run::Failed(format!("the measurement ended with an error: {last}"))
         }
-        Ok(_) => match read(folder, HERE) {
+        Ok(Some(_)) => match read(folder, HERE) {
             Run::Ran(ran) => Run::Ran(Box::new(Ran { seconds: start.elapsed().as_secs_f64(), ..*ran })),
             other => other,
         },
-    }
-}
-
-/// Waits for a command, for at most `limit`, and ends it then.
-fn ended(command: &mut Command, limit: Duration) -> Result<ExitStatus, String> {
-    let mut child = command.spawn().map_err(|error| format!("the measurement cannot be started: {error}"))?;
-    let start = Instant::now();
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Ok(status),
-            Err(error) => return Err(format!("the measurement cannot be waited for: {error}")),
-            Ok(None) if start.elapsed() > limit => {
-                // Ended or not, there is no result.
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(format!("no result within {} s", limit.as_secs()));
-            }
-            Ok(None) => std::thread::sleep(Duration::from_millis(50)),
-        }
     }
 }
 

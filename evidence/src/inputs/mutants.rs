@@ -15,10 +15,12 @@ pub struct Catalogue {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The place of the text that it changes: `kernel/src/….rs:12`.
+    /// The place of the text that it changes: `kernel/src/….rs:12`, or below `arithmetic/src`.
     pub at: Option<String>,
     /// That text.
     pub find: String,
+    /// The harnesses that are to reject it.
+    pub killers: Vec<String>,
 }
 
 /// The wrong kernels of `proofs/mutants.toml`, in its order.
@@ -28,7 +30,7 @@ pub struct Catalogue {
 pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
     let all = atc_prover::mutants::list(root).map_err(|error| Fault::new(&"wrong kernels", error))?;
     let one = |mutant: atc_prover::mutants::Mutant| {
-        let file = format!("kernel/src/{}", mutant.file);
+        let file = mutant.path();
         let text = read(&root.join(&file))?;
         let line = text.find(&mutant.find).map(|place| text[..place].matches('\n').count() + 1);
         Ok(Catalogue {
@@ -37,6 +39,7 @@ pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
             requirements: mutant.requirements,
             at: line.map(|line| format!("{file}:{line}")),
             find: mutant.find,
+            killers: mutant.killed_by,
         })
     };
     all.into_iter().map(one).collect()
@@ -83,8 +86,9 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
         .collect()
 }
 
-/// A harness that is not proved of the right kernel shows nothing by rejecting a wrong one.
-pub fn only_by_what_holds(mutants: &mut [Evidence], harnesses: &[Evidence]) {
+/// A harness that is not proved of the right kernel shows nothing by rejecting a wrong one. Of those that are `pending`, in
+/// another shard or later in this run, nothing is known yet: nor of what they reject.
+pub fn only_by_what_holds(mutants: &mut [Evidence], harnesses: &[Evidence], pending: &dyn Fn(&str) -> bool) {
     for one in mutants.iter_mut().filter(|one| one.verdict == Verdict::Tested) {
         let broken = |name: &&str| {
             let harness = harnesses.iter().find(|harness| harness.id == format!("harness:{name}"));
@@ -92,8 +96,16 @@ pub fn only_by_what_holds(mutants: &mut [Evidence], harnesses: &[Evidence]) {
         };
         let broken: Option<String> = killers(one).find(|name| broken(name)).map(ToOwned::to_owned);
         if let Some(name) = broken {
-            one.verdict = Verdict::Undecided;
-            one.reason = Some(format!("{name} rejects it, and is not proved of the right kernel"));
+            let not_run =
+                harnesses.iter().any(|one| one.id == format!("harness:{name}") && one.verdict <= Verdict::NotRun);
+            if not_run && pending(&name) {
+                one.verdict = Verdict::NotRun;
+                one.reason = Some("the proof of what rejects it is not here yet".to_owned());
+                one.left_out = true;
+            } else {
+                one.verdict = Verdict::Undecided;
+                one.reason = Some(format!("{name} rejects it, and is not proved of the right kernel"));
+            }
         }
     }
 }
@@ -125,7 +137,7 @@ mod tests {
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
         let (name, what) = ("m".to_owned(), "w".to_owned());
-        let catalogue = Catalogue { name, what, requirements: vec![], at: None, find: String::new() };
+        let catalogue = Catalogue { name, what, requirements: vec![], at: None, find: String::new(), killers: vec![] };
         let killer = Kill { harness: "t".to_owned(), claims: vec![], counterexample: None };
         let result = MutantResult {
             name: "m".to_owned(),
@@ -155,17 +167,26 @@ mod tests {
     }
     #[test]
     fn a_harness_that_is_not_proved_rejects_nothing() {
-        let after = |harnesses: &[Evidence]| {
+        let judged = |harnesses: &[Evidence], pending: bool| {
             let killed_by = vec!["t (Claim)".to_owned()];
             let mut mutants = [Evidence { killed_by, ..Evidence::bare(Kind::Mutant, "m", Verdict::Tested) }];
-            only_by_what_holds(&mut mutants, harnesses);
+            only_by_what_holds(&mut mutants, harnesses, &|_| pending);
             mutants[0].verdict
         };
+        let after = |harnesses: &[Evidence]| judged(harnesses, false);
         let harness = |verdict| [Evidence::bare(Kind::Harness, "t", verdict)];
         assert_eq!(after(&harness(Verdict::ProvedBounded)), Verdict::Tested);
         for bad in [Verdict::Failed, Verdict::Vacuous, Verdict::Undecided, Verdict::NotRun, Verdict::Tested] {
             assert_eq!(after(&harness(bad)), Verdict::Undecided);
         }
         assert_eq!(after(&[]), Verdict::Undecided);
+        // What is still to come excuses nothing that is there.
+        assert_eq!(judged(&harness(Verdict::NotRun), true), Verdict::NotRun);
+        assert_eq!(judged(&harness(Verdict::Tested), true), Verdict::NotRun);
+        assert_eq!(judged(&harness(Verdict::Proved), true), Verdict::Tested);
+        for bad in [Verdict::Failed, Verdict::Vacuous, Verdict::Undecided, Verdict::Stale] {
+            assert_eq!(judged(&harness(bad), true), Verdict::Undecided);
+        }
+        assert_eq!(judged(&[], true), Verdict::Undecided);
     }
 }

@@ -9,6 +9,7 @@ use crate::case::{Claim, Cover, Engine, EngineResult, Evidence, Kind};
 use crate::error::{Fault, read};
 use crate::verdict::Verdict;
 use atc_prover::report::{Campaign, HarnessResult, Verdict as Said};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -83,7 +84,7 @@ pub fn places(root: &Path) -> Result<BTreeMap<String, String>, Fault> {
 }
 
 /// One engine's campaign, and whether it belongs to these sources.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Campaigned {
     /// The results.
     pub campaign: Campaign,
@@ -101,8 +102,19 @@ pub const ENGINES: &[(&str, &str, bool, &str)] = &[
         true,
         "ci/install-provers && cargo run --release -p atc-prover -- prove",
     ),
-    ("kani", "the compiler's intermediate form (MIR), bit by bit", true, "cargo kani -p atc-proofs"),
-    ("creusot", "the contracts on single functions, without any bound", true, "cargo creusot prove"),
+    (
+        "kani",
+        "the compiler's intermediate form (MIR), bit by bit",
+        true,
+        "cargo kani -p atc-proofs -Z function-contracts -Z unstable-options --export-json target/kani.json \
+         && cargo run -p atc-proofs -- kani import target/kani.json, then --import target/proofs/kani.json",
+    ),
+    (
+        "creusot",
+        "the contracts of the arithmetic, over all numbers; for Creusot 0.11, Why3 1.8.2, Z3 4.13.3, cvc5 1.3.2",
+        true,
+        "cargo update -p creusot-std --precise 0.11.0 && cargo creusot prove",
+    ),
     (
         "native",
         "the machine code of this computer, on chosen values: tests, no proof",
@@ -160,6 +172,7 @@ fn one(harness: &Catalogue, campaigns: &[Campaigned]) -> Evidence {
         at: harness.at.clone(),
         verdict: judgement.verdict,
         detail: if judgement.bound.is_empty() { engine.to_owned() } else { judgement.bound },
+        left_out: false,
         reason: judgement.reason,
         requirements: harness.requirements.clone(),
         assumptions: harness.assumptions.clone(),

@@ -35,6 +35,7 @@ fn good() -> HarnessResult {
         reason: None,
         seconds: 1.0,
         solver: String::new(),
+        unwound: 0,
         claims: vec![point("A"), point("B")],
         covers: vec![CoverResult { name: "C".to_owned(), text: String::new(), hit: true }],
         counterexample: None,

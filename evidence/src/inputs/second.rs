@@ -4,6 +4,7 @@ use super::models::{id, thousands};
 use crate::case::{Engine, EngineResult, Evidence, Kind, Model, SecondOpinion};
 use crate::error::Fault;
 use crate::verdict::Verdict;
+use serde::{Deserialize, Serialize};
 
 /// The other checker, as an engine.
 pub const ENGINE: &str = "spin";
@@ -11,7 +12,7 @@ const WHAT: &str = "the models of block counting, written a second time in Prome
 const COMMAND: &str = "ci/install-provers && cargo run --release -p atc-models -- spin";
 
 /// What the other checker says of a model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Opinion {
     /// The model in the catalogue.
     pub model: String,
@@ -30,7 +31,7 @@ pub struct Opinion {
 }
 
 /// Whether it agrees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Agreement {
     /// As many states, and the same verdicts.
     Agrees,

@@ -6,12 +6,14 @@
 use super::cargo;
 use crate::case::{Evidence, Kind};
 use crate::verdict::Verdict;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
 use std::path::Path;
 
 /// One test binary's closing line.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Suite {
     /// `test:` and the binary's name; `test:doc:` and the crate's for examples in the documentation.
     pub name: String,
@@ -28,7 +30,7 @@ pub struct Suite {
 }
 
 /// A whole run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Run {
     /// Nobody asked for it.
     NotRun(String),
@@ -41,19 +43,29 @@ pub enum Run {
     },
 }
 
-/// Runs `cargo test` on the whole workspace at `root`, with its output in the file `log`.
+/// Runs `cargo test` on the whole workspace at `root`, or on these packages and test targets, with its output in the file
+/// `log`.
 ///
 /// # Errors
 /// Cargo cannot be started, or the log cannot be written.
-pub fn run(root: &Path, log: &Path) -> io::Result<Run> {
+pub fn run(root: &Path, log: &Path, only: Option<&BTreeSet<(String, String)>>) -> io::Result<Run> {
     let file = File::create(log)?;
-    let status = cargo::command(root)
-        .args(["test", "--workspace", "--no-fail-fast", "--color=never"])
-        // One file for both streams: the binaries' names are on one, their results on the other, in turn.
-        .stdout(file.try_clone()?)
-        .stderr(file)
-        .status()?;
-    Ok(parse(&std::fs::read_to_string(log)?, status.success()))
+    let mut command = cargo::command(root);
+    command.args(["test", "--no-fail-fast", "--color=never"]);
+    match only {
+        None => {
+            command.arg("--workspace");
+        }
+        Some(targets) => {
+            for (package, target) in targets {
+                command.args(["--package", package, "--test", target]);
+            }
+        }
+    }
+    // One file for both streams: the binaries' names are on one, their results on the other, in turn.
+    command.stdout(file.try_clone()?).stderr(file);
+    let status = cargo::status(&mut command, None)?;
+    Ok(parse(&std::fs::read_to_string(log)?, status.is_some_and(|status| status.success())))
 }
 
 /// Reads what `cargo test` printed, both streams in one.

@@ -67,6 +67,7 @@ mod tests {
             requirements: vec![],
             at: Some(format!("{file}:1")),
             find: find.to_owned(),
+            killers: vec![],
         }
     }
 

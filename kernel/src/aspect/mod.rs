@@ -14,6 +14,6 @@ mod table;
 mod times;
 
 pub use acceptance::{Acceptance, MAX_ASPECTS, Parts, State, step};
-pub use set::{AspectId, AspectSet, Display, lowest_member};
+pub use set::{AspectId, AspectSet, Display};
 pub use table::{AspectTable, TableError};
 pub use times::{Times, TimesError, TimesMs};

@@ -1,8 +1,6 @@
 //! Sets of aspects, and the one that is displayed.
 
 use super::MAX_ASPECTS;
-#[cfg(creusot)]
-use creusot_std::prelude::*;
 
 /// One aspect: its rank by permitted speed, 0 the lowest, at most 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -141,25 +139,4 @@ impl Display {
     pub const fn is_valid(self) -> bool {
         self.0 & self.0.wrapping_sub(1) == 0
     }
-}
-
-/// The lowest member of a set of any size, given as a flag for each rank: the first that is set.
-///
-/// The bit trick of [`AspectSet::lowest`] is shown equal to this for 16 ranks (theorem SET-1); this is proven for any number.
-#[cfg_attr(creusot, ensures(match result {
-    Some(rank) => rank@ < members@.len() && members@[rank@]
-        && (forall<i> 0 <= i && i < rank@ ==> !members@[i]),
-    None => forall<i> 0 <= i && i < members@.len() ==> !members@[i],
-}))]
-pub fn lowest_member(members: &[bool]) -> Option<usize> {
-    let mut rank = 0;
-    #[cfg_attr(creusot, invariant(rank@ <= members@.len()))]
-    #[cfg_attr(creusot, invariant(forall<i> 0 <= i && i < rank@ ==> !members@[i]))]
-    while rank < members.len() {
-        if members[rank] {
-            return Some(rank);
-        }
-        rank += 1;
-    }
-    None
 }

@@ -89,13 +89,13 @@ impl<const B: usize> Line<B> {
     pub fn new(blocks: [Block; B], lengths: &[Metres], train: Metres, direction: Direction) -> Result<Self, LineError> {
         //= spec/block.md#blk-9-the-line
         //# The constructor MUST reject a line without blocks, with more than 64 sections, with a section without length, with blocks of different holds, or with k consecutive sections, across borders too, that are together shorter than the longest train.
-        if B == 0 {
+        let Some(lowest) = blocks.first() else {
             return Err(LineError::NoBlocks);
-        }
+        };
         let mut sections = 0;
         for (number, block) in blocks.iter().enumerate() {
             sections += usize::from(block.sections());
-            if block.hold() != blocks[0].hold() {
+            if block.hold() != lowest.hold() {
                 return Err(LineError::HoldsDiffer(number));
             }
         }
@@ -110,7 +110,7 @@ impl<const B: usize> Line<B> {
                 return Err(LineError::NoLength(number));
             }
         }
-        match short_window(lengths, blocks[0].hold(), train) {
+        match short_window(lengths, lowest.hold(), train) {
             Some(first) => Err(LineError::HoldTooShort(first)),
             None => Ok(Self { blocks, direction }),
         }
@@ -288,7 +288,10 @@ impl<const B: usize> Machine for Line<B> {
                 Direction::Down => Output { occupied: report.occupied.reversed(block.sections()), ..report },
             };
         }
-        next.borders[0] = Border(0);
+        // No block is behind the first one.
+        if let Some(first) = next.borders.first_mut() {
+            *first = Border(0);
+        }
         output.before_hold = hold;
         (next, output)
     }

@@ -10,7 +10,7 @@
 
 mod table;
 
-pub use table::{KNOTS, Millibels, Quotient, SPANS, Spacing, Span, Spans, Table, TableError, part};
+pub use table::{KNOTS, Millibels, SPANS, Spacing, Span, Spans, Table, TableError};
 
 use crate::Machine;
 use crate::distance::Millimetres;

@@ -87,14 +87,15 @@ pub fn decode(frame: Frame) -> Result<Telegram, FrameError> {
     let mut bytes = [0; BYTES];
     let mut guards = 0;
     for (place, byte) in bytes.iter_mut().enumerate() {
-        let [low, high, ..] = (frame.0 >> (9 * (BYTES - 1 - place))).to_le_bytes();
-        *byte = high << 7 | low >> 1;
-        guards |= low & 1;
+        let low = (frame.0 >> (9 * (BYTES - 1 - place))).to_le_bytes();
+        *byte = low[1] << 7 | low[0] >> 1;
+        guards |= low[0] & 1;
     }
     if guards != 0 {
         return Err(FrameError::Guard);
     }
-    let [information @ .., high, low] = bytes;
+    let [b0, b1, b2, b3, b4, b5, b6, b7, high, low] = bytes;
+    let information = [b0, b1, b2, b3, b4, b5, b6, b7];
     if check(information) != u16::from_be_bytes([high, low]) {
         return Err(FrameError::Check);
     }

@@ -1,7 +1,7 @@
 //! All harnesses, in parallel over the cores.
 
-use crate::cbmc::{Answer, CBMC, Halves, Question, Silence, Solver, ask_both};
-use crate::compile::{Compiled, RUSTC, compile};
+use crate::cbmc::{Answer, CBMC, Halves, PROOF, Question, Silence, Solver, ask_both};
+use crate::compile::{Compiled, Kernel, RUSTC, compile};
 use crate::native::{self, blank};
 use crate::process::only_run;
 use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 pub struct Options {
     /// Harnesses, or mutants, at a time.
     pub jobs: usize,
-    /// For each run of the prover.
+    /// CPU time for each run of the prover.
     pub limit: Duration,
     /// Which solver.
     pub solver: Solver,
@@ -26,6 +26,8 @@ pub struct Options {
     pub aspects: usize,
     /// Accepted runs for each harness of the native engine.
     pub tests: usize,
+    /// Whether each mutant is compiled alone, to check those that are compiled together.
+    pub alone: bool,
 }
 
 impl Default for Options {
@@ -36,6 +38,7 @@ impl Default for Options {
             solver: Solver::Auto,
             aspects: atc_proofs::ASPECTS,
             tests: 20_000,
+            alone: false,
         }
     }
 }
@@ -62,7 +65,7 @@ pub fn campaign(
     let ready = tools.map_err(|reason| (Verdict::NotRun, reason)).and_then(|tools| {
         let failed = |reason| (Verdict::Error, reason);
         selftest::check(&tools, options).map_err(failed)?;
-        let compiled = compile(&tools, &root, &folder, options.aspects, &[]).map_err(failed)?;
+        let compiled = compile(&tools, &root, &folder, options.aspects, &[], Kernel::AsItIs).map_err(failed)?;
         Ok((tools, compiled))
     });
     let results = match ready {
@@ -94,7 +97,7 @@ pub fn native_campaign(options: &Options, harnesses: &[&Harness]) -> Result<Camp
 
 /// The options of compiler and prover, for the record.
 pub(crate) fn flags(solver: Solver) -> Vec<String> {
-    let flags = RUSTC.iter().chain(&CBMC).map(ToString::to_string);
+    let flags = RUSTC.iter().chain(&CBMC).chain([&PROOF]).map(ToString::to_string);
     flags.chain([format!("solver={}", solver.name())]).collect()
 }
 
@@ -210,7 +213,7 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
         match (proof, reach) {
             (Ok((proof, _)), Ok((reach, _))) => answers.push((proof, reach)),
             (Err(Silence::Late), _) | (_, Err(Silence::Late)) => {
-                let reason = format!("no answer within {} s", options.limit.as_secs());
+                let reason = format!("no answer within {} s of CPU time", options.limit.as_secs());
                 return unproven(harness, Verdict::Timeout, reason);
             }
             (Err(Silence::Broken(reason)), _) | (_, Err(Silence::Broken(reason))) => {
@@ -218,6 +221,7 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
             }
         }
     }
+    result.unwound = answers.iter().map(|(proof, _)| proof.unwound).max().unwrap_or(0);
     for (number, claim) in result.claims.iter_mut().enumerate() {
         let verdict = |(proof, reach): &(&Answer, &Answer)| match (proof.claim(number), reach.claim(number)) {
             (Some(false), _) => Verdict::Failed,
@@ -252,7 +256,9 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
     } else {
         let which: Vec<_> =
             result.claims.iter().filter(|claim| claim.verdict == worst).map(|claim| claim.name.as_str()).collect();
-        result.reason = (worst != Verdict::Proved).then(|| format!("claims: {}", which.join(", ")));
+        // A bound that is too small for Kani takes nothing from what is proved here: it is told beside it.
+        let beyond = crate::unwound::beyond(harness, result.unwound);
+        result.reason = if worst == Verdict::Proved { beyond } else { Some(format!("claims: {}", which.join(", "))) };
         result.verdict = worst;
     }
     result
@@ -281,6 +287,6 @@ pub(crate) fn in_parallel<T: Send>(jobs: usize, count: usize, work: impl Fn(usiz
     results.into_iter().map(|(_, result)| result).collect()
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

@@ -3,27 +3,29 @@
 use crate::compile::STACK;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
-use serde_json::Value;
+use serde::Deserialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 /// The options of every run. `--no-standard-checks`: what can go wrong in the wasm2c code is an assertion in the
-/// driver, and the C it writes relies on wrapping. Unwinding assertions stay on: a bound that is too small fails.
+/// driver, and the C it writes relies on wrapping.
 /// Memory up to 16 KB, in words, is followed cell by cell: as a whole it would be an array, which costs far more.
-pub const CBMC: [&str; 11] = [
+pub const CBMC: [&str; 9] = [
     "--no-standard-checks",
     "--object-bits",
     "14",
     "--unwind",
     "66",
-    "--unwinding-assertions",
     "--slice-formula",
     "--max-field-sensitivity-array-size",
     "4096",
     "--json-ui",
-    "--trace",
 ];
+
+/// The options of a proof: a bound that is too small fails. (What rejects a mutant does so within the bound.)
+pub const PROOF: &str = "--unwinding-assertions";
 
 /// How long [`Solver::Auto`] waits for the first solver.
 pub const FIRST: Duration = Duration::from_secs(20);
@@ -48,9 +50,16 @@ impl Solver {
     fn options(self, tools: &Tools) -> Vec<String> {
         match self {
             Self::Auto | Self::Minisat => vec!["--sat-solver".to_owned(), "minisat2".to_owned()],
-            Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.path("kissat").display().to_string()],
+            Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.guarded("kissat")],
             Self::Z3 => vec!["--smt2".to_owned(), "--z3".to_owned()],
         }
+    }
+
+    /// CBMC calls Z3 by its name: it must find the one that was installed, wherever it was.
+    fn path(self, tools: &Tools) -> Option<(&'static str, String)> {
+        let own = tools.path("z3").parent()?.display().to_string();
+        let others = std::env::var("PATH").unwrap_or_default();
+        (self == Self::Z3).then(|| ("PATH", format!("{own}:{others}")))
     }
 
     /// The one for what the first solver is known to have no answer to in its time.
@@ -79,6 +88,12 @@ pub enum Ask {
     Reach,
     /// Both in one run.
     Both,
+    /// Which of the mutants that `mutants.h` lists fail a claim.
+    Mutants,
+    /// Which of them fail a claim or panic.
+    Panics,
+    /// What holds with none of them selected: mutant 0, which is all that `mutants.h` lists then.
+    Control,
 }
 
 /// What to ask in one run.
@@ -94,14 +109,16 @@ pub struct Question<'a> {
     pub stack: u32,
     /// Which solver.
     pub solver: Solver,
-    /// Wall time, for each run.
+    /// CPU time, for each run.
     pub limit: Duration,
+    /// The only mutant that `mutants.h` lists.
+    pub only: Option<usize>,
 }
 
 impl<'a> Question<'a> {
     /// Does every claim of `harness` hold?
     pub fn proof(harness: &'a str, solver: Solver, limit: Duration) -> Self {
-        Self { harness, case: (0, 1), ask: Ask::Proof, stack: STACK, solver, limit }
+        Self { harness, case: (0, 1), ask: Ask::Proof, stack: STACK, solver, limit, only: None }
     }
 }
 
@@ -112,6 +129,8 @@ pub struct Answer {
     pub holds: BTreeMap<String, bool>,
     /// Description of a failed assertion → the arbitrary values that make it fail, in order.
     pub values: BTreeMap<String, Vec<u16>>,
+    /// The most iterations of a loop.
+    pub unwound: usize,
 }
 
 impl Answer {
@@ -125,9 +144,14 @@ impl Answer {
         self.holds.get(&format!("cover {number}")).copied()
     }
 
+    /// The same for a mutant: whether the claims hold if it is selected.
+    pub fn mutant(&self, number: usize) -> Option<bool> {
+        self.holds.get(&format!("mutant {number}")).copied()
+    }
+
     /// The answer to [`Ask::Both`] as those to the proof and to what can be reached.
     fn apart(self) -> (Self, Self) {
-        let (mut proof, mut reach) = (Self::default(), Self::default());
+        let (mut proof, mut reach) = (Self { unwound: self.unwound, ..Self::default() }, Self::default());
         for (description, holds) in self.holds {
             if let Some(number) = description.strip_prefix("reach ") {
                 reach.holds.insert(format!("claim {number}"), holds);
@@ -145,7 +169,7 @@ impl Answer {
     /// The first failed assertion that is neither a claim nor a cover point: a trap or a bound that is too small.
     pub fn other_failure(&self) -> Option<&str> {
         let mut failures = self.holds.iter().filter(|(_, holds)| !**holds).map(|(description, _)| description.as_str());
-        failures.find(|description| !description.starts_with("claim ") && !description.starts_with("cover "))
+        failures.find(|description| !["claim ", "cover ", "mutant "].iter().any(|kind| description.starts_with(kind)))
     }
 }
 
@@ -211,39 +235,69 @@ pub fn ask_in_turn(
     ask(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question })
 }
 
-/// Asks CBMC once; [`Solver::Auto`] is MiniSat here. `folder` is what [`Compiled::to_c`] made.
-///
-/// # Errors
-/// No answer, and why. Only an answer that is complete is one.
-pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
+/// What the C of a harness is compiled with, for CBMC and natively.
+pub fn defines(question: &Question) -> Vec<String> {
     let (case, cases) = question.case;
-    let mut arguments: Vec<String> = vec![
-        folder.join("driver.c").display().to_string(),
+    vec![
         format!("-DHARNESS={}", question.harness),
         format!("-DCASE={case}"),
         format!("-DCASES={cases}"),
         format!("-DMEMORY={}", question.stack + DATA),
         "-DWASM_RT_USE_MMAP=0".to_owned(),
         "-DWASM_RT_NONCONFORMING_UNCHECKED_STACK_EXHAUSTION=1".to_owned(),
+    ]
+}
+
+/// Asks CBMC once; [`Solver::Auto`] is MiniSat here. `folder` is what [`Compiled::to_c`] made.
+///
+/// # Errors
+/// No answer, and why. Only an answer that is complete is one.
+pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer, Duration), Silence> {
+    let proves = matches!(question.ask, Ask::Proof | Ask::Both);
+    // Writing down how each assertion fails takes longer than finding it out: only for what should not.
+    let rejects = matches!(question.ask, Ask::Mutants | Ask::Panics);
+    let (answer, took) = ask_for(tools, folder, question, rejects)?;
+    let wrong = |(description, holds): (&String, &bool)| !holds && !description.starts_with("reach ");
+    let fails = answer.holds.iter().filter(|(description, _)| !description.starts_with("cover ")).any(wrong);
+    if !proves || !fails {
+        return Ok((answer, took));
+    }
+    let (traced, again) = ask_for(tools, folder, &Question { ask: Ask::Proof, ..*question }, true)?;
+    Ok((Answer { values: traced.values, ..answer }, took + again))
+}
+
+/// Asks CBMC once, with or without the values that make assertions fail.
+fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> Result<(Answer, Duration), Silence> {
+    let case = question.case.0;
+    let mut arguments: Vec<String> = vec![folder.join("driver.c").display().to_string()];
+    arguments.extend(defines(question));
+    arguments.extend([
         "-I".to_owned(),
         folder.display().to_string(),
         "-I".to_owned(),
         tools.include.display().to_string(),
         "--unwindset".to_owned(),
         format!("load_bytes.0:{}", DATA + 1),
-    ];
-    let (define, name) = match question.ask {
-        Ask::Proof => (None, ""),
-        Ask::Reach => (Some("-DREACH"), "-reach"),
-        Ask::Both => (Some("-DBOTH"), "-both"),
+    ]);
+    let (more, name): (&[&str], _) = match question.ask {
+        Ask::Proof => (&[PROOF], ""),
+        Ask::Reach => (&[PROOF, "-DREACH"], "-reach"),
+        Ask::Both => (&[PROOF, "-DBOTH"], "-both"),
+        Ask::Mutants => (&["--no-unwinding-assertions", "-DMUTANTS"], "-mutants"),
+        Ask::Panics => (&["--no-unwinding-assertions", "-DMUTANTS", "-DTRAPS"], "-panics"),
+        Ask::Control => (&[PROOF, "-DMUTANTS", "-DTRAPS", "-DCONTROL"], "-control"),
     };
-    arguments.extend(define.map(ToOwned::to_owned));
-    arguments.extend(CBMC.iter().map(ToString::to_string));
+    arguments.extend(more.iter().chain(&CBMC).map(ToString::to_string));
+    arguments.extend(question.only.map(|number| format!("-DONLY={number}")));
+    arguments.extend(values.then(|| "--trace".to_owned()));
     arguments.extend(question.solver.options(tools));
     let output = folder.join(format!("cbmc-{case}{name}.json"));
-    let limits = Limits { time: question.limit, memory_kib: 8 << 20 };
+    let limits = Limits { cpu: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
-    let job = Job { program: &program, arguments: &arguments, variable: None, folder, output: &output, limits };
+    // CBMC puts the problem of an external solver into a file.
+    let temporary = ("TMPDIR", folder.display().to_string());
+    let variables: Vec<_> = question.solver.path(tools).into_iter().chain([temporary]).collect();
+    let job = Job { program: &program, arguments: &arguments, variables: &variables, folder, output: &output, limits };
     let (end, took) = run(&job).map_err(Silence::Broken)?;
     match end {
         End::Late => return Err(Silence::Late),
@@ -264,35 +318,73 @@ pub fn ask(tools: &Tools, folder: &Path, question: &Question) -> Result<(Answer,
     }
 }
 
+/// A part of CBMC's report; what it has beside this is of no interest here.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Item<'a> {
+    #[serde(borrow)]
+    message_text: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    message_type: Option<Cow<'a, str>>,
+    c_prover_status: Option<&'a str>,
+    #[serde(borrow, default)]
+    result: Vec<Property<'a>>,
+}
+
+#[derive(Deserialize)]
+struct Property<'a> {
+    #[serde(borrow, default)]
+    description: Cow<'a, str>,
+    #[serde(borrow, default)]
+    status: Cow<'a, str>,
+    #[serde(borrow, default)]
+    trace: Vec<Step<'a>>,
+}
+
+#[derive(Deserialize)]
+struct Step<'a> {
+    #[serde(borrow, rename = "stepType")]
+    kind: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    lhs: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    value: Option<Binary<'a>>,
+}
+
+#[derive(Deserialize)]
+struct Binary<'a> {
+    binary: Option<&'a str>,
+}
+
 /// Reads CBMC's JSON. An unfinished text, a warning about a missing body or an unknown status is an error.
 ///
 /// # Errors
 /// What is wrong with the text.
 pub fn parse(text: &str) -> Result<Answer, String> {
-    let document: Vec<Value> = serde_json::from_str(text).map_err(|error| format!("cbmc's JSON is broken: {error}"))?;
-    let messages = document.iter().filter_map(|item| item["messageText"].as_str());
-    if let Some(warning) = messages.clone().find(|text| text.contains("no body for")) {
+    let document: Vec<Item> = serde_json::from_str(text).map_err(|error| format!("cbmc's JSON is broken: {error}"))?;
+    let messages = || document.iter().filter_map(|item| item.message_text.as_deref().map(|text| (item, text)));
+    if let Some((_, warning)) = messages().find(|(_, text)| text.contains("no body for")) {
         return Err(format!("cbmc does not see all the code: {warning}"));
     }
-    if !document.iter().any(|item| item["cProverStatus"].is_string()) {
-        let errors = document.iter().filter(|item| item["messageType"] == "ERROR");
-        let said: Vec<_> = errors.filter_map(|item| item["messageText"].as_str()).collect();
+    if !document.iter().any(|item| item.c_prover_status.is_some()) {
+        let errors = messages().filter(|(item, _)| item.message_type.as_deref() == Some("ERROR"));
+        let said: Vec<_> = errors.map(|(_, text)| text).collect();
         return Err(format!("cbmc gave no status: {}", said.join("; ")));
     }
-    let mut answer = Answer::default();
-    for property in document.iter().filter_map(|item| item["result"].as_array()).flatten() {
-        let description = property["description"].as_str().unwrap_or_default().to_owned();
-        let holds = match property["status"].as_str() {
-            Some("SUCCESS") => true,
-            Some("FAILURE") => false,
+    let unwound = crate::unwound::largest(messages().map(|(_, text)| text));
+    let mut answer = Answer { unwound, ..Answer::default() };
+    for property in document.iter().flat_map(|item| &item.result) {
+        let description = property.description.to_string();
+        let holds = match &*property.status {
+            "SUCCESS" => true,
+            "FAILURE" => false,
             other => return Err(format!("cbmc says {other:?} of `{description}`")),
         };
         if description.contains("no body for") {
             return Err(format!("cbmc does not see all the code: {description}"));
         }
         if !holds {
-            let values = values(&property["trace"]);
-            answer.values.entry(description.clone()).or_insert(values);
+            answer.values.entry(description.clone()).or_insert_with(|| drawn(&property.trace));
         }
         // The same description at several places: it holds if it holds at all of them.
         let known = answer.holds.entry(description).or_insert(true);
@@ -301,10 +393,18 @@ pub fn parse(text: &str) -> Result<Answer, String> {
     if answer.holds.is_empty() { Err("cbmc checked nothing".to_owned()) } else { Ok(answer) }
 }
 
-/// The arbitrary values of a trace, in order.
-fn values(trace: &Value) -> Vec<u16> {
-    let steps = trace.as_array().map(Vec::as_slice).unwrap_or_default();
-    let drawn = steps.iter().filter(|step| step["stepType"] == "assignment" && step["lhs"] == "drawn");
-    let number = |step: &Value| u32::from_str_radix(step["value"]["binary"].as_str()?, 2).ok();
-    drawn.filter_map(number).map(u32::to_le_bytes).map(|bytes| u16::from_le_bytes([bytes[0], bytes[1]])).collect()
+/// The arbitrary values of a trace, in order. One that is not in it may be any: 0.
+fn drawn(trace: &[Step]) -> Vec<u16> {
+    let drawn = |step: &&Step| step.kind.as_deref() == Some("assignment") && step.lhs.as_deref() == Some("drawn");
+    let number = |step: &Step| u32::from_str_radix(step.value.as_ref()?.binary?, 2).ok();
+    let mut values = Vec::new();
+    for word in trace.iter().filter(drawn).filter_map(number) {
+        let (value, place) = (word & 0xFFFF, (word >> 16) as usize);
+        // Number 0 is what it was before anything was drawn.
+        if let (Some(place), Ok(value)) = (place.checked_sub(1), u16::try_from(value)) {
+            values.resize(values.len().max(place + 1), 0);
+            values[place] = value;
+        }
+    }
+    values
 }

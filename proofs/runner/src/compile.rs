@@ -1,5 +1,6 @@
 //! From harness to C: rustc → wasm-ld → wasm2c.
 
+use crate::joins::{JOINED, no_crossing};
 use crate::loops::one_way_back;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
@@ -19,7 +20,7 @@ pub const RUSTC: [&str; 8] = [
     "-Cllvm-args=-unroll-threshold=1000000",
 ];
 
-/// The kernel is only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
+/// The kernel and its arithmetic are only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
 const KERNEL: [&str; 2] = ["--crate-type=rlib", "-Clinker-plugin-lto"];
 
 /// Bytes of the stack in linear memory. A harness that needs more traps out of bounds.
@@ -30,7 +31,7 @@ const LINK: [&str; 6] =
 
 const DRIVER: &str = include_str!("../../cbmc/driver.c");
 
-const LIMITS: Limits = Limits { time: Duration::from_mins(2), memory_kib: 4 << 20 };
+const LIMITS: Limits = Limits { cpu: Duration::from_mins(4), memory_kib: 4 << 20 };
 
 /// The harnesses, compiled: a static library from which one is linked at a time.
 #[derive(Clone, Debug)]
@@ -39,8 +40,44 @@ pub struct Compiled {
     folder: PathBuf,
 }
 
-/// Compiles the kernel and the harnesses `only` (all of them if none is named) whose sources are below `sources` (`kernel/src`,
-/// `proofs/src`) into `folder`.
+/// Which kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernel {
+    /// As its sources are.
+    AsItIs,
+    /// With mutants in it, of which one can be selected at run time.
+    WithMutants,
+}
+
+/// Copies the sources of kernel and harnesses into `sources`, and nothing else is there then.
+///
+/// # Errors
+/// A file cannot be read or written.
+pub fn copy(root: &Path, sources: &Path) -> Result<(), String> {
+    if sources.exists() {
+        std::fs::remove_dir_all(sources).map_err(|error| format!("{}: {error}", sources.display()))?;
+    }
+    let folders = ["arithmetic/src", "kernel/src", "proofs/src"];
+    folders.iter().try_for_each(|folder| copy_all(&root.join(folder), &sources.join(folder)))
+}
+
+fn copy_all(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
+    std::fs::create_dir_all(to).map_err(failed)?;
+    for entry in std::fs::read_dir(from).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy_all(&entry.path(), &target)?;
+        } else {
+            std::fs::copy(entry.path(), &target).map_err(failed)?;
+        }
+    }
+    Ok(())
+}
+
+/// Compiles the kernel with its arithmetic, and the harnesses `only` (all of them if none is named), whose sources are below `sources`
+/// (`arithmetic/src`, `kernel/src`, `proofs/src`), into `folder`.
 ///
 /// # Errors
 /// What the compiler said.
@@ -50,17 +87,29 @@ pub fn compile(
     folder: &Path,
     aspects: usize,
     only: &[String],
+    mutants: Kernel,
 ) -> Result<Compiled, String> {
     fresh(folder)?;
+    let arithmetic = folder.join("libatc_arithmetic.rlib");
     let kernel = folder.join("libatc_kernel.rlib");
     let library = folder.join("libatc_proofs.a");
-    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &KERNEL.map(ToOwned::to_owned), aspects)?;
+    let with_arithmetic = format!("--extern=atc_arithmetic={}", arithmetic.display());
+    let linked = KERNEL.map(ToOwned::to_owned).to_vec();
+    rustc(tools, &sources.join("arithmetic/src/lib.rs"), &arithmetic, &linked, aspects)?;
+    let linked = [linked, vec![with_arithmetic.clone()]].concat();
+    rustc(tools, &sources.join("kernel/src/lib.rs"), &kernel, &linked, aspects)?;
     let mut options = vec![
         "--crate-type=staticlib".to_owned(),
         "-Clto=fat".to_owned(),
         "--cfg=engine=\"cbmc\"".to_owned(),
+        with_arithmetic,
         format!("--extern=atc_kernel={}", kernel.display()),
+        // Where the kernel's own dependency is looked for.
+        format!("-Ldependency={}", folder.display()),
     ];
+    if mutants == Kernel::WithMutants {
+        options.push("--cfg=mutants".to_owned());
+    }
     if !only.is_empty() {
         // What only the others use is not used.
         options.extend(["--cfg=chosen", "--cap-lints=allow"].map(ToOwned::to_owned));
@@ -93,7 +142,7 @@ impl Compiled {
         let mut link: Vec<String> = LINK.iter().map(ToString::to_string).collect();
         link.extend([format!("--export={name}"), format!("-zstack-size={stack}"), "-o".to_owned()]);
         link.extend([wasm.display().to_string(), self.library.display().to_string()]);
-        tool(tools, "wasm-ld", &link, None, &folder)?;
+        tool(tools, "wasm-ld", &link, &[], &folder)?;
         let source = folder.join("harness.c");
         let convert = [
             "-n".to_owned(),
@@ -102,9 +151,12 @@ impl Compiled {
             "-o".to_owned(),
             source.display().to_string(),
         ];
-        tool(tools, "wasm2c", &convert, None, &folder)?;
+        tool(tools, "wasm2c", &convert, &[], &folder)?;
         let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
-        write(&source, &one_way_back(&without_accessors(&text)?)?)?;
+        let original = one_way_back(&without_accessors(&text)?)?;
+        write(&folder.join("original.c"), &original)?;
+        let text = if JOINED.contains(&name) { no_crossing(&original)? } else { original };
+        write(&source, &text)?;
         write(&folder.join("driver.c"), DRIVER)?;
         Ok(folder)
     }
@@ -157,19 +209,19 @@ fn rustc(tools: &Tools, source: &Path, output: &Path, options: &[String], aspect
     arguments.push(format!("--crate-name={name}"));
     arguments.extend(options.iter().cloned());
     arguments.extend(["-o".to_owned(), output.display().to_string(), source.display().to_string()]);
-    tool(tools, "rustc", &arguments, Some(("ATC_ASPECTS", aspects.to_string())), folder)
+    tool(tools, "rustc", &arguments, &[("ATC_ASPECTS", aspects.to_string())], folder)
 }
 
 fn tool(
     tools: &Tools,
     name: &str,
     arguments: &[String],
-    variable: Option<(&str, String)>,
+    variables: &[(&str, String)],
     folder: &Path,
 ) -> Result<(), String> {
     let output = folder.join(format!("{name}.out"));
     let program = tools.path(name);
-    let job = Job { program: &program, arguments, variable, folder, output: &output, limits: LIMITS };
+    let job = Job { program: &program, arguments, variables, folder, output: &output, limits: LIMITS };
     match run(&job)?.0 {
         End::Code(0) => Ok(()),
         end => {

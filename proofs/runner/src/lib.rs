@@ -4,18 +4,26 @@
 //! compiled, optimised code: Rust → WebAssembly → C → CBMC. Kani is run by `cargo kani` itself. A result is only ever
 //! what a run said: a prover that is missing, was killed or was silent is never a pass.
 
+mod alone;
 pub mod campaign;
 mod cbmc;
 mod compile;
 mod control;
+mod joins;
+pub mod kani;
 mod loops;
 pub mod mutants;
 pub mod native;
 mod process;
 pub mod provenance;
 pub mod report;
+mod schemata;
 pub mod selftest;
+mod together;
 mod tools;
+pub mod traps;
+mod twin;
+pub mod unwound;
 
 use std::path::{Path, PathBuf};
 

@@ -27,7 +27,12 @@ use std::collections::BTreeMap;
 /// # Errors
 /// Text that is not as wasm2c 1.0.36 writes it.
 pub fn one_way_back(text: &str) -> Result<String, String> {
-    let mut written = String::with_capacity(text.len() + text.len() / 8);
+    by_function(text, rewrite)
+}
+
+/// The C with each of its functions written anew, line by line.
+pub fn by_function(text: &str, rewrite: fn(&[&str], &mut String) -> Result<(), String>) -> Result<String, String> {
+    let mut written = String::with_capacity(text.len() + text.len() / 4);
     let mut function: Vec<&str> = Vec::new();
     for line in text.lines() {
         function.push(line);

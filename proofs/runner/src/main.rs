@@ -1,7 +1,10 @@
-//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest`.
+//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest | traps`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
-use atc_prover::{Options, Tools, campaign, end_all_on_interrupt, harnesses, mutants, native, root, select, selftest};
+use atc_prover::traps::table;
+use atc_prover::{
+    Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
+};
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io;
@@ -41,6 +44,9 @@ enum Command {
         /// Where the JSON goes [default: target/proofs/mutants.json].
         #[arg(long)]
         json: Option<PathBuf>,
+        /// Compiles each mutant alone: slow, and to check the usual way by.
+        #[arg(long)]
+        alone: bool,
         #[command(flatten)]
         run: Run,
     },
@@ -55,10 +61,39 @@ enum Command {
         #[arg(long, value_name = "NAME")]
         keep: Option<String>,
     },
-    /// Tests the cbmc engine on harnesses whose verdicts are known.
+    /// Kani's names of the harnesses, and what Kani says of them.
+    Kani {
+        #[command(subcommand)]
+        what: Kani,
+    },
+    /// Tests the cbmc engine on small programs whose verdicts are known.
     Selftest {
         #[command(flatten)]
         run: Run,
+    },
+    /// Tries every engine on those programs: engine, version, right or wrong (target/proofs/traps.json and traps.md).
+    Traps {
+        #[command(flatten)]
+        run: Run,
+    },
+}
+
+#[derive(Subcommand)]
+enum Kani {
+    /// Lists Kani's names: harnesses, then contracts.
+    Names,
+    /// Compares the list that `cargo kani list --format json` has written with ours.
+    Compare {
+        /// kani-list.json
+        list: PathBuf,
+    },
+    /// Turns the export of `cargo kani --export-json` of this very checkout into results for the case.
+    Import {
+        /// The export.
+        export: PathBuf,
+        /// Where the JSON goes [default: target/proofs/kani.json].
+        #[arg(long)]
+        json: Option<PathBuf>,
     },
 }
 
@@ -75,7 +110,7 @@ struct Run {
     /// Runs of the prover at a time [default: the cores].
     #[arg(long)]
     jobs: Option<usize>,
-    /// Seconds for each run of the prover.
+    /// Seconds of CPU time for each run of the prover.
     #[arg(long, default_value_t = 600)]
     time_limit: u64,
     /// Which solver.
@@ -124,12 +159,37 @@ fn run(command: Command) -> Result<bool, String> {
             save(&json.unwrap_or_else(|| default("native.json")), &result)?;
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
         }
-        Command::Mutants { names, json, run } => try_mutants(&names, json, &run.options()),
+        Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
+        Command::Kani { what } => of_kani(what),
         Command::Selftest { run } => {
             selftest::check(&Tools::find(&root())?, &run.options())?;
             println!("the cbmc engine passes its self-test");
             Ok(true)
+        }
+        Command::Traps { run } => try_traps(&run.options()),
+    }
+}
+
+fn of_kani(what: Kani) -> Result<bool, String> {
+    let read = |path: &Path| std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()));
+    match what {
+        Kani::Names => {
+            let names = harnesses().into_iter().flat_map(kani::names).chain(kani::contracts());
+            names.for_each(|name| println!("{name}"));
+            Ok(true)
+        }
+        Kani::Compare { list } => {
+            println!("{}", kani::compare(&read(&list)?)?);
+            Ok(true)
+        }
+        Kani::Import { export, json } => {
+            let result = kani::import(&read(&export)?)?;
+            result.harnesses.iter().for_each(|harness| println!("{}", line(harness)));
+            save(&json.unwrap_or_else(|| default("kani.json")), &result)?;
+            let proved = result.harnesses.iter().filter(|harness| harness.verdict == Verdict::Proved).count();
+            println!("{proved} of {} harnesses proved", result.harnesses.len());
+            Ok(proved == result.harnesses.len())
         }
     }
 }
@@ -186,12 +246,21 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     let killed = result.mutants.iter().filter(|mutant| mutant.verdict == MutantVerdict::Killed).count();
     let passed = result.controls.iter().filter(|control| control.reason.is_none()).count();
     println!(
-        "{passed} of {} controls passed: the right kernel where a harness is smaller than in its proof",
+        "{passed} of {} controls passed: no mutant selected, where a harness is smaller than in its proof",
         result.controls.len()
     );
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())
+}
+
+fn try_traps(options: &Options) -> Result<bool, String> {
+    let table = table(&Tools::find(&root())?, options)?;
+    let (text, path) = (table.markdown(), default("traps.md"));
+    println!("{text}");
+    std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+    save(&default("traps.json"), &table)?;
+    Ok(table.is_right())
 }
 
 fn replay(name: &str, values: Option<Vec<u16>>, keep: Option<String>) -> Result<bool, String> {

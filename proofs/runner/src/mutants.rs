@@ -1,17 +1,19 @@
-//! Named wrong kernels. Each is a change of a line or two in a copy of the kernel; a theorem that is proved of the
-//! kernel must fail on it.
+//! Named mutants. Each is a change of a line or two in a copy of the kernel and its arithmetic; a theorem that is proved of the kernel must fail on it.
+//!
+//! Most are compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
 
-use crate::campaign::{Options, flags, in_parallel};
-use crate::cbmc::{Question, ask_in_turn};
-use crate::compile::{STACK, compile};
-use crate::control::{controls, is_smaller};
+use crate::alone::attempt;
+use crate::campaign::{Options, flags, in_parallel, lock};
 use crate::process::only_run;
-use crate::report::{Control, Kill, MutantResult, MutantVerdict, Mutants, SCHEMA};
+use crate::report::{MutantResult, MutantVerdict, Mutants, SCHEMA};
+use crate::schemata::{Change, is_selectable};
+use crate::together::{self, Judged};
 use crate::tools::Tools;
 use crate::{provenance, root, select};
 use serde::Deserialize;
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// A mutant, as `proofs/mutants.toml` has it.
@@ -24,7 +26,7 @@ pub struct Mutant {
     pub what: String,
     /// The requirements that it breaks.
     pub requirements: Vec<String>,
-    /// The file, from the kernel's `src`.
+    /// The file: from the kernel's `src`, or from the checkout if it begins with `arithmetic/src/`.
     pub file: String,
     /// The text to replace; it stands in the file exactly once.
     pub find: String,
@@ -32,6 +34,9 @@ pub struct Mutant {
     pub replace: String,
     /// The harnesses that must reject it: each one on its own.
     pub killed_by: Vec<String>,
+    /// Whether it needs a copy of the kernel of its own: where what it changes is computed when the kernel is compiled.
+    #[serde(default)]
+    pub alone: bool,
 }
 
 #[derive(Deserialize)]
@@ -63,9 +68,16 @@ pub fn list(root: &Path) -> Result<Vec<Mutant>, String> {
     Ok(file.mutant)
 }
 
+impl Mutant {
+    /// The file that it changes, from the checkout.
+    pub fn path(&self) -> String {
+        if self.file.starts_with("arithmetic/src/") { self.file.clone() } else { format!("kernel/src/{}", self.file) }
+    }
+}
+
 /// The text of the file that the mutant changes, changed.
-fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
-    let path = root.join("kernel/src").join(&mutant.file);
+pub(crate) fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
+    let path = root.join(mutant.path());
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     match text.matches(&mutant.find).count() {
         1 => Ok(text.replacen(&mutant.find, &mutant.replace, 1)),
@@ -73,7 +85,7 @@ fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
     }
 }
 
-/// Tries the harnesses of each mutant (all of them, if no name is given). `progress` hears of every result.
+/// Judges the named mutants (all of them, if no name is given). `progress` hears of every result.
 ///
 /// # Errors
 /// A name that no mutant has, or a broken `proofs/mutants.toml`.
@@ -94,102 +106,131 @@ pub fn mutants(
     let tools = Tools::find(&root);
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
     let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
-    let killers: BTreeSet<String> = chosen.iter().flat_map(|mutant| mutant.killed_by.iter().cloned()).collect();
-    let controls = match &tools {
-        Ok(tools) => controls(tools, &root, options, &select(&killers.into_iter().collect::<Vec<_>>())?)?,
-        Err(_) => Vec::new(),
-    };
-    let results = in_parallel(options.jobs, chosen.len(), |index| {
-        let mutant = chosen[index];
-        let started = Instant::now();
-        let (verdict, killed_by, reason) = match &tools {
-            Ok(tools) => trusted(&controls, mutant)
-                .and_then(|()| attempt(tools, &root, mutant, options))
-                .unwrap_or_else(|reason| (MutantVerdict::Error, Vec::new(), Some(reason))),
-            Err(reason) => (MutantVerdict::NotRun, Vec::new(), Some(reason.clone())),
-        };
-        let result = MutantResult {
-            name: mutant.name.clone(),
-            what: mutant.what.clone(),
-            requirements: mutant.requirements.clone(),
-            file: format!("kernel/src/{}", mutant.file),
-            change: [mutant.find.clone(), mutant.replace.clone()],
-            verdict,
-            killed_by,
-            reason,
-            seconds: started.elapsed().as_secs_f64(),
-        };
-        progress(&result);
-        result
-    });
+    let tally = Tally::new(&chosen, progress);
+    let mut controls = Vec::new();
+    match &tools {
+        Ok(tools) => {
+            let (together, alone): (Vec<_>, Vec<_>) = (0..chosen.len())
+                .partition(|index| !options.alone && !chosen[*index].alone && selectable(&root, chosen[*index]));
+            let picked: Vec<_> = together.iter().map(|index| chosen[*index]).collect();
+            let told = |index: usize, name: &str, judged| tally.judge(together[index], name, judged);
+            controls = together::judge(tools, &root, options, &picked, &told);
+            // What has no answer together may have one alone.
+            let alone: Vec<_> = alone.into_iter().chain(tally.unanswered()).collect();
+            in_parallel(options.jobs, alone.len(), |job| {
+                let mutant = chosen[alone[job]];
+                match attempt(tools, &root, mutant, options) {
+                    Ok(judged) => judged.into_iter().for_each(|(name, kill)| {
+                        tally.judge(alone[job], name, kill);
+                    }),
+                    Err(reason) => {
+                        for name in &mutant.killed_by {
+                            tally.judge(alone[job], name, Judged::Error(reason.clone()));
+                        }
+                    }
+                }
+            });
+        }
+        Err(reason) => {
+            for (index, mutant) in chosen.iter().enumerate() {
+                for name in &mutant.killed_by {
+                    tally.judge(index, name, Judged::NotRun(reason.clone()));
+                }
+            }
+        }
+    }
+    let results = tally.results();
     provenance.seconds = started.elapsed().as_secs_f64();
     Ok(Mutants { schema: SCHEMA, provenance, mutants: results, controls })
 }
 
-/// A harness that rejects the right kernel too shows nothing by rejecting a wrong one.
-fn trusted(controls: &[Control], mutant: &Mutant) -> Result<(), String> {
-    for name in &mutant.killed_by {
-        let control = controls.iter().find(|control| control.harness == *name);
-        match control.map(|control| &control.reason) {
-            Some(Some(reason)) => return Err(format!("the control failed: {reason}")),
-            None if select(std::slice::from_ref(name))?.into_iter().any(is_smaller) => {
-                return Err(format!("there is no control of {name}"));
-            }
-            Some(None) | None => {}
-        }
-    }
-    Ok(())
+/// Whether the mutant can be selected at run time.
+fn selectable(root: &Path, mutant: &Mutant) -> bool {
+    let change = Change { number: 1, find: &mutant.find, replace: &mutant.replace };
+    let text = std::fs::read_to_string(root.join(mutant.path())).unwrap_or_default();
+    // The selector is in the kernel, which its arithmetic does not know.
+    mutant.path().starts_with("kernel/") && is_selectable(&text, &change)
 }
 
-type Attempt = (MutantVerdict, Vec<Kill>, Option<String>);
+/// What the harnesses have said of the mutants so far.
+struct Tally<'a> {
+    mutants: &'a [&'a Mutant],
+    progress: &'a (dyn Fn(&MutantResult) + Sync),
+    started: Instant,
+    /// By mutant and harness.
+    judged: Mutex<BTreeMap<(usize, String), Judged>>,
+}
 
-fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Result<Attempt, String> {
-    let folder = root.join("target").join("proofs").join("mutants").join(&mutant.name);
-    let sources = folder.join("sources");
-    if sources.exists() {
-        std::fs::remove_dir_all(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
+impl<'a> Tally<'a> {
+    fn new(mutants: &'a [&'a Mutant], progress: &'a (dyn Fn(&MutantResult) + Sync)) -> Self {
+        Self { mutants, progress, started: Instant::now(), judged: Mutex::default() }
     }
-    copy(&root.join("kernel/src"), &sources.join("kernel/src"))?;
-    copy(&root.join("proofs/src"), &sources.join("proofs/src"))?;
-    crate::compile::write(&sources.join("kernel/src").join(&mutant.file), &changed(root, mutant)?)?;
-    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by)?;
-    let mut killed = Vec::new();
-    let mut reasons = Vec::new();
-    for harness in select(&mutant.killed_by)? {
-        let mut claims: Vec<String> = Vec::new();
-        let mut counterexample = None;
-        let folder = compiled.to_c(tools, harness.name, STACK)?;
-        let first = (!SLOW.contains(&harness.name)).then_some(FIRST);
-        for case in 0..harness.cases {
-            let question = Question {
-                case: (case, harness.cases),
-                ..Question::proof(harness.name, options.solver, options.limit)
-            };
-            let answer = ask_in_turn(tools, &folder, &question, first);
-            let (answer, _) = answer.map_err(|silence| silence.of(harness.name))?;
-            let names = harness.claims.iter().enumerate();
-            claims.extend(
-                names
-                    .filter(|(number, _)| answer.claim(*number) == Some(false))
-                    .map(|(_, claim)| claim.name.to_owned()),
-            );
-            counterexample = counterexample
-                .or_else(|| answer.values.iter().find(|(what, _)| what.starts_with("claim ")).map(|(_, v)| v.clone()));
-            // A panic is what the theorem of totality is about. Any other trap, a stack that runs out say, is the harness's own.
-            claims.extend(answer.other_failure().filter(|what| *what == "trap: panic").map(ToOwned::to_owned));
-            if !claims.is_empty() {
-                break;
+
+    fn judge(&self, mutant: usize, harness: &str, judged: Judged) {
+        let result = {
+            let mut all = lock(&self.judged);
+            all.insert((mutant, harness.to_owned()), judged);
+            let of_it = |name: &String| all.get(&(mutant, name.clone()));
+            let whole = self.mutants[mutant].killed_by.iter().all(|name| of_it(name).is_some_and(Judged::is_final));
+            whole.then(|| self.result(mutant, &all))
+        };
+        if let Some(result) = result {
+            (self.progress)(&result);
+        }
+    }
+
+    /// The mutants of which a harness has no answer yet.
+    fn unanswered(&self) -> Vec<usize> {
+        let all = lock(&self.judged);
+        let mut open: Vec<_> =
+            all.iter().filter(|(_, judged)| !judged.is_final()).map(|((index, _), _)| *index).collect();
+        open.dedup();
+        open
+    }
+
+    fn result(&self, index: usize, all: &BTreeMap<(usize, String), Judged>) -> MutantResult {
+        let mutant = self.mutants[index];
+        let mut killed_by = Vec::new();
+        let (mut survived, mut errors, mut not_run) = (Vec::new(), Vec::new(), Vec::new());
+        let mut seconds = 0.0;
+        for name in &mutant.killed_by {
+            match all.get(&(index, name.clone())) {
+                Some(Judged::Rejects(kill)) => killed_by.push(kill.clone()),
+                Some(Judged::Passes) => survived.push(format!("{name} does not reject it")),
+                Some(Judged::Error(reason)) => errors.push(reason.clone()),
+                Some(Judged::NotRun(reason)) => not_run.push(reason.clone()),
+                Some(Judged::Unanswered) | None => errors.push(format!("{name}: no answer")),
             }
         }
-        if claims.is_empty() {
-            reasons.push(format!("{} does not reject it", harness.name));
-        } else {
-            killed.push(Kill { harness: harness.name.to_owned(), claims, counterexample });
+        seconds += self.started.elapsed().as_secs_f64();
+        // Every harness that is named must reject it: a theorem that no longer does has become weaker.
+        let (verdict, reasons) = match (errors.is_empty(), not_run.is_empty(), survived.is_empty()) {
+            (false, ..) => (MutantVerdict::Error, errors),
+            (true, false, _) => (MutantVerdict::NotRun, not_run),
+            (true, true, false) => (MutantVerdict::Survived, survived),
+            (true, true, true) => (MutantVerdict::Killed, Vec::new()),
+        };
+        MutantResult {
+            name: mutant.name.clone(),
+            what: mutant.what.clone(),
+            requirements: mutant.requirements.clone(),
+            file: mutant.path(),
+            change: [mutant.find.clone(), mutant.replace.clone()],
+            verdict,
+            killed_by: if matches!(verdict, MutantVerdict::Error | MutantVerdict::NotRun) {
+                Vec::new()
+            } else {
+                killed_by
+            },
+            reason: (!reasons.is_empty()).then(|| reasons.join("; ")),
+            seconds,
         }
     }
-    // Every harness that is named must reject it: a theorem that no longer does has become weaker.
-    let verdict = if reasons.is_empty() { MutantVerdict::Killed } else { MutantVerdict::Survived };
-    Ok((verdict, killed, (!reasons.is_empty()).then(|| reasons.join("; "))))
+
+    fn results(&self) -> Vec<MutantResult> {
+        let all = lock(&self.judged);
+        (0..self.mutants.len()).map(|index| self.result(index, &all)).collect()
+    }
 }
 
 /// The harnesses on whose mutants MiniSat is known to have no answer in the time that it is given; found by running them, and a matter of
@@ -197,19 +238,4 @@ fn attempt(tools: &Tools, root: &Path, mutant: &Mutant, options: &Options) -> Re
 pub const SLOW: [&str; 5] = ["t_per_4", "t_per_4_fix", "t_per_7", "per_machine", "t_pos_1"];
 
 /// What is wrong is found more easily than that nothing is: MiniSat gets some time, and Kissat what that leaves.
-const FIRST: Duration = Duration::from_secs(40);
-
-fn copy(from: &Path, to: &PathBuf) -> Result<(), String> {
-    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
-    std::fs::create_dir_all(to).map_err(failed)?;
-    for entry in std::fs::read_dir(from).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target)?;
-        } else {
-            std::fs::copy(entry.path(), &target).map_err(failed)?;
-        }
-    }
-    Ok(())
-}
+pub(crate) const FIRST: Duration = Duration::from_secs(40);

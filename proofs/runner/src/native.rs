@@ -179,6 +179,7 @@ pub(crate) fn blank(harness: &Harness, engine: &str) -> HarnessResult {
         reason: None,
         seconds: 0.0,
         solver: String::new(),
+        unwound: 0,
         claims: harness
             .claims
             .iter()

@@ -31,13 +31,13 @@ pub fn of(root: &Path, tools: BTreeMap<String, String>, flags: Vec<String>) -> R
     })
 }
 
-/// SHA-256 over the paths and texts of everything that a proof depends on: kernel, harnesses, driver, mutants, runner.
+/// SHA-256 over the paths and texts of everything that a proof depends on: kernel, arithmetic, harnesses, driver, mutants, runner.
 ///
 /// # Errors
 /// A source file cannot be read.
 pub fn sources_sha256(root: &Path) -> Result<String, String> {
     let mut files = Vec::new();
-    for folder in ["kernel/src", "proofs/src", "proofs/cbmc", "proofs/runner/src"] {
+    for folder in ["arithmetic/src", "kernel/src", "proofs/src", "proofs/cbmc", "proofs/traps", "proofs/runner/src"] {
         collect(&root.join(folder), &mut files)?;
     }
     files.push(root.join("proofs").join("mutants.toml"));

@@ -102,6 +102,9 @@ pub struct HarnessResult {
     pub seconds: f64,
     /// The solver, or how many values were drawn.
     pub solver: String,
+    /// The most iterations of a loop that the prover unwound; 0 if there was no loop, or nobody looked.
+    #[serde(default)]
+    pub unwound: usize,
     /// By number.
     pub claims: Vec<ClaimResult>,
     /// By number.

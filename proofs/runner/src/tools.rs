@@ -1,6 +1,8 @@
 //! The provers' tools, as `ci/install-provers` left them.
 
+use crate::process::SOLVER;
 use std::collections::BTreeMap;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 /// The tools of the cbmc engine.
@@ -38,6 +40,21 @@ impl Tools {
             .filter_map(|(tool, entry)| entry.map(|entry| (tool, format!("{} ({})", entry.version, entry.origin))))
             .collect();
         Ok(Self { bin: provers.join("bin"), include: provers.join("include"), versions })
+    }
+
+    /// A wrapper of the solver `tool` that ends with the runner. Written when it is first asked for.
+    pub fn guarded(&self, tool: &str) -> String {
+        let script = self.bin.join(format!("guarded-{tool}"));
+        let text = SOLVER.replacen('\n', &format!("\nsolver='{}'\n", self.path(tool).display()), 1);
+        if std::fs::read_to_string(&script).is_ok_and(|known| known == text) {
+            return script.display().to_string();
+        }
+        let part = self.bin.join(format!("guarded-{tool}.{:?}", std::thread::current().id()));
+        let written = std::fs::write(&part, text)
+            .and_then(|()| std::fs::set_permissions(&part, std::fs::Permissions::from_mode(0o755)))
+            .and_then(|()| std::fs::rename(&part, &script));
+        // Without it the solver itself, which may outlive a runner that is killed.
+        written.map_or_else(|_| self.path(tool), |()| script).display().to_string()
     }
 
     /// The wrapper of `tool`.

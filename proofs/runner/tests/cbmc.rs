@@ -1,20 +1,21 @@
 //! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
 
-use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select};
+use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select, unwound};
 
 const DONE: &str = r#"[{"program":"CBMC"},{"result":[
   {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
   {"property":"w2c_prover_claim.assertion.2","description":"claim 1","status":"FAILURE","trace":[
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000111"}},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000010000000000000111"}},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000000"}},
     {"stepType":"assignment","lhs":"other","value":{"binary":"1"}},
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000001111111111111111"}}]}]},
+    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000111111111111111111"}}]}]},
   {"cProverStatus":"failure"}]"#;
 
 #[test]
 fn verdicts_and_counterexamples_are_read() {
     let answer = parse_cbmc(DONE).unwrap();
     assert_eq!((answer.claim(0), answer.claim(1), answer.claim(2)), (Some(true), Some(false), None));
-    assert_eq!(answer.values["claim 1"], [7, 65_535]);
+    assert_eq!(answer.values["claim 1"], [7, 0, 65_535]);
     assert_eq!(answer.other_failure(), None);
 }
 
@@ -42,6 +43,21 @@ fn code_that_the_prover_does_not_see_is_an_error() {
     assert!(parse_cbmc(&warned).unwrap_err().contains("no body"));
     let property = DONE.replace("claim 0", "no body for callee f");
     assert!(parse_cbmc(&property).unwrap_err().contains("no body"));
+}
+
+#[test]
+fn the_longest_loop_is_read_and_held_against_the_bound_for_kani() {
+    let loops = [("w2c_h_sup_3_0.0", 3), ("w2c_h_sup_3_0.1", 64), ("w2c_h_memcpy.2", 300), ("load_bytes.0", 768)];
+    let messages = loops.map(|(name, times)| {
+        format!(r#"{{"messageText":"Unwinding loop {name} iteration {times} (67 max) file driver.c line 9 thread 0"}}"#)
+    });
+    let looped = DONE.replace(r#"{"program":"CBMC"}"#, &messages.join(","));
+    assert_eq!(parse_cbmc(&looped).unwrap().unwound, 64);
+    assert_eq!(parse_cbmc(DONE).unwrap().unwound, 0);
+    let harness = select(&["t_ilk_2".to_owned()]).unwrap()[0];
+    assert_eq!(harness.unwind, 65);
+    assert_eq!(unwound::beyond(harness, 64), None);
+    assert!(unwound::beyond(harness, 65).unwrap().contains("65"));
 }
 
 #[test]

@@ -12,6 +12,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Bounded: "the display is at most any aspect that is accepted and heard",
         Stays: "an accepted aspect that is heard, and was not lost, stays accepted",
@@ -42,6 +43,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Unseen: "an aspect unheard for T2+T3 cycles is neither satisfied nor displayed",
         Silence: "after T2+T3 cycles of silence nothing is displayed",
@@ -97,6 +99,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Recovery: "an accepted aspect lost for less than T2 is satisfied",
         Mask: "from T2 to T2+T3 it stays satisfied exactly while no lower aspect is firm and no higher one has T1 evidence",

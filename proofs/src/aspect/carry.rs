@@ -79,6 +79,8 @@ harness! {
     assumptions [];
     bound BOUND;
     cases MANY;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    apart [0 1 2 3 4];
     claims {
         Three: "the last displayed, the lowest satisfied, the lowest firm and the highest evident aspect are at most three",
         Valid: "without the aspect, the state before is a valid one",
@@ -124,8 +126,11 @@ harness! {
 /// How many aspects are left.
 const FEW: usize = 4;
 
+/// Of how many.
+const WIDE: usize = if cfg!(kani) { 8 } else { MAX_ASPECTS };
+
 /// The lowest four lanes.
-fn lowest_four(parts: &Parts<MAX_ASPECTS>) -> Parts<FEW> {
+fn lowest_four(parts: &Parts<WIDE>) -> Parts<FEW> {
     let few = |set: u16| set & ranks::<FEW>();
     let mut four = Parts {
         run: [0; FEW],
@@ -151,6 +156,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    under_kani "8 aspects";
     claims {
         Valid: "the state of the four is valid",
         Step: "the state of the four after the cycle is what the machine of four makes of it",
@@ -165,8 +172,8 @@ harness! {
         let Some(asked) = any_times(e) else { return };
         let four = any_parts::<FEW, E>(e, &asked);
         let mut before = Parts {
-            run: [0; MAX_ASPECTS],
-            age: [0; MAX_ASPECTS],
+            run: [0; WIDE],
+            age: [0; WIDE],
             accepted: four.accepted,
             dropped: four.dropped,
             credited: four.credited,
@@ -189,7 +196,7 @@ harness! {
         e.claim(Claim::Valid as u32, few.is_valid(asked.times));
         e.claim(Claim::Step as u32, same(&few_next.parts(), &lowest_four(&after)));
         let mut idle = (after.accepted | after.dropped | after.credited | after.last) & !ranks::<FEW>() == 0;
-        for rank in FEW..MAX_ASPECTS {
+        for rank in FEW..WIDE {
             idle &= after.run[rank] == 0 && after.age[rank] == 0;
         }
         e.claim(Claim::Idle as u32, idle);

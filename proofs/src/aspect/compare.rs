@@ -40,6 +40,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         NotHigher: "where the conventional device shows an aspect, the new one does not show a higher one",
         Related: "the relation between the two devices is kept",
@@ -111,6 +112,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases ASPECTS;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Bounded: "the display with the added detections is at most the higher of the added aspect and the display without them",
         Related: "the relation between the two runs is kept",

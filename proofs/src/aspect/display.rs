@@ -2,8 +2,9 @@
 
 use super::{BOUND, any_cycle, any_parts, any_set, any_times, has, lowest, ranks, same, satisfied};
 use crate::ASPECTS;
+use atc_arithmetic::lowest_member;
 use atc_kernel::Machine;
-use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, Display, Parts, State, lowest_member, step};
+use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, Display, Parts, State, step};
 
 harness! {
     /// Validity is inductive, the initial state is valid and displays nothing, and the display is a function of
@@ -14,6 +15,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Inductive: "the state after a cycle is valid",
         Initial: "the initial state is valid, displays nothing, and has nothing heard, lost, accepted or displayed before",
@@ -55,6 +57,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         One: "at most one aspect is displayed, and it is satisfied",
     }
@@ -81,6 +84,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Same: "the two ways give the same aspect, for all sets of 16",
         Sides: "what is above the lowest, and what is below the highest, by looking at one after the other",

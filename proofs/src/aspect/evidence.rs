@@ -62,6 +62,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         OnlyOnEvidence: "an acceptance has T1 consecutive cycles, or T5 with a credit",
         OnEvidence: "T1 consecutive cycles, or T5 with a credit, are an acceptance",
@@ -119,6 +120,7 @@ harness! {
     assumptions ["detected-throughout"];
     bound BOUND;
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Rise: "a rise above the last display has T1 cycles of evidence now, of that aspect or a higher one",
         OtherRise: "any other rise shows an aspect that is accepted and heard now",

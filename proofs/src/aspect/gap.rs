@@ -44,6 +44,7 @@ harness! {
     assumptions ["alone-on-the-line", "detected-throughout"];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Silent: "one more silent cycle leads from the closed form of g to that of g + 1",
         Heard: "one more heard cycle leads from the closed form of k heard cycles to that of k + 1",
@@ -98,6 +99,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Exact: "an interruption of g cycles leaves no gap if and only if g is at most the tolerated one",
         NeverLess: "the tolerated interruption is at least the conventional one",
@@ -149,6 +151,8 @@ harness! {
     assumptions ["alone-on-the-line"];
     bound "";
     cases MAX_ASPECTS;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    apart [0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15];
     claims {
         Same: "the state and the display are those of the machine of one aspect, at this rank",
     }

@@ -13,7 +13,7 @@ mod gap;
 mod table;
 
 use crate::{ASPECTS, Engine, Harness};
-use atc_kernel::aspect::{Acceptance, AspectSet, Display, Parts, State, Times, step};
+use atc_kernel::aspect::{Acceptance, AspectSet, Display, MAX_ASPECTS, Parts, State, Times, step};
 use atc_kernel::time::Ticks;
 
 pub use bound::{t_acc_2, t_acc_3, t_acc_7};
@@ -45,6 +45,9 @@ pub const ALL: &[Harness] = &[
     set_1::HARNESS,
     total::HARNESS,
 ];
+
+/// The longest loop: two arrays of a 16-bit number for each aspect are compared byte by byte.
+pub(crate) const LONGEST: usize = 2 * MAX_ASPECTS;
 
 /// What the harnesses of size [`ASPECTS`] say of their bound.
 pub(crate) const BOUND: &str = crate::bound(ASPECTS);

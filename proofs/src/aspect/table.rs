@@ -15,6 +15,7 @@ harness! {
     assumptions [];
     bound "";
     cases ENTRIES + 1;
+    unwind 35 = 1 + 2 * ENTRIES;
     claims {
         Exact: "accepted if and only if there are 1 to 16 speeds and each is above the one before it",
         Kept: "an accepted table has the speeds that were given",
@@ -70,6 +71,7 @@ harness! {
     assumptions [];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 35 = 1 + 2 * ENTRIES;
     claims {
         Speed: "a rank of the table has its speed, any other rank none",
         Aspect: "a speed of the table names its rank, any other speed none",

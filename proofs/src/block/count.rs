@@ -14,6 +14,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Agree: "the counts agree if and only if the count is in force and equals the number of sections that detect",
         All: "if they do not, every section is reported occupied",
@@ -65,6 +66,7 @@ harness! {
     assumptions ["entries-apart", "check-in-fail-safe", "check-out-not-spurious", "verified-reset"];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         NeverUnder: "the count, without what is pending, is at least the trains in the block; one more while the check-in is on and no train has entered since it rose",
         NoWrap: "the count stays between what is pending and the maximum",
@@ -122,6 +124,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Exact: "accepted if and only if there are 1 to 16 sections, 1 to so many trains, and 1 to 60 000 cycles; kept as asked; the error names a broken rule",
         Sections: "the sections of the block are the first ones",
@@ -172,6 +175,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         All: "from any state, a step whose counts do not agree reports every section occupied",
     }
@@ -199,6 +203,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Has: "a section is in the set if and only if its bit is set; none is from 16 on",
         All: "a set contains another if and only if it has every section of that",
@@ -231,6 +236,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Valid: "a step from a valid state ends in a valid state",
         Start: "the initial state is valid and unverified, with the check-in off and the check-out on",

@@ -31,6 +31,8 @@ harness! {
     assumptions ["hold-covers-train", "nose-antenna"];
     bound "2 to 4 sections in two blocks";
     cases GEOMETRIES;
+    unwind 18 = 1 + crate::block::LONGEST;
+    apart [0 1 2 3 4 5 6 7 8 9 10 11 12 13 14];
     claims {
         Behind: "the tail of the longest train is in the section of its nose or in one of the k behind it",
         Told: "a hold that is refused is too short for the sections that the error names",
@@ -89,6 +91,8 @@ harness! {
     assumptions [];
     bound "two blocks of any size, with 1 to 4 lengths and holds of 0 to 4 sections";
     cases GIVEN;
+    unwind 18 = 1 + crate::block::LONGEST;
+    apart [0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19];
     claims {
         Exact: "accepted if and only if there is a length above 0 for every section, the holds are equal, and no k consecutive sections are shorter than the train",
         Told: "the error names a rule that is broken, and the first place where it is",
@@ -146,6 +150,7 @@ harness! {
     assumptions [];
     bound "five blocks of any size";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         TooMany: "with equal holds a line is refused for its size if and only if it has more than 64 sections",
         Differs: "the first block with another hold is named",

@@ -13,6 +13,9 @@ use atc_kernel::time::Ticks;
 const SIZES: [(u8, u8); 5] = [(3, 2), (1, 3), (8, 8), (16, 2), (2, 16)];
 const BOUND: &str = "blocks of 3 and 2, 1 and 3, 8 and 8, 16 and 2, 2 and 16 sections";
 
+/// The sections of the longest line among them.
+const LENGTHS: usize = 18;
+
 /// One cycle of a line of two blocks from an arbitrary valid state. `behind` and `ahead` are in the direction of travel.
 struct Cycle {
     line: Line<2>,
@@ -127,7 +130,7 @@ fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
     let blocks = [any_block(sizes.0)?, any_block(sizes.1)?];
     let direction = if any_flag(e, "direction (odd: down)") { Direction::Down } else { Direction::Up };
     let from_low = |pair: [Block; 2]| if direction == Direction::Up { pair } else { [pair[1], pair[0]] };
-    let lengths = [Metres(1); 18];
+    let lengths = [Metres(1); LENGTHS];
     let sections = usize::from(sizes.0 + sizes.1);
     // No train is longer than nothing: the geometry is proven apart.
     let Ok(line) = Line::new(from_low(blocks), &lengths[..sections], Metres(0), direction) else {
@@ -158,6 +161,8 @@ harness! {
     assumptions [];
     bound BOUND;
     cases SIZES.len();
+    unwind 19 = 1 + LENGTHS;
+    apart [0 1 2 3 4];
     claims {
         LetGo: "the block behind lets a train go only for a check-in ahead that has risen and let no other go",
         Conserved: "while both count, the two counts less the trains in both move by exactly the trains that come in at the line's entry and go out at its exit",
@@ -207,6 +212,8 @@ harness! {
     assumptions [];
     bound BOUND;
     cases SIZES.len();
+    unwind 19 = 1 + LENGTHS;
+    apart [0 1 2 3 4];
     claims {
         Ahead: "the block ahead reports what it would alone, with what is asked from beyond the exit",
         Behind: "the block behind reports what it would alone, with what the block ahead asks, and takes over if its check-in rises or has risen",
@@ -238,6 +245,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 19 = 1 + LENGTHS;
     claims {
         Mirror: "a section is in the set if and only if its mirror image is in the reversed one, and nothing else is",
     }
@@ -264,6 +272,8 @@ harness! {
     assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound BOUND;
     cases SIZES.len();
+    unwind 19 = 1 + LENGTHS;
+    apart [0 1 2 3 4];
     claims {
         Behind: "a section of the block behind that is at most k behind a head in the block ahead is occupied",
         Before: "a section before the line's entry that is at most k behind a head in the block ahead is asked for",
@@ -309,6 +319,7 @@ harness! {
     assumptions [];
     bound "blocks of 2, 1 and 2 sections";
     cases 1;
+    unwind 19 = 1 + LENGTHS;
     claims {
         Report: "each block reports what it would alone, with what the next one asks and takes over, and its state is that of its step",
         Account: "each border's account moves by its own edges, trains let go and resets",

@@ -11,6 +11,7 @@ harness! {
     assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Occupied: "every section with a head is reported occupied",
     }
@@ -43,6 +44,7 @@ harness! {
     assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Here: "a section of the block that is at most k behind a head is occupied",
         Behind: "a section before the entry that is at most k behind a head is asked for",
@@ -87,6 +89,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Exact: "in agreement a section is occupied if and only if it detects, is at most k behind one that does, or is asked for by the block ahead",
         NotBeyond: "no section is reported that the block does not have",
@@ -138,6 +141,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Missed: "at least one detection is missed",
         Balance: "phantom + trains lacking in the count = missed + (trains - sections with a head)",

@@ -12,6 +12,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Accepted: "after a reset the count is in force if and only if it was verified as the detectors have it, at most the maximum, with both checks off and nothing pending",
         Agrees: "after an accepted reset the count is the verified number and the report that of the detectors",
@@ -59,6 +60,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 18 = 1 + crate::block::LONGEST;
     claims {
         Count: "the count rises by one for a counted check-in and falls by one for a check-out that takes effect, and the report tells both",
         CountedIn: "a check-in is counted if and only if it rises and the count is in force",

@@ -170,6 +170,8 @@ harness! {
     assumptions [];
     bound "2 routes of up to 2 circuits, 32 circuits, 2 points";
     cases 2;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    apart [0 1];
     claims {
         Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
         Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
@@ -197,6 +199,7 @@ harness! {
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
         Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
@@ -225,6 +228,7 @@ harness! {
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Routes: "every route is in a state that it can be in",
         Directions: "no segment has two directions, each has the one that a held route needs, and time is counted where permission is withdrawn",
@@ -272,6 +276,7 @@ harness! {
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         State: "routes, blocks and restrictions are those without the request, and so is every direction away from the station; and the confirmed blocks, unless a permission is lost",
         Toward: "a direction towards the station is lost only by a request to turn that segment away, and none is won",
@@ -323,6 +328,7 @@ harness! {
     assumptions [];
     bound "1 route of 1 circuit, 1 segment of 1 circuit";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Valid: "the initial state is valid, whatever the layout",
         Nothing: "no route is held and no segment has a direction, and every permission may still be in the air",

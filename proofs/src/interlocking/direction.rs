@@ -31,6 +31,8 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 2;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    apart [0 1];
     claims {
         One: "a segment has at most one direction, and the one away only while the neighbour permits it",
         Needed: "a held route from the segment has the direction towards the station until its first place is released, one to the segment has the other",

@@ -45,6 +45,8 @@ harness! {
     assumptions [];
     bound "2 routes of up to 2 circuits, 32 circuits, 2 points, 2 segments of up to 2 circuits";
     cases 2;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    apart [0 1];
     claims {
         Entry: "a route begins at one circuit, which is part of its approach",
         Apart: "its approach has no circuit of its path or overlap, and its overlap none of its path",

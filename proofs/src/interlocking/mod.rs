@@ -44,6 +44,9 @@ pub const PATH: usize = match option_env!("ATC_PATH") {
 /// The points of a layout in the harnesses where points play a part of their own.
 pub const POINTS: usize = 4;
 
+/// The longest loop: over what there is for each circuit, in the layout and in the state.
+pub(crate) const LONGEST: usize = MAX_CIRCUITS;
+
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
 pub const SMALLER: [&str; 8] =

@@ -20,6 +20,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         OneWay: "a point is driven at most one way",
         Train: "no circuit of the detector of a driven point is occupied",

@@ -73,6 +73,7 @@ harness! {
     assumptions [];
     bound "2 routes";
     cases FIELDS;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Fresh: "a table that was written in this cycle is read as written",
         Stale: "a table that was written in another cycle is refused",
@@ -175,6 +176,7 @@ harness! {
     assumptions [];
     bound "1 route, no segment, no restriction";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Stop: "the telegram's stop circuit is its own, its speed is stop, it is not open and holds nothing",
     }
@@ -201,6 +203,7 @@ harness! {
     assumptions [];
     bound "1 route, no segment, no restriction";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Stop: "the telegram's stop circuit is its own, its speed is stop, it is not open and holds nothing",
     }

@@ -38,6 +38,7 @@ harness! {
     assumptions [];
     bound "";
     cases GROUPS;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         AtOnce: "a circuit that is reported occupied counts as occupied",
         Clear: "a circuit counts as clear exactly if it has been reported clear for the layout's number of cycles in a row, this one included",
@@ -94,6 +95,7 @@ harness! {
     assumptions [];
     bound "a layout without routes";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Shared: "the table's occupied circuits and the next state of the tracking are those of the tracking alone",
         AtOnce: "and every circuit that is reported occupied is among them: no layout says otherwise",

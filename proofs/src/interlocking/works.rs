@@ -18,6 +18,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Blocked: "a circuit is blocked exactly if that is commanded, or it was and the opposite is not commanded",
         Restricted: "its restriction is the commanded one, and changes by command only; a command to restrict goes before one to lift",

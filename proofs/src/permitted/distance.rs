@@ -27,6 +27,8 @@ harness! {
     assumptions ["four-speeds", "odometer-bound", "fix-sound", "one-section-at-a-time", "margin-covers-the-crossing"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Stop: "the distance to the stopping point is at most the true one, or 0",
         Fix: "the fix is at most the true distance to the exit of its section, or 0",
@@ -98,6 +100,8 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Ended: "after a main telegram with known ranks there is no fix",
         First: "without one, a fix stays the same, less the movement; without a fix, the measured distance becomes it",
@@ -156,6 +160,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Down: "the whole metres of a length are the most that are in it, up to 65 535",
         Up: "a length in metres is a thousand times as many millimetres",

@@ -17,6 +17,7 @@ harness! {
     assumptions ["four-speeds", "line-is-told"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Told: "after a cycle the line is the one that was told in it, or the one before",
         Start: "the initial line is digital",
@@ -47,6 +48,7 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Learned: "after a sub telegram that is used the newest data are its own, with the lower of its two limits, and as old as the telegram before it",
         Older: "all other data are the ones of before, one cycle older and not past their life",
@@ -106,6 +108,7 @@ harness! {
     assumptions ["four-speeds", "cycle-on-time"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Counted: "the kernel counts at least as many cycles as the observer",
         Exact: "its count is one more each cycle; after a main telegram that is used it is the age of that telegram; where a digital line begins after an analog one, the age of the target, or 0",
@@ -166,6 +169,8 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Main: "a main telegram with an unknown rank is as none",
         Sub: "a sub telegram with an unknown rank is as none",
@@ -201,6 +206,7 @@ harness! {
     assumptions ["four-speeds", "stop-point-life"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Used: "after a main telegram that is used the target is its own: its section, distance beyond the exit and speed, and as old as the telegram before it",
         Older: "otherwise a target is the one of before, one cycle older",
@@ -248,6 +254,7 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Exact: "accepted if and only if the lowest limit is in the table, 1 ≤ freshness ≤ life ≤ 60 000 1 ≤ life of sub telegrams ≤ 60 000, and the memory is over neither; kept as asked",
         Told: "the error names a rule that is broken",
@@ -291,6 +298,8 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Step: "the state after a cycle is what was heard made of the one before",
         Permission: "the permission rests on the state after, and the code of the cycle: its basis is that of the telegrams there, and it is not above the ground's speed there",
@@ -337,6 +346,7 @@ harness! {
     assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Ends: "the cycle ends, and permits no more than the code, if there is one",
     }

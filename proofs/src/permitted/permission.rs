@@ -20,6 +20,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
         Lower: "code and fresh telegram: the lower of the two",
         Pattern: "digital line, fresh telegram, no code: the speed by the telegram",
@@ -77,6 +78,8 @@ harness! {
     assumptions ["four-speeds", "sub-data-worst"];
     bound "tables of 4 speeds";
     cases 3;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    apart [0 1 2];
     claims {
         Worst: "no fixed data of the section: the worst gradient and the lowest limit",
         Known: "fixed data of the section: its own gradient and limit",
@@ -143,6 +146,8 @@ harness! {
     assumptions ["four-speeds", "printed-sizes"];
     bound "tables of 4 speeds, distances of 0, 1, 100 and 3000 m";
     cases 4;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    apart [0 1 2 3];
     claims {
         Whole: "the permission is that of the line, of what there is of telegrams with the speed by them, and of the code",
         Below: "never above the speed by the telegrams, where they are fresh or a last pattern runs down on a digital line",
@@ -209,6 +214,8 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Least: "not above any of the three, the pattern being over the whole metres of the distance, and one of them",
     }

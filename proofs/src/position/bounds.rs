@@ -1,7 +1,7 @@
 //! The division of a span, alone: the rounding of T-POS-1.
 
 use crate::any_u32;
-use atc_kernel::position::{Quotient, part};
+use atc_arithmetic::{Quotient, part};
 
 harness! {
     /// The part of a span that belongs to a part of its rise is rounded down, and by less than a decimetre. It is found in twelve
@@ -15,6 +15,7 @@ harness! {
     assumptions [];
     bound "";
     cases 12;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Together: "a round adds the digit's worth to the quotient and that times the rise to the product, or nothing to either",
         Down: "the product is not above the dividend",
@@ -65,6 +66,8 @@ harness! {
     assumptions ["printed-sizes"];
     bound "wholes of 1 to 64 decimetres";
     cases 7;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
+    apart [0 1 2 3 4 5 6];
     claims {
         Rounds: "the part is the quotient after twelve rounds",
     }

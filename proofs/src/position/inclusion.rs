@@ -12,6 +12,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Inside: "where both tell the spans, the wider differences have a nearest span that is no farther, and a farthest one that is no nearer",
     }

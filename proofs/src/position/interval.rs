@@ -5,9 +5,10 @@
 
 use super::{any_curves, signed, table};
 use crate::{any_flag, any_u32};
+use atc_arithmetic::part;
 use atc_kernel::distance::Millimetres;
 use atc_kernel::position::{
-    Correction, Interval, Measured, Millibels, Moved, Position, SPANS, Spacing, Span, Spans, Table, part, step,
+    Correction, Interval, Measured, Millibels, Moved, Position, SPANS, Spacing, Span, Spans, Table, step,
 };
 
 harness! {
@@ -20,6 +21,7 @@ harness! {
     assumptions ["calibration-covers-the-weather"];
     bound "";
     cases SPANS;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Inside: "the train's span is one of those from the nearest to the farthest",
         Nearest: "if the train is in the nearest span, that is the highest curve in its span; it rises, and reaches the least difference at its end at the latest",
@@ -63,6 +65,7 @@ harness! {
     assumptions ["levels-within-tolerance"];
     bound "";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Least: "the least is the first level less the second, less twice the tolerance, and the least correction more",
         Most: "the greatest is the first level less the second, twice the tolerance and the greatest correction more",
@@ -106,6 +109,7 @@ harness! {
     assumptions ["printed-sizes"];
     bound "differences in the table of 0 to 0.31 dB";
     cases SPANS;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Nearest: "a span is the nearest one if and only if it is the first of which the highest curve reaches the least difference",
         Farthest: "a span is the farthest one if and only if it is the last of which the lowest curve is not above the greatest difference",
@@ -149,6 +153,7 @@ harness! {
     assumptions ["printed-sizes"];
     bound "spacing 1.6 and 3.2 m, differences in a span of 0 to 0.63 dB";
     cases 2;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Nearest: "the nearest distance is that of the nearest span's start and the part; the start itself if the line is not below the level there",
         Farthest: "the farthest distance is that of the farthest span's end less the part; the end itself if the line is not above the level there",
@@ -200,6 +205,7 @@ harness! {
     assumptions ["printed-sizes", "levels-within-tolerance"];
     bound "one table";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Exact: "without an interval before, it is from where the highest curve reaches the least difference to where the lowest one leaves the greatest; unknown only if the greatest is beyond the far end, or below the near one",
         Nothing: "with a level missing or under the floor the position is unknown, whatever it was before",

@@ -14,6 +14,7 @@ harness! {
     assumptions ["odometer-bound", "levels-of-one-section"];
     bound "one table, distances up to 2 147 km";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Inside: "the interval after contains the train",
         Within: "the interval after is not wider than what the levels alone say",

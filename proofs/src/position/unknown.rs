@@ -18,6 +18,7 @@ harness! {
     assumptions ["printed-sizes"];
     bound "differences in the table of 0 to 0.31 dB";
     cases SPANS;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Beyond: "a difference that the lowest curve does not exceed at the far end: unknown",
         Below: "a difference under the highest curve at every knot: unknown",
@@ -62,6 +63,7 @@ harness! {
     assumptions [];
     bound "one table";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Initial: "the initial state and the safe output are no position",
         Step: "the machine's step is the step, and it remembers what it answers",
@@ -94,6 +96,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 35 = 1 + 2 * crate::position::KNOTS;
     claims {
         Table: "a table is accepted if and only if no lowest difference is above the highest and both curves rise in some span; the error names the rule and the first knot",
         Kept: "the table is kept as given",

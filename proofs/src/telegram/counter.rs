@@ -48,6 +48,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Used: "used if and only if the observer counts as many proper advances in a row as the run",
         Nothing: "nothing is judged if and only if nothing came",
@@ -113,6 +114,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Repeated: "a telegram with the counter of the last one, or 1 to 128 behind it, is refused",
         Again: "no advance counts after it",
@@ -150,6 +152,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Exact: "accepted if and only if the window is 1 to 127, the run 1 to 15 and the memory 1 to 60 000 cycles; kept as asked",
         Told: "the error names a rule that is broken",
@@ -188,6 +191,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Start: "the initial state is unheard and valid; its first telegram is refused and remembered",
         Order: "nothing is below refused, and refused below accepted; nothing is the safe output",
@@ -216,6 +220,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Deframer: "a bit time ends, in a valid window",
         Stream: "a cycle ends, and judges nothing if and only if nothing came",

@@ -15,6 +15,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Back: "what is decoded from the frame of a telegram is that telegram",
         Layout: "the frame is the synchronisation word and ten bytes with guard bits, of which the last two are the check of the first eight",
@@ -30,9 +31,7 @@ harness! {
         e.claim(Claim::Back as u32, decode(frame) == Ok(telegram));
         let mut bytes = [0_u8; 10];
         for (place, byte) in bytes.iter_mut().enumerate() {
-            let [low, high, ..] = (frame.bits() >> (9 * (9 - place) + 1)).to_le_bytes();
-            let _ = high;
-            *byte = low;
+            *byte = (frame.bits() >> (9 * (9 - place) + 1)).to_le_bytes()[0];
         }
         let [b0, b1, b2, b3, b4, b5, b6, b7, high, low] = bytes;
         let rest = check([b0, b1, b2, b3, b4, b5, b6, b7]);
@@ -64,6 +63,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Only: "bits from which a telegram is decoded are the frame of that telegram",
         Told: "bits without the synchronisation word, and then bits with a guard bit of 1, are refused for that reason",
@@ -104,6 +104,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         One: "the frame of any telegram with any one bit wrong is refused",
     }
@@ -129,6 +130,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Step: "if two remainders differ by a third, they differ after a byte that is wrong by x by the third's remainder after x",
         Division: "a byte's step is eight steps of the division by x¹⁶ + x¹² + x⁵ + 1",
@@ -190,6 +192,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Shift: "the remainder of errors moved by one place is that of the errors after one step of the division",
         Kept: "a step of the division makes 0 of 0 only",
@@ -221,6 +224,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Three: "one, two or three wrong bits among the 80 have a remainder other than 0",
         Burst: "any wrong bits within 16 in a row have a remainder other than 0",
@@ -251,6 +255,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Exact: "a telegram if and only if the kind is main or sub, ranks are under 16, a main telegram's route byte is closed (with distance 0) or open, and a sub telegram's length is not 0; otherwise refused for its content",
     }
@@ -303,6 +308,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Window: "the window is the last 106 bits, and after a gap it is empty; it stays valid",
         Reported: "a telegram is reported if and only if the window is the frame of one",
@@ -360,6 +366,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
+    unwind 17 = 1 + size_of::<u128>();
     claims {
         Apart: "the bits from any place between the beginnings of two frames in a row have no synchronisation word",
     }

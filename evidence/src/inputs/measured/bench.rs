@@ -1,10 +1,10 @@
 //! `bench.json`, as far as it is read here, and what makes it worthless.
 
 use super::figures::{AN_ERROR_RATE, from_ratio};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A run of `waveform bench`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Bench {
     /// Carriers, codes and telegrams.
     pub signal: Signal,
@@ -13,7 +13,7 @@ pub struct Bench {
 }
 
 /// Carriers, codes and telegrams.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Signal {
     /// How much was measured.
     pub extent: String,
@@ -32,7 +32,7 @@ pub struct Signal {
 }
 
 /// A bit error curve.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Curve {
     /// What was sent.
     pub name: String,
@@ -68,7 +68,7 @@ impl Curve {
 }
 
 /// One point of a curve.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Point {
     /// Energy of a bit over noise density.
     pub eb_n0_db: f64,
@@ -85,7 +85,7 @@ pub struct Point {
 }
 
 /// A distribution of times.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Times {
     /// Part of the trials in which anything was heard.
     pub heard: f64,
@@ -94,7 +94,7 @@ pub struct Times {
 }
 
 /// Detection at one ratio.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Detection {
     /// Signal over noise.
     pub snr_db: f64,
@@ -111,7 +111,7 @@ pub struct Detection {
 }
 
 /// What was heard in noise alone.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct FalseCodes {
     /// Windows.
     pub windows: u64,
@@ -126,7 +126,7 @@ pub struct FalseCodes {
 }
 
 /// Times real time on one core.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Throughput {
     /// Conventional receiver.
     pub conventional: f64,
@@ -137,7 +137,7 @@ pub struct Throughput {
 }
 
 /// The train's position.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Position {
     /// In words: what was run.
     pub conditions: String,
@@ -154,7 +154,7 @@ pub struct Position {
 }
 
 /// A train through a section.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Run {
     /// `a`, `b` or `c`.
     pub arrangement: char,
@@ -173,7 +173,7 @@ pub struct Run {
 }
 
 /// One cycle.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Moment {
     /// The true distance, metres.
     pub truth: f64,
@@ -190,7 +190,7 @@ impl Run {
 }
 
 /// A train on ballast that the table is not for.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Outside {
     /// `a`, `b` or `c`.
     pub arrangement: char,
@@ -201,7 +201,7 @@ pub struct Outside {
 }
 
 /// What a reflection changes.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Reflection {
     /// The line.
     pub line: String,
@@ -210,7 +210,7 @@ pub struct Reflection {
 }
 
 /// The level meter at one ratio.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Meter {
     /// Signal over noise.
     pub signal_to_noise_db: f64,

@@ -8,7 +8,8 @@ use crate::inputs::models::thousands;
 const BITS: &str = "Bits";
 const CODES: &str = "Codes and telegrams";
 const NOISE: &str = "Noise alone";
-const SPEED: &str = "Throughput";
+/// The group of the figures that say how fast this machine is.
+pub const SPEED: &str = "Throughput";
 const LEVELS: &str = "Levels";
 const POSITION: &str = "Position inside the limits of its table";
 const OUTSIDE: &str = "Position outside the limits of its table";

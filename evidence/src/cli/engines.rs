@@ -1,0 +1,339 @@
+//! The engines of a run, one after the other; every result is entered as it comes.
+//!
+//! The cheap theorems come first, so that the page says something soon; then the models, as a cut set that nobody owns ends
+//! the run; then the wrong kernels, and what takes long.
+
+use super::Run;
+use crate::error::{Fault, read};
+use crate::inputs::proofs::Campaigned;
+use crate::inputs::second::{self, Opinion};
+use crate::inputs::{faults, measured, tests};
+use crate::live::Live;
+use crate::output::Folder;
+use crate::plan::Plan;
+use crate::progress::Work;
+use crate::prover;
+use crate::scope::{Chosen, Scope, Tests};
+use crate::times::Watch;
+use atc_models::spin::opinions_on;
+use atc_models::{Entry, Limits};
+use atc_prover::Options;
+use atc_prover::report::{Campaign, HarnessResult, Mutants, Provenance, SCHEMA};
+use std::convert::Infallible;
+use std::path::Path;
+use std::time::Duration;
+
+const NATIVE: &str = "native tests of theorems";
+const CHEAP: &str = "proofs, the short ones";
+const MODELS: &str = "models";
+const SPIN: &str = "second opinions";
+const MUTANTS: &str = "wrong kernels";
+const HARD: &str = "proofs, the long ones";
+const MEASURED: &str = "measurements";
+const TESTS: &str = "tests";
+
+/// A theorem that takes more seconds than an ordinary one belongs to the second pass.
+const LONG: f64 = 1.5;
+/// What is credited to a run that was started here.
+const HERE: &str = "run here";
+
+type Items = Vec<(String, f64)>;
+
+/// The engines of a run, and what they are about.
+pub struct Engines<'a> {
+    /// The command line.
+    pub options: &'a Run,
+    /// The checkout.
+    pub root: &'a Path,
+    /// What there is.
+    pub plan: &'a Plan,
+    /// What of it is run.
+    pub chosen: &'a Chosen,
+    /// The scope that this was chosen by.
+    pub scope: &'a Scope,
+    /// The folder of the run.
+    pub folder: &'a Folder,
+    /// How many at a time.
+    pub jobs: usize,
+    /// The hash of what the provers see.
+    pub sources: &'a str,
+}
+
+impl Engines<'_> {
+    /// The phases to come, with their items and about how long each takes.
+    pub fn works(&self) -> Vec<Work> {
+        let costs = &self.plan.data.costs;
+        let work = |name: &str, items: Items| Work { name: name.to_owned(), items };
+        let of = |kind: &str, names: Vec<String>| -> Items {
+            names.into_iter().map(|name| (name.clone(), costs.of(&format!("{kind}:{name}")))).collect()
+        };
+        let single = |name: &str, cost: f64| vec![(name.to_owned(), cost)];
+        let mut works = Vec::new();
+        if !self.options.no_native {
+            let all = self.harnesses(|_| true).into_iter();
+            works.push(work(NATIVE, all.map(|name| (name, costs.each.native)).collect()));
+        }
+        if !self.options.no_provers {
+            works.push(work(CHEAP, of("harness", self.pass(false))));
+            works.push(work(HARD, of("harness", self.pass(true))));
+            if !self.options.no_mutants {
+                works.push(work(MUTANTS, of("mutant", self.mutants())));
+            }
+        }
+        if !self.options.no_models {
+            works.push(work(MODELS, of("model", self.entries().iter().map(|entry| entry.name.to_owned()).collect())));
+        }
+        if self.measures() && !self.options.no_measurements && self.options.measurements.is_none() {
+            works.push(work(MEASURED, single("waveform", costs.each.measured)));
+        }
+        if self.chosen.tests != Tests::None && !self.options.no_tests && self.options.test_results.is_none() {
+            works.push(work(TESTS, single("cargo test", costs.each.test)));
+        }
+        works
+    }
+
+    /// Runs all that is asked for.
+    ///
+    /// # Errors
+    /// A source cannot be read, or the models have found what nobody owns.
+    pub fn run(&self, live: &Live) -> Result<(), Vec<Fault>> {
+        let one = |fault: Fault| vec![fault];
+        let provers = prover::options(self.jobs, self.options.time_limit);
+        if !self.options.no_native {
+            self.native(live, &provers).map_err(one)?;
+        }
+        if !self.options.no_provers {
+            self.theorems(live, &provers, CHEAP, &self.pass(false)).map_err(one)?;
+        }
+        if self.options.no_models {
+            live.with(|results| "left out by --no-models".clone_into(&mut results.no_outcome));
+        } else {
+            self.models(live)?;
+        }
+        if !self.options.no_provers {
+            if !self.options.no_mutants {
+                self.wrong_kernels(live, &provers).map_err(one)?;
+            }
+            self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
+        }
+        self.measurements(live);
+        self.suites(live).map_err(one)
+    }
+
+    /// The names of the harnesses of the run, the cheapest first.
+    fn harnesses(&self, wanted: impl Fn(f64) -> bool) -> Vec<String> {
+        let costs = &self.plan.data.costs;
+        let all = self.plan.harnesses.iter().map(|harness| harness.name.clone());
+        let mut names = self.chosen.names("harness", all);
+        let cost = |name: &String| costs.of(&format!("harness:{name}"));
+        names.retain(|name| wanted(cost(name)));
+        names.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
+        names
+    }
+
+    fn pass(&self, long: bool) -> Vec<String> {
+        let limit = LONG * self.plan.data.costs.each.harness;
+        self.harnesses(|cost| (cost > limit) == long)
+    }
+
+    fn mutants(&self) -> Vec<String> {
+        self.chosen.names("mutant", self.plan.mutants.iter().map(|mutant| mutant.name.clone()))
+    }
+
+    fn entries(&self) -> Vec<Entry> {
+        let mut entries = atc_models::catalogue();
+        entries.retain(|entry| self.chosen.has(&format!("model:{}", entry.name)));
+        entries
+    }
+
+    fn measures(&self) -> bool {
+        measured::TARGETS.iter().any(|target| self.chosen.has(&measured::id(target.name)))
+    }
+
+    /// One phase: its progress, and where its time went.
+    fn phase<E>(live: &Live, name: &str, work: impl FnOnce() -> Result<Items, E>) -> Result<(), E> {
+        live.progress.begin(name);
+        let watch = Watch::start(name);
+        let items = work()?;
+        live.progress.end();
+        live.with(|results| results.phases.push(watch.end(items)));
+        Ok(())
+    }
+
+    /// A campaign without a result, to enter some.
+    fn empty(&self, engine: &str) -> Campaigned {
+        let provenance = Provenance { sources_sha256: self.sources.to_owned(), ..Provenance::default() };
+        let campaign = Campaign { schema: SCHEMA, engine: engine.to_owned(), provenance, harnesses: Vec::new() };
+        Campaigned { campaign, source: HERE.to_owned(), stale: false }
+    }
+
+    /// Enters results of an engine that runs here; those of the same harnesses that were entered before go.
+    fn enter(&self, live: &Live, engine: &str, new: &[HarnessResult], said: Option<&Provenance>) {
+        live.with(|results| {
+            let mine = |one: &Campaigned| one.campaign.engine == engine && one.source == HERE;
+            if !results.campaigns.iter().any(mine) {
+                results.campaigns.push(self.empty(engine));
+            }
+            let Some(one) = results.campaigns.iter_mut().find(|one| mine(one)) else { return };
+            one.campaign.harnesses.retain(|old| !new.iter().any(|new| new.name == old.name));
+            one.campaign.harnesses.extend(new.iter().cloned());
+            if let Some(said) = said {
+                one.stale |= said.sources_sha256 != self.sources;
+                let seconds = one.campaign.provenance.seconds + said.seconds;
+                one.campaign.provenance = Provenance { seconds, ..said.clone() };
+                results.provenance.tools.extend(said.tools.clone());
+                if !said.flags.is_empty() {
+                    results.provenance.flags.clone_from(&said.flags);
+                }
+            }
+        });
+    }
+
+    fn native(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
+        let names = self.harnesses(|_| true);
+        self.enter(live, "native", &[], None);
+        Self::phase(live, NATIVE, || {
+            let mut items = Vec::new();
+            for some in names.chunks(provers.jobs.max(1) * 4) {
+                let campaign = prover::native(provers, &prover::harnesses(some)?)?;
+                self.enter(live, "native", &campaign.harnesses, Some(&campaign.provenance));
+                for result in &campaign.harnesses {
+                    live.progress.done(&result.name);
+                    items.push((result.name.clone(), result.seconds));
+                }
+            }
+            Ok(items)
+        })
+    }
+
+    fn theorems(&self, live: &Live, provers: &Options, name: &str, names: &[String]) -> Result<(), Fault> {
+        self.enter(live, "cbmc", &[], None);
+        if names.is_empty() {
+            return Ok(());
+        }
+        Self::phase(live, name, || {
+            let entered = |result: &HarnessResult| {
+                live.progress.done(&result.name);
+                self.enter(live, "cbmc", std::slice::from_ref(result), None);
+            };
+            let campaign = prover::campaign(provers, &prover::harnesses(names)?, &entered)?;
+            self.enter(live, "cbmc", &campaign.harnesses, Some(&campaign.provenance));
+            Ok(campaign.harnesses.iter().map(|one| (one.name.clone(), one.seconds)).collect())
+        })
+    }
+
+    fn wrong_kernels(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
+        let names = self.mutants();
+        if names.is_empty() {
+            return Ok(());
+        }
+        Self::phase(live, MUTANTS, || {
+            let provenance = self.empty("cbmc").campaign.provenance;
+            let none = Mutants { schema: SCHEMA, provenance, mutants: Vec::new(), controls: Vec::new() };
+            live.with(|results| results.mutants = Some((none, false)));
+            let found = prover::mutants(provers, &names, &|result| {
+                live.progress.done(&result.name);
+                live.with(|results| results.mutants.iter_mut().for_each(|(all, _)| all.mutants.push(result.clone())));
+            })?;
+            let items = found.mutants.iter().map(|one| (one.name.clone(), one.seconds)).collect();
+            let stale = found.provenance.sources_sha256 != self.sources;
+            live.with(|results| results.mutants = Some((found, stale)));
+            Ok(items)
+        })
+    }
+
+    /// Searches every model, one after the other, each with all cores; then asks another checker.
+    fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
+        let entries = self.entries();
+        if entries.is_empty() {
+            return Ok(());
+        }
+        let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
+        Self::phase(live, MODELS, || {
+            let mut items = Vec::new();
+            let mut outcomes = Vec::new();
+            for entry in &entries {
+                live.progress.running(entry.name);
+                let outcome = atc_models::check_within(entry, self.jobs, limits);
+                live.progress.done(entry.name);
+                items.push((entry.name.to_owned(), outcome.seconds));
+                live.with(|results| results.outcomes.push(outcome.clone()));
+                outcomes.push(outcome);
+            }
+            let requirements: Vec<_> = self.plan.requirements.iter().map(|one| one.id.clone()).collect();
+            faults::check(&outcomes, &self.plan.data.assumptions, &requirements)?;
+            Ok::<_, Vec<Fault>>(items)
+        })?;
+        let names: Vec<_> = self.plan.models.iter().map(|model| model.name.clone()).collect();
+        if !entries.iter().any(|entry| entry.twin.is_some()) {
+            return Ok(());
+        }
+        Self::phase(live, SPIN, || {
+            let said = |(_, one): &(atc_models::Outcome, atc_models::SecondOpinion)| live.progress.done(&one.model);
+            let found: Vec<_> = opinions_on(&entries, self.jobs, said).into_iter().map(Opinion::from).collect();
+            second::check(&found, &names)?;
+            let items = found.iter().map(|one| (one.model.clone(), one.seconds)).collect();
+            live.with(|results| {
+                for one in found.iter().filter(|one| !one.version.is_empty()) {
+                    results.provenance.tools.insert(one.tool.clone(), one.version.clone());
+                }
+                results.opinions = found;
+            });
+            Ok(items)
+        })
+    }
+
+    /// Signal and position, measured by the waveform package.
+    fn measurements(&self, live: &Live) {
+        if !self.measures() {
+            return;
+        }
+        let enter = |run: measured::Run| live.with(|results| results.measured = Some(run));
+        if let Some(path) = &self.options.measurements {
+            return enter(measured::read(path, &format!("read from {}", path.display())));
+        }
+        if self.options.no_measurements {
+            return enter(measured::Run::NotRun("left out by --no-measurements".to_owned()));
+        }
+        let Ok(()) = Self::phase::<Infallible>(live, MEASURED, || {
+            let raw = self.folder.stage().join("waveform");
+            let limit = Duration::from_secs(self.options.time_limit);
+            let run = measured::run(self.root, &raw, limit, &|log| live.progress.watch(log));
+            measured::tidy(&raw);
+            let seconds = if let measured::Run::Ran(ran) = &run { ran.seconds } else { 0.0 };
+            enter(run);
+            Ok(vec![("waveform bench".to_owned(), seconds)])
+        });
+    }
+
+    fn suites(&self, live: &Live) -> Result<(), Fault> {
+        let enter = |run: tests::Run| live.with(|results| results.tests = Some(run));
+        if let Some(path) = &self.options.test_results {
+            let text = read(path)?;
+            // A record has no exit code: a failure in it is seen by its own lines.
+            enter(tests::parse(&text, !text.contains("error: ")));
+            return Ok(());
+        }
+        let only = match &self.chosen.tests {
+            Tests::None => return Ok(()),
+            _ if self.options.no_tests => {
+                enter(tests::Run::NotRun("left out by --no-tests".to_owned()));
+                return Ok(());
+            }
+            Tests::Some(targets) if targets.is_empty() => {
+                enter(tests::Run::NotRun(self.scope.why()));
+                return Ok(());
+            }
+            Tests::Some(targets) => Some(targets),
+            Tests::All => None,
+        };
+        Self::phase(live, TESTS, || {
+            let log = self.folder.stage().join("tests.log");
+            live.progress.watch(&log);
+            let watch = Watch::start(TESTS);
+            let run = tests::run(self.root, &log, only).map_err(|error| Fault::new(&"cargo test", error))?;
+            enter(run);
+            Ok(vec![("cargo test".to_owned(), watch.end(Vec::new()).wall_seconds)])
+        })
+    }
+}

@@ -1,0 +1,353 @@
+//! Mutants that are compiled and judged together: one copy of the kernel with all of them in it, one symbolic execution of each harness, and
+//! one property of each mutant.
+
+use crate::campaign::{HARD, Options, in_parallel};
+use crate::cbmc::{self, Ask, Question, Silence, ask_in_turn};
+use crate::compile::{Compiled, Kernel, STACK, compile, copy, write};
+use crate::control::is_smaller;
+use crate::mutants::{FIRST, Mutant, SLOW};
+use crate::report::{Control, Kill};
+use crate::schemata::{Change, instrument};
+use crate::tools::Tools;
+use crate::twin::{self, Tape};
+use atc_proofs::Harness;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// What a harness says of a mutant.
+#[derive(Clone, Debug)]
+pub enum Judged {
+    /// It rejects it.
+    Rejects(Kill),
+    /// It does not.
+    Passes,
+    /// No answer in time: it may have one if the mutant is alone.
+    Unanswered,
+    /// No answer, and why.
+    Error(String),
+    /// Nothing was run, and why.
+    NotRun(String),
+}
+
+impl Judged {
+    /// Whether nothing else will be tried.
+    pub const fn is_final(&self) -> bool {
+        !matches!(self, Self::Unanswered)
+    }
+
+    /// It, where nothing else can be tried.
+    pub fn or_error(self, harness: &str) -> Self {
+        if self.is_final() { self } else { Self::Error(format!("{harness}: no answer in time")) }
+    }
+}
+
+/// Harnesses that are compiled at once, and the mutants that they are to reject: by number from 1, each with its place among all.
+struct Group<'a> {
+    harnesses: Vec<&'static Harness>,
+    mutants: BTreeMap<usize, (usize, &'a Mutant)>,
+}
+
+/// Harnesses in a group: few enough that most of its mutants concern each of them.
+const SIZE: usize = 8;
+
+/// How mutants are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// All of them in one question.
+    Together,
+    /// Each alone, and not for long.
+    Quick,
+    /// Each alone, until there is an answer.
+    Whole,
+}
+
+const WAYS: [Way; 3] = [Way::Together, Way::Quick, Way::Whole];
+
+/// CPU time for a mutant in a case in which it may not fail at all.
+const QUICK: Duration = Duration::from_secs(12);
+
+/// Bytes of the stack: what may be chosen keeps more in memory. (Were it too small, paths would end there and mutants survive.)
+const ROOM: u32 = 2 * STACK;
+
+/// Bytes for the selectors of a group.
+const SELECTORS: u32 = 512;
+
+/// CPU time for mutants that are asked for together. It is there for many answers at once, not for hard ones.
+const TOGETHER: Duration = Duration::from_secs(30);
+
+/// The harnesses that are to reject some of the mutants, in groups of neighbours.
+fn groups<'a>(mutants: &[&'a Mutant]) -> Vec<Group<'a>> {
+    let names: BTreeSet<&str> = mutants.iter().flat_map(|mutant| &mutant.killed_by).map(String::as_str).collect();
+    let mut groups = Vec::new();
+    for module in atc_proofs::HARNESSES {
+        let wanted: Vec<_> = module.iter().filter(|harness| names.contains(harness.name)).collect();
+        for harnesses in wanted.chunks(SIZE) {
+            let concerned =
+                |mutant: &Mutant| harnesses.iter().any(|one| mutant.killed_by.iter().any(|name| name == one.name));
+            let wanted = mutants.iter().copied().enumerate().filter(|(_, mutant)| concerned(mutant));
+            let mutants = (1..).zip(wanted).collect();
+            groups.push(Group { harnesses: harnesses.to_vec(), mutants });
+        }
+    }
+    groups
+}
+
+/// Judges the mutants by all their harnesses; `told` hears of each mutant (by place) and harness. Returns the controls: how the kernel
+/// fares with none of the mutants selected, before those harnesses that are smaller than in their proof.
+pub fn judge(
+    tools: &Tools,
+    root: &Path,
+    options: &Options,
+    mutants: &[&Mutant],
+    told: &(dyn Fn(usize, &str, Judged) + Sync),
+) -> Vec<Control> {
+    let groups = groups(mutants);
+    let folder = root.join("target").join("proofs").join("mutants");
+    let compiled = in_parallel(options.jobs, groups.len(), |place| {
+        build(tools, root, &folder.join(format!("together-{place}")), options, &groups[place])
+    });
+    let mut jobs: Vec<(usize, &'static Harness)> = Vec::new();
+    for (place, group) in groups.iter().enumerate() {
+        jobs.extend(group.harnesses.iter().map(|harness| (place, *harness)));
+    }
+    // Those that take longest first.
+    jobs.sort_by_key(|(_, harness)| HARD.iter().position(|name| *name == harness.name).unwrap_or(HARD.len()));
+    let controls = in_parallel(options.jobs, jobs.len(), |job| {
+        let (place, harness) = jobs[job];
+        let started = Instant::now();
+        let mine: BTreeMap<usize, usize> = groups[place]
+            .mutants
+            .iter()
+            .filter(|(_, (_, mutant))| mutant.killed_by.iter().any(|name| name == harness.name))
+            .map(|(number, (place, _))| (*number, *place))
+            .collect();
+        let asked = match &compiled[place] {
+            Ok(compiled) => Asked::new(tools, compiled, harness, options).map(|asked| {
+                let control = if is_smaller(harness) { Some(asked.control()) } else { None };
+                (asked, control)
+            }),
+            Err(reason) => Err(reason.clone()),
+        };
+        let (asked, control) = match asked {
+            Ok((asked, control)) => (Ok(asked), control),
+            Err(reason) => (Err(reason), None),
+        };
+        // A harness that rejects the kernel with no mutant selected shows nothing by rejecting it with one.
+        let judged = match (&asked, &control) {
+            (Ok(_), Some(Err(reason))) => Err(Judged::Error(format!("the control failed: {reason}"))),
+            (Ok(asked), _) => Ok(asked.judge(&mine.keys().copied().collect())),
+            (Err(reason), _) => Err(Judged::Error(reason.clone())),
+        };
+        for (number, place) in &mine {
+            let verdict = match &judged {
+                Ok(all) => all.get(number).cloned().unwrap_or(Judged::Passes),
+                Err(verdict) => verdict.clone(),
+            };
+            told(*place, harness.name, verdict);
+        }
+        let seconds = started.elapsed().as_secs_f64();
+        control.map(|control| Control { harness: harness.name.to_owned(), reason: control.err(), seconds })
+    });
+    controls.into_iter().flatten().collect()
+}
+
+/// A copy of the sources with the mutants of the group in it, compiled.
+fn build(tools: &Tools, root: &Path, folder: &Path, options: &Options, group: &Group) -> Result<Compiled, String> {
+    let sources = folder.join("sources");
+    copy(root, &sources)?;
+    let mut files: BTreeMap<&str, Vec<Change>> = BTreeMap::new();
+    for (number, (_, mutant)) in &group.mutants {
+        let change = Change { number: *number, find: &mutant.find, replace: &mutant.replace };
+        files.entry(&mutant.file).or_default().push(change);
+    }
+    for (file, changes) in files {
+        let path = sources.join("kernel/src").join(file);
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        write(&path, &instrument(&text, &changes)?)?;
+    }
+    let library = sources.join("kernel/src/lib.rs");
+    let text = std::fs::read_to_string(&library).map_err(|error| format!("{}: {error}", library.display()))?;
+    write(&library, &with_selector(&text, group.mutants.keys().copied())?)?;
+    let names: Vec<_> = group.harnesses.iter().map(|harness| harness.name.to_owned()).collect();
+    compile(tools, &sources, &folder.join("build"), options.aspects, &names, Kernel::WithMutants)
+}
+
+/// The crate's root with what its mutants ask: a cell for each, which the prover fills before the harness begins.
+fn with_selector(text: &str, numbers: impl Iterator<Item = usize> + Clone) -> Result<String, String> {
+    const FORBIDS: &str = "#![forbid(unsafe_code)]";
+    if text.matches(FORBIDS).count() != 1 {
+        return Err(format!("the kernel's lib.rs does not have `{FORBIDS}` once"));
+    }
+    let most = numbers.clone().max().unwrap_or(0) + 1;
+    let mut written = text.replacen(FORBIDS, "", 1);
+    let _ = write!(
+        written,
+        "\nstatic mut SELECTED: [u32; {most}] = [0; {most}];
+         #[inline(always)]
+         pub(crate) const fn selected(number: usize) -> bool {{ unsafe {{ SELECTED[number] != 0 }} }}
+         #[link(wasm_import_module = \"prover\")]
+         unsafe extern \"C\" {{ #[link_name = \"selected\"] safe fn is_selected(number: u32) -> u32; }}
+         /// Asks which mutants this kernel is to be.
+         #[inline(always)]
+         pub fn select() {{ unsafe {{\n"
+    );
+    for number in numbers {
+        let _ = writeln!(written, "SELECTED[{number}] = is_selected({number});");
+    }
+    written.push_str("} }\n");
+    Ok(written)
+}
+
+/// One harness with mutants in it. Mutant 0 is the kernel with none of them selected; or, if it was compiled alone, the mutant.
+pub(crate) struct Asked<'a> {
+    tools: &'a Tools,
+    folder: PathBuf,
+    harness: &'static Harness,
+    options: &'a Options,
+}
+
+impl<'a> Asked<'a> {
+    pub fn new(
+        tools: &'a Tools,
+        compiled: &Compiled,
+        harness: &'static Harness,
+        options: &'a Options,
+    ) -> Result<Self, String> {
+        Ok(Self { tools, folder: compiled.to_c(tools, harness.name, ROOM)?, harness, options })
+    }
+
+    fn question(&self, case: usize, ask: Ask) -> Question<'static> {
+        let question = Question::proof(self.harness.name, self.options.solver, self.options.limit);
+        Question { case: (case, self.harness.cases), ask, stack: ROOM + SELECTORS, ..question }
+    }
+
+    fn list(&self, numbers: impl IntoIterator<Item = usize>) -> Result<(), String> {
+        let list: Vec<_> = numbers.into_iter().map(|number| format!("M({number})")).collect();
+        write(&self.folder.join("mutants.h"), &format!("#define MUTANTS(M) {}\n", list.join(" ")))
+    }
+
+    /// With none of the mutants selected every claim holds, and nothing else fails.
+    fn control(&self) -> Result<(), String> {
+        self.list([0])?;
+        let first = (!HARD.contains(&self.harness.name)).then_some(crate::cbmc::FIRST);
+        for case in 0..self.harness.cases {
+            let answer = ask_in_turn(self.tools, &self.folder, &self.question(case, Ask::Control), first);
+            let (answer, _) = answer.map_err(|silence| silence.of(self.harness.name))?;
+            match (answer.mutant(0), answer.other_failure()) {
+                (Some(true), None) => {}
+                (_, Some(failure)) => {
+                    return Err(format!("{failure} in {} with no mutant selected", self.harness.name));
+                }
+                _ => return Err(format!("a claim of {} does not hold with no mutant selected", self.harness.name)),
+            }
+        }
+        Ok(())
+    }
+
+    /// What the harness says of these mutants. One that is not in the answer passes.
+    pub fn judge(&self, numbers: &BTreeSet<usize>) -> BTreeMap<usize, Judged> {
+        let mut left = numbers.clone();
+        let mut found = BTreeMap::new();
+        let mut judged = BTreeMap::new();
+        // A panic is what the theorem of totality is about; claims come first, since there are far fewer places to look at.
+        // What fails is found more easily than that nothing does, and each mutant fails in some case: first all of them at once, then each
+        // alone for a short time in every case, and only then for as long as it takes. Claims come before panics.
+        'asking: for ask in [Ask::Mutants, Ask::Panics] {
+            for (way, case) in WAYS.iter().flat_map(|way| (0..self.harness.cases).map(move |case| (way, case))) {
+                left.retain(|number| !found.contains_key(number) && !judged.contains_key(number));
+                let groups: Vec<BTreeSet<usize>> = match way {
+                    Way::Together => vec![left.clone()],
+                    Way::Quick | Way::Whole => left.iter().map(|number| BTreeSet::from([*number])).collect(),
+                };
+                if left.is_empty() {
+                    break 'asking;
+                }
+                for group in groups {
+                    match self.ask(case, ask, &group, *way) {
+                        Ok(rejected) => found.extend(rejected),
+                        Err(Silence::Late) if *way != Way::Whole => {}
+                        Err(silence) => judged.extend(group.iter().map(|number| (*number, self.silent(&silence)))),
+                    }
+                }
+            }
+        }
+        match self.confirm(&found) {
+            Ok(kills) => judged.extend(kills),
+            Err(reason) => judged.extend(found.keys().map(|number| (*number, Judged::Error(reason.clone())))),
+        }
+        judged
+    }
+
+    fn silent(&self, silence: &Silence) -> Judged {
+        if *silence == Silence::Late {
+            Judged::Unanswered
+        } else {
+            Judged::Error(silence.clone().of(self.harness.name))
+        }
+    }
+
+    /// The mutants that fail in this case, with what makes them.
+    fn ask(
+        &self,
+        case: usize,
+        ask: Ask,
+        numbers: &BTreeSet<usize>,
+        way: Way,
+    ) -> Result<BTreeMap<usize, Tape>, Silence> {
+        self.list(numbers.iter().copied()).map_err(Silence::Broken)?;
+        let slow = SLOW.contains(&self.harness.name);
+        let mut question = self.question(case, ask);
+        question.only = numbers.first().copied().filter(|_| numbers.len() == 1);
+        let answer = match way {
+            Way::Whole => ask_in_turn(self.tools, &self.folder, &question, (!slow).then_some(FIRST)),
+            Way::Together | Way::Quick => {
+                let solver = if slow { question.solver.at_once(self.tools) } else { question.solver };
+                let most = if way == Way::Together { TOGETHER } else { QUICK };
+                let limit = question.limit.min(if slow { most * 4 } else { most });
+                cbmc::ask(self.tools, &self.folder, &Question { solver, limit, ..question })
+            }
+        };
+        let (answer, _) = answer?;
+        let rejected = numbers.iter().filter(|number| answer.mutant(**number) == Some(false));
+        let tape = |number: &usize| {
+            let values = answer.values.get(&format!("mutant {number}")).cloned().unwrap_or_default();
+            (*number, Tape { mutant: *number, case, values })
+        };
+        Ok(rejected.map(tape).collect())
+    }
+
+    /// Runs every counterexample on this machine: the mutant must fail on it, and the kernel with none selected must not.
+    fn confirm(&self, found: &BTreeMap<usize, Tape>) -> Result<BTreeMap<usize, Judged>, String> {
+        if found.is_empty() {
+            return Ok(BTreeMap::new());
+        }
+        self.list(found.keys().copied())?;
+        let program =
+            twin::build(self.tools, &self.folder, &self.question(0, Ask::Mutants), "harness.c", &["-DMUTANTS"])?;
+        let both = found.values().flat_map(|tape| [tape.clone(), Tape { mutant: 0, ..tape.clone() }]);
+        let runs = twin::happens(&program, &both.collect::<Vec<_>>())?;
+        let judge = |((number, tape), run): ((&usize, &Tape), &[Vec<String>])| {
+            // One that is alone is its own control.
+            let control = if *number == 0 { &[][..] } else { &run[1][..] };
+            (*number, self.kill(&tape.values, &run[0], control))
+        };
+        Ok(found.iter().zip(runs.chunks(2)).map(judge).collect())
+    }
+
+    fn kill(&self, values: &[u16], mutant: &[String], control: &[String]) -> Judged {
+        let name = self.harness.name;
+        let name_of = |number: &usize| self.harness.claims.get(*number).map(|claim| claim.name.to_owned());
+        let mut claims: Vec<String> = twin::failed(mutant).iter().filter_map(name_of).collect();
+        claims.dedup();
+        claims.extend(twin::panics(mutant).then(|| "trap: panic".to_owned()));
+        if claims.is_empty() {
+            Judged::Error(format!("{name}: the prover's counterexample does not fail when it is run: {values:?}"))
+        } else if !twin::failed(control).is_empty() || twin::panics(control) {
+            Judged::Error(format!("{name}: the counterexample fails with no mutant selected, too: {values:?}"))
+        } else {
+            Judged::Rejects(Kill { harness: name.to_owned(), claims, counterexample: Some(values.to_vec()) })
+        }
+    }
+}

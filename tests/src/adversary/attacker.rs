@@ -1,0 +1,342 @@
+//! How the adversary draws its moves from a seed, and when it hurts most.
+
+use super::arsenal::Arsenal;
+use super::device::{Ask, Commands, all};
+use super::dice::Dice;
+use super::ground::{Ground, Mask, bit, members, mm_s};
+use super::moves::{Arrival, Move};
+use super::neighbour::Manner;
+use super::train::{Driver, Train};
+use super::world::{Setting, World};
+
+/// Draws the moves of an episode.
+pub struct Attacker {
+    dice: Dice,
+    arsenal: Arsenal,
+    driver: Option<Driver>,
+    unblock: Option<i64>,
+    interval: usize,
+    later: Vec<(i64, Move)>,
+}
+
+impl Attacker {
+    /// The attacker of a seed.
+    pub fn new(seed: u64, arsenal: Arsenal) -> Self {
+        let mut dice = Dice::new(seed);
+        let interval = [3, 6, 12, 25][dice.below(4)];
+        let driver = match arsenal.drivers {
+            [true, false] => Some(Driver::Telegrams),
+            [false, true] => Some(Driver::Signals),
+            _ => dice.pick(&[None, Some(Driver::Telegrams), Some(Driver::Telegrams), Some(Driver::Signals)]).flatten(),
+        };
+        Self { dice, arsenal, driver, unblock: None, interval, later: Vec::new() }
+    }
+
+    /// What is fixed for the episode.
+    pub fn setting(&mut self, ground: &Ground) -> Setting {
+        let slow = u32::try_from(self.dice.next() & 0xFFFF_FFFF).unwrap_or(0);
+        let late = self.dice.within(0, (ground.life - 1).max(0));
+        Setting {
+            manner: Manner { overlaps: self.dice.once_in(2), late },
+            slow: if self.arsenal.slow_points { slow } else { 0 },
+            throw_percent: self.dice.within(30, 100),
+            directed: self.arsenal.directed,
+        }
+    }
+
+    fn arrival(&mut self, ground: &Ground) -> Arrival {
+        let length = self.dice.within(40_000, ground.longest.clamp(40_000, 200_000));
+        let any = if self.dice.once_in(2) { Driver::Telegrams } else { Driver::Signals };
+        let gap = if self.dice.once_in(2) { 0 } else { self.dice.within(0, 30_000) };
+        let speed = self.dice.within(ground.fastest / 4, ground.fastest);
+        Arrival { length, driver: self.driver.unwrap_or(any), speed, gap, about: self.dice.once_in(2) }
+    }
+
+    /// The moves of the next cycle.
+    pub fn draw(&mut self, world: &World, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        let now = world.truth.now;
+        if now == 0 {
+            for _ in 0..self.dice.below(4) {
+                let circuit = self.dice.below(ground.seen);
+                let arrival = self.arrival(ground);
+                moves.push(Move::Place(circuit, arrival));
+            }
+            return;
+        }
+        if self.unblock.is_some_and(|when| when <= now) {
+            self.unblock = None;
+            moves.push(Move::Command(Commands { unblock: all(ground), lift: all(ground), ..Commands::default() }));
+        }
+        moves.extend(self.later.iter().filter(|(when, _)| *when == now).map(|(_, it)| *it));
+        self.later.retain(|(when, _)| *when > now);
+        if self.arsenal.one + self.arsenal.many + self.arsenal.lose > 0 {
+            for train in &world.trains {
+                if at_joint(ground, train) && self.dice.once_in(8) {
+                    self.hurt(world, train, moves);
+                }
+            }
+        }
+        if self.dice.once_in(self.interval) {
+            let weights = self.arsenal.weights();
+            let mut drawn = self.dice.below(weights.iter().sum());
+            let mut kind = 0;
+            while drawn >= weights[kind] {
+                drawn -= weights[kind];
+                kind += 1;
+            }
+            self.kind(kind, world, moves);
+        }
+    }
+
+    fn kind(&mut self, kind: usize, world: &World, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        let circuit = self.dice.below(ground.seen);
+        let train = self.dice.below(world.trains.len());
+        let train = world.trains.get(train);
+        match kind {
+            0 => moves.push(Move::Ask(Ask::Set(self.route(world)))),
+            1 => {
+                let asked: Vec<usize> = (0..ground.routes.len()).filter(|route| world.truth.asked[*route].0).collect();
+                if let Some(route) = self.dice.pick(&asked) {
+                    moves.push(Move::Ask(Ask::Withdraw(route)));
+                }
+            }
+            2 if !ground.points.is_empty() => {
+                let point = self.dice.below(ground.points.len());
+                // Mostly away from where it lies.
+                let reverse = world.points.lies(point) == self.dice.once_in(8);
+                moves.push(Move::Ask(Ask::Drive(point, reverse)));
+                if self.arsenal.slow_points && self.dice.once_in(2) {
+                    self.leave_late(world, point);
+                }
+            }
+            3 => self.on_line(world, moves),
+            4 => {
+                if let Some(line) = self.line(ground) {
+                    moves.push(Move::NeighbourWork(line, !self.dice.once_in(3)));
+                }
+            }
+            5 => {
+                let mask = self.near(world, circuit);
+                let lift = if self.dice.once_in(3) { all(ground) } else { 0 };
+                let code = u8::try_from(self.dice.within(0, 4)).unwrap_or(0);
+                let restrict = if lift == 0 { (mask, code) } else { (0, 0) };
+                moves.push(Move::Command(Commands { restrict, lift, ..Commands::default() }));
+            }
+            6 => self.maintain(world, circuit, moves),
+            7 => {
+                let mask = self.near(world, circuit);
+                moves.push(Move::Occupy(mask, self.lasting(ground)));
+            }
+            8 => {
+                let mask = self.some(ground);
+                moves.push(Move::Occupy(mask, self.lasting(ground)));
+            }
+            9 => {
+                if let Some(train) = train {
+                    let under: Vec<usize> = members(train.under & all(ground)).collect();
+                    if let Some(circuit) = self.dice.pick(&under) {
+                        moves.push(Move::Lose(circuit, self.dice.within(1, ground.loss.max(1))));
+                    }
+                }
+            }
+            10 => {
+                if let Some(train) = train {
+                    moves.push(Move::Deaf(train.number, self.dice.within(1, ground.life)));
+                }
+            }
+            11 if !ground.points.is_empty() => {
+                let point = self.dice.below(ground.points.len());
+                moves.push(Move::Blind(point, self.lasting(ground)));
+            }
+            12 => {
+                if let Some(train) = train.filter(|train| train.speed == 0) {
+                    moves.push(Move::Face(train.number));
+                }
+            }
+            13 => {
+                if let Some(train) = train {
+                    let slow = self.dice.within(0, ground.fastest);
+                    let pace = if self.dice.once_in(2) { mm_s(400) } else { slow };
+                    moves.push(Move::Pace(train.number, pace));
+                }
+            }
+            14 if self.dice.once_in(8) => {
+                moves.push(Move::Restart);
+                let unblock = world.truth.now + self.dice.within(1, 60);
+                self.unblock = Some(unblock);
+                self.turn_after(world, unblock, moves);
+            }
+            _ => {}
+        }
+    }
+
+    /// A route over a point that was just driven, for a train that hears of it and then nothing more.
+    fn leave_late(&mut self, world: &World, point: usize) {
+        let ground = world.ground;
+        let Some(train) = world.trains.get(self.dice.below(world.trains.len())) else { return };
+        let here = bit(train.front_circuit(ground));
+        let lies = world.points.lies(point);
+        let over = |route: &usize| {
+            ground.routes[*route].entry_mask() & here != 0 && ground.routes[*route].points.contains(&(point, lies))
+        };
+        let wanted: Vec<usize> = (0..ground.routes.len()).filter(over).collect();
+        if let Some(route) = self.dice.pick(&wanted) {
+            let now = world.truth.now;
+            self.later.push((now + 1, Move::Ask(Ask::Set(route))));
+            self.later.push((now + 2, Move::Deaf(train.number, ground.life)));
+        }
+    }
+
+    /// A line with a train on it is turned as soon as the device that forgot the train obeys.
+    fn turn_after(&mut self, world: &World, unblock: i64, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        if self.arsenal.line == 0 || self.dice.once_in(2) {
+            return;
+        }
+        let busy = |line: &usize| world.trains.iter().any(|train| train.under & ground.lines[*line].mask != 0);
+        let lines: Vec<usize> = (0..ground.lines.len()).filter(busy).collect();
+        if let Some(line) = self.dice.pick(&lines) {
+            moves.push(Move::Consent(line, false));
+            self.later.push((unblock + 1, Move::Ask(Ask::Turn(line, false))));
+            for wait in [3, 10, ground.turn] {
+                let arrival = self.arrival(ground);
+                self.later.push((unblock + wait, Move::Send(line, arrival)));
+            }
+        }
+    }
+
+    /// A route that somebody wants, or any.
+    fn route(&mut self, world: &World) -> usize {
+        let ground = world.ground;
+        if !self.dice.once_in(4)
+            && let Some(train) = world.trains.get(self.dice.below(world.trains.len()))
+        {
+            let here = bit(train.front_circuit(ground));
+            let wanted: Vec<usize> =
+                (0..ground.routes.len()).filter(|route| ground.routes[*route].approach & here != 0).collect();
+            if let Some(route) = self.dice.pick(&wanted) {
+                return route;
+            }
+        }
+        self.dice.below(ground.routes.len())
+    }
+
+    fn line(&mut self, ground: &Ground) -> Option<usize> {
+        (!ground.lines.is_empty()).then(|| self.dice.below(ground.lines.len()))
+    }
+
+    fn on_line(&mut self, world: &World, moves: &mut Vec<Move>) {
+        let Some(line) = self.line(world.ground) else { return };
+        let ways = world.ground.lines[line].ways;
+        let drawn = self.dice.below(7);
+        match drawn {
+            0 | 1 if ways[0] => moves.push(Move::Ask(Ask::Turn(line, false))),
+            2 if ways[1] => moves.push(Move::Ask(Ask::Turn(line, true))),
+            3 if ways[1] => moves.push(Move::Consent(line, true)),
+            4 => moves.push(Move::Consent(line, false)),
+            _ if ways[0] => {
+                let arrival = self.arrival(world.ground);
+                if world.trains.len() < 5 && world.neighbours[line].is_permitted(world.ground) {
+                    moves.push(Move::Send(line, arrival));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn maintain(&mut self, world: &World, circuit: usize, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        let working: Vec<usize> = members(world.truth.workers & all(ground)).collect();
+        let confirmed: Vec<usize> = members(world.said.confirmed & all(ground)).collect();
+        match self.dice.below(4) {
+            0 => {
+                let mask = self.near(world, circuit);
+                moves.push(Move::Command(Commands { block: mask, ..Commands::default() }));
+            }
+            1 => {
+                for circuit in working {
+                    moves.push(Move::Work(circuit, false));
+                }
+                moves.push(Move::Command(Commands { unblock: all(ground), ..Commands::default() }));
+            }
+            _ => {
+                if let Some(circuit) = self.dice.pick(&confirmed) {
+                    moves.push(Move::Work(circuit, true));
+                }
+            }
+        }
+    }
+
+    /// A circuit: near a train more often than not.
+    fn near(&mut self, world: &World, circuit: usize) -> Mask {
+        let ground = world.ground;
+        if let Some(train) = world.trains.get(self.dice.below(world.trains.len() + 1)) {
+            let ahead: Vec<usize> = members((train.under | next_to(ground, train)) & all(ground)).collect();
+            if let Some(circuit) = self.dice.pick(&ahead) {
+                return bit(circuit);
+            }
+        }
+        bit(circuit)
+    }
+
+    /// A set of circuits: all, a route's, or any.
+    fn some(&mut self, ground: &Ground) -> Mask {
+        let route = self.dice.below(ground.routes.len());
+        let any = Mask::from(self.dice.next());
+        match self.dice.below(4) {
+            0 | 1 => all(ground),
+            2 => ground.routes[route].mask | bit(ground.routes[route].entry),
+            _ => any & all(ground),
+        }
+    }
+
+    /// For how long: a cycle, about the clear time, or long.
+    fn lasting(&mut self, ground: &Ground) -> i64 {
+        let around = self.dice.within(ground.clear - 2, ground.clear + 2);
+        let long = self.dice.within(1, 600);
+        self.dice.pick(&[1, 1, 2, 3, around, long]).unwrap_or(1).max(1)
+    }
+
+    /// Something just when a front or a tail passes a joint.
+    fn hurt(&mut self, world: &World, train: &Train, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        let (one, many, lose) = (self.arsenal.one, self.arsenal.many, self.arsenal.lose);
+        let drawn = self.dice.below(one + many + lose);
+        if drawn < one {
+            let about = (next_to(ground, train) | train.under) & all(ground);
+            let circuits: Vec<usize> = members(about).collect();
+            if let Some(circuit) = self.dice.pick(&circuits) {
+                moves.push(Move::Occupy(bit(circuit), self.lasting(ground)));
+            }
+        } else if drawn < one + many {
+            let mask = self.some(ground);
+            moves.push(Move::Occupy(mask, self.lasting(ground)));
+        } else {
+            let circuits: Vec<usize> = members((train.under | next_to(ground, train)) & all(ground)).collect();
+            if let Some(circuit) = self.dice.pick(&circuits) {
+                moves.push(Move::Lose(circuit, self.dice.within(1, ground.loss.max(1))));
+            }
+        }
+    }
+}
+
+/// Whether the front or the tail passes a joint in this cycle, or in one of the two next.
+fn at_joint(ground: &Ground, train: &Train) -> bool {
+    let soon = train.speed * ground.cycle_ms * 3 / 1000;
+    train.speed > 0 && (train.to_joint() <= soon || train.at <= soon || train.tail_to_joint() <= soon)
+}
+
+/// The circuits that adjoin those under a train.
+fn next_to(ground: &Ground, train: &Train) -> Mask {
+    let mut found = 0;
+    for leg in &train.legs {
+        for joint in &ground.pieces[leg.piece].joints {
+            for piece in &ground.joints[*joint] {
+                found |= bit(ground.pieces[*piece].circuit);
+            }
+        }
+    }
+    found & !train.under
+}

@@ -1,0 +1,198 @@
+//! The device under attack. This is the only file of the adversary that knows the kernel: a change of the kernel's interface ends here.
+
+use atc_kernel::interlocking::{
+    CircuitId, CircuitSet, Input, Layout, Orders, PointId, PointSet, Position, Positions, Request, RouteId, RouteSet,
+    SegmentId, SegmentSet, SpeedCode, State, Travel, begins, telegram,
+};
+use atc_layout::{Description, Errors};
+
+use super::ground::{Ground, Mask, bit, members};
+
+/// What may be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ask {
+    /// Set a route.
+    Set(usize),
+    /// Withdraw a route.
+    Withdraw(usize),
+    /// Drive a point; `true` is reverse.
+    Drive(usize, bool),
+    /// Turn a line; `true` is outwards.
+    Turn(usize, bool),
+}
+
+/// What staff command.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Commands {
+    /// Block these.
+    pub block: Mask,
+    /// Unblock these.
+    pub unblock: Mask,
+    /// Restrict these to the code.
+    pub restrict: (Mask, u8),
+    /// Lift the restriction of these.
+    pub lift: Mask,
+}
+
+/// What the device reads in a cycle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Read {
+    /// The circuits that are reported occupied.
+    pub occupied: Mask,
+    /// The points that are detected normal, and reverse.
+    pub detected: [u32; 2],
+    /// One request or none.
+    pub ask: Option<Ask>,
+    /// What staff command.
+    pub commands: Commands,
+    /// The lines where the neighbour consents.
+    pub consent: u8,
+}
+
+/// What it says in a cycle, besides the telegrams.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Said {
+    /// The routes that show proceed.
+    pub proceed: u64,
+    /// The points that are driven to normal, and to reverse.
+    pub drives: [u32; 2],
+    /// The lines where it permits the neighbour to send.
+    pub permits: u8,
+    /// The blocks that staff may rely on.
+    pub confirmed: Mask,
+    /// Whether the request was carried out.
+    pub done: bool,
+}
+
+/// The telegram of one circuit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Telegram {
+    /// The circuits that the train may enter; none if it must stop.
+    pub hold: Mask,
+    /// The highest code.
+    pub code: u8,
+    /// The circuit, alone, towards which the train must face; `None` where a telegram does not say so.
+    pub towards: Option<Mask>,
+}
+
+/// A device.
+pub trait Device {
+    /// One cycle.
+    fn cycle(&mut self, read: &Read) -> Said;
+    /// The telegram that the circuit sends in this cycle.
+    fn telegram(&self, circuit: usize) -> Telegram;
+    /// A restart: what it remembered is lost.
+    fn restart(&mut self);
+}
+
+/// The kernel.
+struct Kernel<const R: usize, const P: usize, const N: usize, const S: usize> {
+    layout: Box<Layout<R, P, N, S>>,
+    state: State<R, S>,
+    table: Option<atc_kernel::interlocking::Contents<R>>,
+    begins: CircuitSet,
+}
+
+fn circuits(mask: Mask) -> CircuitSet {
+    CircuitSet::from_bits(u64::try_from(mask & Mask::from(u64::MAX)).unwrap_or(0))
+}
+
+fn small(number: usize) -> u8 {
+    u8::try_from(number).unwrap_or(u8::MAX)
+}
+
+fn request(ask: Ask) -> Option<Request> {
+    Some(match ask {
+        Ask::Set(route) => Request::Set(RouteId::new(small(route))?),
+        Ask::Withdraw(route) => Request::Withdraw(RouteId::new(small(route))?),
+        Ask::Drive(point, reverse) => {
+            let position = if reverse { Position::Reverse } else { Position::Normal };
+            Request::Drive(PointId::new(small(point))?, position)
+        }
+        Ask::Turn(line, away) => {
+            let travel = if away { Travel::Away } else { Travel::Toward };
+            Request::Turn(SegmentId::new(small(line))?, travel)
+        }
+    })
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Kernel<R, P, N, S> {
+    fn cycle(&mut self, read: &Read) -> Said {
+        let input = Input {
+            occupied: circuits(read.occupied),
+            detected: Positions {
+                normal: PointSet::from_bits(read.detected[0]),
+                reverse: PointSet::from_bits(read.detected[1]),
+            },
+            request: read.ask.and_then(request),
+            orders: Orders {
+                block: circuits(read.commands.block),
+                unblock: circuits(read.commands.unblock),
+                restrict: circuits(read.commands.restrict.0),
+                speed: SpeedCode(read.commands.restrict.1),
+                lift: circuits(read.commands.lift),
+            },
+            consent: SegmentSet::from_bits(read.consent),
+        };
+        let (state, output) = self.layout.cycle(self.state, input);
+        self.state = state;
+        self.table = output.table.read(state.epoch);
+        self.begins = self.table.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(&self.layout, contents));
+        Said {
+            proceed: RouteSet::bits(output.proceed),
+            drives: [output.drives.normal.bits(), output.drives.reverse.bits()],
+            permits: output.permits.bits(),
+            confirmed: Mask::from(output.confirmed.bits()),
+            done: output.answer == Some(Ok(())),
+        }
+    }
+
+    fn telegram(&self, circuit: usize) -> Telegram {
+        let Some(circuit) = CircuitId::new(small(circuit)) else { return Telegram::default() };
+        let movement = telegram(&self.layout, self.table.as_ref(), self.begins, circuit);
+        if movement.open {
+            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, towards: None }
+        } else {
+            Telegram::default()
+        }
+    }
+
+    fn restart(&mut self) {
+        self.state = State::INITIAL;
+        (self.table, self.begins) = (None, CircuitSet::EMPTY);
+    }
+}
+
+/// The kernel with a layout, of the smallest size that has room for it, and the ground of that layout.
+///
+/// # Errors
+/// What is wrong with the layout.
+pub fn kernel(description: &Description) -> Result<(Box<dyn Device>, Ground), Errors> {
+    if let Ok(compiled) = description.compile_to::<8, 4, 4, 2>() {
+        let ground = Ground::of_compiled(description, &compiled);
+        return Ok((started(compiled.layout()), ground));
+    }
+    if let Ok(compiled) = description.compile_to::<8, 4, 8, 5>() {
+        let ground = Ground::of_compiled(description, &compiled);
+        return Ok((started(compiled.layout()), ground));
+    }
+    let compiled = description.compile_to::<64, 16, 32, 8>()?;
+    let ground = Ground::of_compiled(description, &compiled);
+    Ok((started(compiled.layout()), ground))
+}
+
+fn started<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: Box<Layout<R, P, N, S>>,
+) -> Box<dyn Device> {
+    Box::new(Kernel { layout, state: State::INITIAL, table: None, begins: CircuitSet::EMPTY })
+}
+
+/// The circuits that a station of `ground` sees.
+pub fn all(ground: &Ground) -> Mask {
+    bit(ground.seen) - 1
+}
+
+/// How often `mask` counts in a list of lengths: the sum over its circuits.
+pub fn length(ground: &Ground, mask: Mask) -> i64 {
+    members(mask).map(|circuit| ground.lengths[circuit]).sum()
+}

@@ -1,0 +1,159 @@
+//! Two kinds of drivers: those who act on telegrams and those who act on signals.
+
+use super::device::{Device, length};
+use super::ground::{Ground, Mask, bit};
+use super::point::Points;
+use super::train::{Driver, Heard, Train, next_speed};
+
+/// How far a driver looks ahead.
+const SIGHT_MM: i64 = 2_000_000;
+
+/// What a driver always leaves to the limit: more than rounding may take.
+const MARGIN_MM: i64 = 200;
+
+/// What a driver who acts on signals may do.
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    /// How far he may run.
+    distance: i64,
+    /// How fast he may run now, so that he keeps the limits ahead.
+    speed: i64,
+    /// The circuits ahead up to there.
+    ahead: Mask,
+}
+
+/// The train hears the telegram of the circuit with its front.
+pub fn hear(
+    train: &mut Train,
+    (ground, points): (&Ground, &Points),
+    (device, directed): (&dyn Device, bool),
+    neighbour: Option<Heard>,
+) {
+    if train.deaf > 0 {
+        train.deaf -= 1;
+        train.heard.age += 1;
+        if train.heard.age > ground.life {
+            train.heard = Heard::STOP;
+        }
+        return;
+    }
+    if let Some(heard) = neighbour {
+        train.heard = heard;
+        return;
+    }
+    let circuit = train.front_circuit(ground);
+    let telegram = if circuit < ground.seen { device.telegram(circuit) } else { super::device::Telegram::default() };
+    // Where the telegram does not say which way it is for, a train takes it; unless the ground sees to it that only the right one hears it.
+    let ahead = || ahead(train, ground, points, train.to_joint() + 1);
+    let meant = match telegram.towards {
+        Some(next) => ahead() & next != 0,
+        None => !directed || ahead() & telegram.hold != 0,
+    };
+    train.heard = if telegram.hold != 0 && meant {
+        Heard {
+            limit: train.run + train.to_joint() + length(ground, telegram.hold),
+            speed: ground.codes[usize::from(telegram.code)],
+            hold: telegram.hold,
+            age: 0,
+            neighbour: false,
+        }
+    } else {
+        Heard::STOP
+    };
+}
+
+/// The circuits ahead of the front within `distance`, the first of them at least.
+pub fn ahead(train: &Train, ground: &Ground, points: &Points, distance: i64) -> Mask {
+    let (mut found, mut covered) = (0, train.to_joint());
+    let (mut piece, mut joint) = (train.front().piece, train.front().exit);
+    let here = bit(train.front_circuit(ground));
+    while covered < distance || found & !here == 0 {
+        let Some(next) = ground.across(joint, piece) else { break };
+        let reverse = ground.pieces[next].point.is_some_and(|point| points.lies(point));
+        found |= bit(ground.pieces[next].circuit);
+        covered += ground.pieces[next].length;
+        (joint, piece) = (ground.leave(next, joint, reverse).0, next);
+    }
+    found & !here
+}
+
+/// What the driver decides for the next cycle: how far the train may run. The authority is noted.
+pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: u64) -> i64 {
+    let told = train.heard;
+    let by_telegram = (told.limit - train.run).max(0);
+    let (distance, speed) = match train.driver {
+        Driver::Telegrams => {
+            train.authority =
+                if told.speed > 0 && by_telegram > 0 { ahead(train, ground, points, by_telegram) } else { 0 };
+            (by_telegram, told.speed)
+        }
+        Driver::Signals if told.neighbour => {
+            train.authority = ahead(train, ground, points, by_telegram);
+            (by_telegram, told.speed)
+        }
+        Driver::Signals => {
+            let sight = look(train, ground, points, proceed);
+            train.authority = sight.ahead;
+            (sight.distance, sight.speed)
+        }
+    };
+    train.target = train.run + distance;
+    let wanted = if train.slid { 0 } else { speed.min(train.pace).min(ground.fastest) };
+    // A driver stops a little before the limit, if he can.
+    let brakes = train.speed * train.speed / (2 * ground.brake);
+    let gap = train.gap.min((distance - brakes).max(0));
+    next_speed(train.speed, wanted, distance - gap - MARGIN_MM, ground.brake, ground.cycle_ms)
+}
+
+/// Looks ahead from signal to signal.
+fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight {
+    let front = train.front();
+    let here = train.front_circuit(ground);
+    let on_line = ground.lines.iter().any(|line| line.mask & bit(here) != 0);
+    let limits = train.legs.iter().map(|leg| leg.limit).min().unwrap_or(i64::MAX);
+    let mut sight = Sight { distance: train.to_joint(), speed: limits.min(ground.fastest), ahead: 0 };
+    let (mut piece, mut joint, mut route) = (front.piece, front.exit, train.route);
+    let at_signal =
+        |joint: usize, circuit: usize| ground.routes.iter().any(|route| route.start == joint && route.entry == circuit);
+    if on_line && !at_signal(joint, here) {
+        sight.speed = sight.speed.min(train.heard.speed);
+    }
+    while sight.distance < SIGHT_MM {
+        let circuit = ground.pieces[piece].circuit;
+        if at_signal(joint, circuit) {
+            let shown = |number: &usize| {
+                let it = &ground.routes[*number];
+                it.start == joint && it.entry == circuit && proceed >> number & 1 == 1 && it.approach & bit(here) != 0
+            };
+            match (0..ground.routes.len()).find(shown) {
+                Some(number) => route = Some(number),
+                None => return sight,
+            }
+        }
+        let Some(next) = ground.across(joint, piece) else { return sight };
+        let to = ground.pieces[next].circuit;
+        // Onto plain line, and off it where no signal stands, he keeps to the telegram.
+        let is_line = |circuit: usize| ground.lines.iter().any(|line| line.mask & bit(circuit) != 0);
+        let by_telegram = to >= ground.seen || is_line(to) || is_line(circuit) && !at_signal(joint, circuit);
+        if by_telegram && train.heard.hold & bit(to) == 0 {
+            return sight;
+        }
+        if route.is_some_and(|route| ground.routes[route].mask & bit(to) == 0) {
+            route = None;
+        }
+        let under = super::train::leg(ground, points, next, joint, route);
+        // v² ≤ limit² + 2·b·d: the limit ahead is kept.
+        let slow = under.limit.min(ground.fastest);
+        let reach = slow * slow + 2 * ground.brake * (sight.distance - 500).max(0);
+        sight.speed = sight.speed.min(root(reach));
+        sight.ahead |= bit(to);
+        sight.distance += under.length;
+        (piece, joint) = (next, under.exit);
+    }
+    sight
+}
+
+/// The square root, rounded down.
+fn root(square: i64) -> i64 {
+    square.max(0).isqrt()
+}

@@ -1,0 +1,27 @@
+//! An adversary: a closed loop of the device with trains, points and people on the ground that tries to cause an accident by legal
+//! input, and judges it on the ground.
+//!
+//! * [`ground`], [`train`], [`point`], [`driver`], [`neighbour`]: the truth, on millimetres, from the tracks of the layout file.
+//! * [`device`]: the only file that knows the kernel.
+//! * [`moves`], [`arsenal`], [`attacker`]: what the adversary may do, and how it draws that from a seed.
+//! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
+//! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
+//! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
+
+pub mod arsenal;
+pub mod attacker;
+pub mod conditions;
+pub mod device;
+pub mod dice;
+pub mod driver;
+pub mod ground;
+pub mod hunt;
+pub mod judge;
+pub mod known;
+pub mod moves;
+pub mod neighbour;
+pub mod point;
+pub mod stations;
+pub mod train;
+pub mod words;
+pub mod world;
