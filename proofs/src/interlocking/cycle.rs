@@ -367,6 +367,7 @@ harness! {
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Still: "no point is driven, no signal shows proceed and no route is held",
         Line: "no segment has a direction, and none is permitted to the neighbour",

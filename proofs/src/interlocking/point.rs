@@ -105,6 +105,7 @@ harness! {
     assumptions [];
     bound "1 route of up to 2 circuits, 32 circuits, 2 points, no segment";
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Stood: "proceed is shown only over points that have stood in position, undriven, for the settling time",
         Kept: "the machine counts no more cycles than have passed",

@@ -321,6 +321,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Behind: "a place that the route held and holds no more is behind the train's tail, if the train has entered or may still enter",
         Nothing: "a route that is withdrawn lets nobody in, before it is requested anew",
@@ -356,6 +357,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Stands: "an overlap that was held and is not any more has no train that may slide into it, or slid into it and has not left it",
     }
@@ -384,6 +386,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Holds: "the invariant of the train and the route",
         Valid: "and the train is one that there can be",
