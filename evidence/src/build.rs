@@ -32,6 +32,8 @@ pub struct Results {
     pub running: bool,
     /// The shards that these results were joined from.
     pub joined: Vec<String>,
+    /// When the results that an earlier run of this commit has found were found (its end, seconds since 1970); nothing if there are none.
+    pub kept_since: Option<u64>,
     /// The campaigns, run or imported.
     pub campaigns: Vec<Campaigned>,
     /// The mutants, and whether they belong to other sources.
@@ -112,6 +114,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, 
             shard: results.scope.shard().map(|shard| shard.to_string()),
             running: results.running,
             joined: results.joined,
+            kept_since: results.kept_since,
             phases: results.phases,
         },
         status: Status::default(),

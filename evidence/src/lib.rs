@@ -9,6 +9,7 @@
 //! reads what engines report, credits nothing that a report does not show, and never says more than its weakest part.
 #![forbid(unsafe_code)]
 
+pub mod again;
 pub mod argument;
 pub mod build;
 pub mod case;

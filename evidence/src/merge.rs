@@ -51,6 +51,7 @@ pub fn join(mut runs: Vec<(String, Results)>) -> Result<Results, Vec<Fault>> {
         tests: None,
         provenance: Provenance::default(),
         open: Vec::new(),
+        kept_since: None,
         phases: Vec::new(),
     };
     let mut from: BTreeMap<String, usize> = BTreeMap::new();
@@ -307,4 +308,4 @@ fn one_word<'a>(mut words: impl Iterator<Item = &'a str>) -> String {
 
 #[cfg(test)]
 #[path = "merge_tests.rs"]
-mod checks;
+pub(crate) mod checks;

@@ -43,7 +43,7 @@ fn mutant(name: &str, verdict: MutantVerdict) -> MutantResult {
     }
 }
 
-fn shard(
+pub(crate) fn shard(
     number: usize,
     of: usize,
     harnesses: &[(&str, Verdict)],
@@ -73,6 +73,7 @@ fn shard(
         tests: (number == 1).then(|| Run::Ran { suites: vec![], success: true }),
         provenance,
         open: vec![],
+        kept_since: None,
         phases: vec![],
     };
     (format!("shard-{number}"), results)

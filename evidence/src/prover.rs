@@ -4,6 +4,7 @@ use crate::error::Fault;
 use atc_proofs::Harness;
 use atc_prover::Options;
 use atc_prover::report::{Campaign, HarnessResult, MutantResult, Mutants};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
@@ -13,6 +14,11 @@ use std::time::Duration;
 /// A source cannot be read.
 pub fn sources(root: &Path) -> Result<String, Fault> {
     atc_prover::provenance::sources_sha256(root).map_err(|error| Fault::new(&root.display(), error))
+}
+
+/// The versions of the provers that are here; none, if they are not.
+pub fn versions(root: &Path) -> BTreeMap<String, String> {
+    atc_prover::tools::Tools::find(root).map(|tools| tools.versions).unwrap_or_default()
 }
 
 /// How the provers are run: so many at a time, each for so many seconds at most.

@@ -82,6 +82,7 @@ pub fn without(mut case: Case) -> Case {
     case.provenance.generated_unix = 0;
     case.run.phases.clear();
     case.run.joined.clear();
+    case.run.kept_since = None;
     for one in &mut case.evidence {
         one.seconds = 0.0;
         one.engines.iter_mut().for_each(|engine| engine.seconds = 0.0);

@@ -16,6 +16,8 @@ pub struct Run {
     pub running: bool,
     /// The shards that the case was joined from.
     pub joined: Vec<String>,
+    /// The end of the earlier run of this very commit from which results stand (seconds since 1970); nothing: all ran now.
+    pub kept_since: Option<u64>,
     /// Where the time went.
     pub phases: Vec<Phase>,
 }

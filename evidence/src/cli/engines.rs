@@ -3,7 +3,8 @@
 //! The cheap theorems come first, so that the page says something soon; then the models, as a cut set that nobody owns ends
 //! the run; then the wrong kernels, and what takes long.
 
-use super::Run;
+use super::{HERE, Run};
+use crate::again::{self, Kept};
 use crate::error::{Fault, read};
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::{self, Opinion};
@@ -34,9 +35,6 @@ const TESTS: &str = "tests";
 
 /// A theorem that takes more seconds than an ordinary one belongs to the second pass.
 const LONG: f64 = 1.5;
-/// What is credited to a run that was started here.
-const HERE: &str = "run here";
-
 type Items = Vec<(String, f64)>;
 
 /// The engines of a run, and what they are about.
@@ -57,6 +55,8 @@ pub struct Engines<'a> {
     pub jobs: usize,
     /// The hash of what the provers see.
     pub sources: &'a str,
+    /// What an earlier run has concluded.
+    pub kept: &'a Kept,
 }
 
 impl Engines<'_> {
@@ -70,7 +70,7 @@ impl Engines<'_> {
         let single = |name: &str, cost: f64| vec![(name.to_owned(), cost)];
         let mut works = Vec::new();
         if !self.options.no_native {
-            let all = self.harnesses(|_| true).into_iter();
+            let all = self.native_names().into_iter();
             works.push(work(NATIVE, all.map(|name| (name, costs.each.native)).collect()));
         }
         if !self.options.no_provers {
@@ -81,12 +81,16 @@ impl Engines<'_> {
             }
         }
         if !self.options.no_models {
-            works.push(work(MODELS, of("model", self.entries().iter().map(|entry| entry.name.to_owned()).collect())));
+            works.push(work(
+                MODELS,
+                of("model", self.entries("model").iter().map(|entry| entry.name.to_owned()).collect()),
+            ));
         }
         if self.measures() && !self.options.no_measurements && self.options.measurements.is_none() {
             works.push(work(MEASURED, single("waveform", costs.each.measured)));
         }
-        if self.chosen.tests != Tests::None && !self.options.no_tests && self.options.test_results.is_none() {
+        let tested = self.options.no_tests || self.options.test_results.is_some() || self.tests_stand();
+        if self.chosen.tests != Tests::None && !tested {
             works.push(work(TESTS, single("cargo test", costs.each.test)));
         }
         works
@@ -131,23 +135,40 @@ impl Engines<'_> {
         names
     }
 
+    /// Those of them of which an earlier run has no result of this kind.
+    fn open(&self, kind: &str, mut names: Vec<String>) -> Vec<String> {
+        names.retain(|name| !self.kept.has(&format!("{kind}:{name}")));
+        names
+    }
+
+    fn native_names(&self) -> Vec<String> {
+        self.open("native", self.harnesses(|_| true))
+    }
+
     fn pass(&self, long: bool) -> Vec<String> {
         let limit = LONG * self.plan.data.costs.each.harness;
-        self.harnesses(|cost| (cost > limit) == long)
+        self.open("harness", self.harnesses(|cost| (cost > limit) == long))
     }
 
     fn mutants(&self) -> Vec<String> {
-        self.chosen.names("mutant", self.plan.mutants.iter().map(|mutant| mutant.name.clone()))
+        self.open("mutant", self.chosen.names("mutant", self.plan.mutants.iter().map(|mutant| mutant.name.clone())))
     }
 
-    fn entries(&self) -> Vec<Entry> {
+    fn entries(&self, kind: &str) -> Vec<Entry> {
         let mut entries = atc_models::catalogue();
         entries.retain(|entry| self.chosen.has(&format!("model:{}", entry.name)));
+        entries.retain(|entry| !self.kept.has(&format!("{kind}:{}", entry.name)));
         entries
     }
 
     fn measures(&self) -> bool {
         measured::TARGETS.iter().any(|target| self.chosen.has(&measured::id(target.name)))
+            && !self.kept.has(again::MEASURED)
+    }
+
+    /// Whether an earlier run's tests stand. Those that are given are looked at in any case.
+    fn tests_stand(&self) -> bool {
+        self.kept.has(again::TESTS) && self.options.test_results.is_none()
     }
 
     /// One phase: its progress, and where its time went.
@@ -190,8 +211,11 @@ impl Engines<'_> {
     }
 
     fn native(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
-        let names = self.harnesses(|_| true);
+        let names = self.native_names();
         self.enter(live, "native", &[], None);
+        if names.is_empty() {
+            return Ok(());
+        }
         Self::phase(live, NATIVE, || {
             let mut items = Vec::new();
             for some in names.chunks(provers.jobs.max(1) * 4) {
@@ -230,13 +254,17 @@ impl Engines<'_> {
         Self::phase(live, MUTANTS, || {
             let provenance = self.empty("cbmc").campaign.provenance;
             let none = Mutants { schema: SCHEMA, provenance, mutants: Vec::new(), controls: Vec::new() };
-            live.with(|results| results.mutants = Some((none, false)));
-            let found = prover::mutants(provers, &names, &|result| {
+            let before = live.with(|results| results.mutants.get_or_insert((none, false)).0.clone());
+            let mut found = prover::mutants(provers, &names, &|result| {
                 live.progress.done(&result.name);
                 live.with(|results| results.mutants.iter_mut().for_each(|(all, _)| all.mutants.push(result.clone())));
             })?;
             let items = found.mutants.iter().map(|one| (one.name.clone(), one.seconds)).collect();
             let stale = found.provenance.sources_sha256 != self.sources;
+            let anew = |harness: &str| found.controls.iter().any(|control| control.harness == harness);
+            let controls: Vec<_> = before.controls.into_iter().filter(|old| !anew(&old.harness)).collect();
+            found.controls.extend(controls);
+            found.mutants.extend(before.mutants);
             live.with(|results| results.mutants = Some((found, stale)));
             Ok(items)
         })
@@ -244,14 +272,11 @@ impl Engines<'_> {
 
     /// Searches every model, one after the other, each with all cores; then asks another checker.
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
-        let entries = self.entries();
-        if entries.is_empty() {
-            return Ok(());
-        }
+        let entries = self.entries("model");
         let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
-        Self::phase(live, MODELS, || {
+        let searched = || {
             let mut items = Vec::new();
-            let mut outcomes = Vec::new();
+            let mut outcomes = live.with(|results| results.outcomes.clone());
             for entry in &entries {
                 live.progress.running(entry.name);
                 let outcome = atc_models::check_within(entry, self.jobs, limits);
@@ -263,7 +288,11 @@ impl Engines<'_> {
             let requirements: Vec<_> = self.plan.requirements.iter().map(|one| one.id.clone()).collect();
             faults::check(&outcomes, &self.plan.data.assumptions, &requirements)?;
             Ok::<_, Vec<Fault>>(items)
-        })?;
+        };
+        if !entries.is_empty() {
+            Self::phase(live, MODELS, searched)?;
+        }
+        let entries = self.entries("opinion");
         let names: Vec<_> = self.plan.models.iter().map(|model| model.name.clone()).collect();
         if !entries.iter().any(|entry| entry.twin.is_some()) {
             return Ok(());
@@ -271,13 +300,14 @@ impl Engines<'_> {
         Self::phase(live, SPIN, || {
             let said = |(_, one): &(atc_models::Outcome, atc_models::SecondOpinion)| live.progress.done(&one.model);
             let found: Vec<_> = opinions_on(&entries, self.jobs, said).into_iter().map(Opinion::from).collect();
-            second::check(&found, &names)?;
+            let before = live.with(|results| results.opinions.clone());
+            second::check(&[before, found.clone()].concat(), &names)?;
             let items = found.iter().map(|one| (one.model.clone(), one.seconds)).collect();
             live.with(|results| {
                 for one in found.iter().filter(|one| !one.version.is_empty()) {
                     results.provenance.tools.insert(one.tool.clone(), one.version.clone());
                 }
-                results.opinions = found;
+                results.opinions.extend(found);
             });
             Ok(items)
         })
@@ -308,6 +338,9 @@ impl Engines<'_> {
 
     fn suites(&self, live: &Live) -> Result<(), Fault> {
         let enter = |run: tests::Run| live.with(|results| results.tests = Some(run));
+        if self.tests_stand() {
+            return Ok(());
+        }
         if let Some(path) = &self.options.test_results {
             let text = read(path)?;
             // A record has no exit code: a failure in it is seen by its own lines.

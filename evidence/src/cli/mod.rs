@@ -15,6 +15,9 @@ use crate::station;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
+/// What is credited to a run that was started here.
+pub(crate) const HERE: &str = "run here";
+
 /// Exit code for a bad command line, configuration or source of the case.
 pub const USAGE: u8 = 2;
 
@@ -98,6 +101,9 @@ pub struct Run {
     /// Seconds that one harness or one model may take.
     #[arg(long, default_value_t = 600)]
     time_limit: u64,
+    /// Run everything, also what an earlier run in the same folder has found of the very same commit with the same tools.
+    #[arg(long)]
+    anew: bool,
     /// Do not run the provers.
     #[arg(long)]
     no_provers: bool,

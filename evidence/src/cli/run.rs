@@ -2,6 +2,7 @@
 
 use super::engines::Engines;
 use super::{Run, checkout, planned, required};
+use crate::again::{self, Kept};
 use crate::build::{Results, build};
 use crate::case::Provenance;
 use crate::error::{Fault, read};
@@ -10,7 +11,7 @@ use crate::inputs::provenance;
 use crate::live::Live;
 use crate::output::{Folder, PAGE};
 use crate::progress::Progress;
-use crate::scope::Chosen;
+use crate::scope::{Chosen, Scope};
 use crate::{prover, results, stale, terminal};
 use atc_prover::report::{Campaign, SCHEMA};
 use std::path::Path;
@@ -36,6 +37,8 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let before = provenance.clone();
 
     let out = options.out.clone().unwrap_or_else(|| root.join("target/safety-case"));
+    let versions = prover::versions(&root);
+    let kept = if options.anew { Kept::default() } else { again::kept(&out, &provenance, &scope, &versions) };
     let folder = Folder::begin(&out).map_err(one)?;
     let jobs = options.jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)).max(1);
     let engines = Engines {
@@ -47,9 +50,13 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         folder: &folder,
         jobs,
         sources: &sources,
+        kept: &kept,
     };
+    if kept.len() > 0 {
+        eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.len());
+    }
     let progress = Progress::new(engines.works(), jobs);
-    let nothing = Results { scope: scope.clone(), campaigns, ..nothing(provenance) };
+    let nothing = beginning(nothing(provenance), &scope, &kept, campaigns);
     let live = Live::begin(&plan, required(options.require), &folder, progress, nothing).map_err(one)?;
     eprintln!("the page, incomplete until the end: {}", out.join(PAGE).display());
     ticking(&live, || engines.run(&live))?;
@@ -76,9 +83,10 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
 /// Results that say nothing yet.
 fn nothing(provenance: Provenance) -> Results {
     Results {
-        scope: crate::scope::Scope::Whole,
+        scope: Scope::Whole,
         running: true,
         joined: Vec::new(),
+        kept_since: None,
         campaigns: Vec::new(),
         mutants: None,
         outcomes: Vec::new(),
@@ -90,6 +98,20 @@ fn nothing(provenance: Provenance) -> Results {
         open: Vec::new(),
         phases: Vec::new(),
     }
+}
+
+/// The results at the start of a run: what stands of an earlier one, and what was imported.
+fn beginning(nothing: Results, scope: &Scope, kept: &Kept, imported: Vec<Campaigned>) -> Results {
+    let mut first = Results { scope: scope.clone(), ..nothing };
+    if let Some(old) = kept.results.clone() {
+        first.provenance.tools.extend(old.provenance.tools);
+        first.provenance.flags = old.provenance.flags;
+        let kept_since = Some(old.kept_since.unwrap_or(old.provenance.generated_unix));
+        let Results { campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, .. } = old;
+        first = Results { campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, kept_since, ..first };
+    }
+    first.campaigns.extend(imported);
+    first
 }
 
 /// Does the work while line and page are kept up to date beside it.

@@ -84,6 +84,9 @@ pub fn ending(case: &Case) -> Markup {
             dt { "Aspects in sized harnesses" } dd { (provenance.aspects) }
             dt { "Required" } dd { (case.status.required.as_deref().unwrap_or("nothing beyond no defect")) }
             dt { "Exit code" } dd { (case.status.exit_code) }
+            @if let Some(since) = case.run.kept_since {
+                dt { "Not run again" } dd { "results of an earlier run of this commit, from " (date(since)) }
+            }
             @if !case.run.joined.is_empty() { dt { "Joined from" } dd { (case.run.joined.join(", ")) } }
         }
         (super::times::render(&case.run))

@@ -21,15 +21,25 @@ kill -s KILL "$watch" 2>/dev/null
 exit "$status"
 "#;
 
+/// What else to ask of `cargo build`, so that what the tests have built is not built again: with a test in the selection, the
+/// dependencies have the same features as there. It is the smallest of the tests.
+pub const AS_IN_TESTS: [&str; 4] = ["--locked", "--workspace", "--test", "contracts"];
+
 /// Cargo at `root`, without an input; to be run by [`status`]. It builds into `root/target`, whatever the environment or a configuration file names: in a
 /// folder that checkouts share, Cargo can take a binary of one for that of another, and its results would be credited to these
 /// sources.
 pub fn command(root: &Path) -> Command {
-    let mut command = Command::new("sh");
-    command.args(["-c", GUARD, "sh"]).arg(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = guarded(root, Path::new(&std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())));
     let target = root.join("target");
     // The second is where newer versions put everything but what is asked for: test binaries as well.
     command.env("CARGO_TARGET_DIR", &target).env("CARGO_BUILD_BUILD_DIR", &target);
+    command
+}
+
+/// A program at `root`, without an input; to be run by [`status`].
+pub fn guarded(root: &Path, program: &Path) -> Command {
+    let mut command = Command::new("sh");
+    command.args(["-c", GUARD, "sh"]).arg(program);
     command.current_dir(root).stdin(Stdio::piped()).process_group(0);
     command
 }

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 /// The waveform package, as an engine.
 pub const ENGINE: &str = "waveform";
 const WHAT: &str = "generator, channel, receivers and the track as a line, in floating point, outside the kernel";
-const COMMAND: &str = "cargo run --release -p atc-waveform --bin waveform -- bench --quick --out FOLDER";
+const COMMAND: &str = "cargo run -p atc-waveform --bin waveform -- bench --quick --out FOLDER";
 
 /// The source of a run that was started here, on these sources.
 pub const HERE: &str = "run here";
@@ -100,16 +100,15 @@ pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -
     if let Err(error) = fs::create_dir_all(folder) {
         return Run::Failed(format!("{}: {error}", folder.display()));
     }
-    let logged = |log: &Path| -> std::io::Result<Command> {
+    let logged = |log: &Path, mut command: Command| -> std::io::Result<Command> {
         let file = File::create(log)?;
-        let mut command = cargo::command(root);
         command.stdout(file.try_clone()?).stderr(file);
         watch(log);
         Ok(command)
     };
-    let package = ["--release", "--color=never", "--package", "atc-waveform", "--bin", "waveform"];
-    let built = logged(&folder.join("build.log"))
-        .and_then(|mut command| cargo::status(command.arg("build").args(package), None));
+    let package = ["--color=never", "--bin", "waveform"];
+    let built = logged(&folder.join("build.log"), cargo::command(root))
+        .and_then(|mut command| cargo::status(command.arg("build").args(package).args(cargo::AS_IN_TESTS), None));
     match built {
         Err(error) => return Run::NotRun(format!("cargo cannot be started: {error}")),
         Ok(status) if !status.is_some_and(|status| status.success()) => {
@@ -119,8 +118,9 @@ pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -
     }
     let log = folder.join("bench.log");
     let start = Instant::now();
-    let ended = logged(&log).and_then(|mut command| {
-        command.args(["run", "--quiet"]).args(package).args(["--", "bench", "--quick", "--out"]).arg(folder);
+    let program = root.join("target/debug/waveform");
+    let ended = logged(&log, cargo::guarded(root, &program)).and_then(|mut command| {
+        command.args(["bench", "--quick", "--out"]).arg(folder);
         cargo::status(&mut command, Some(limit))
     });
     match ended {

@@ -20,7 +20,7 @@ pub mod report;
 mod schemata;
 pub mod selftest;
 mod together;
-mod tools;
+pub mod tools;
 pub mod traps;
 mod twin;
 pub mod unwound;

@@ -3,6 +3,7 @@
 use nix::fcntl::{Flock, FlockArg};
 use std::collections::BTreeSet;
 use std::fs::File;
+use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -35,7 +36,10 @@ fn end_group(group: i32) {
     let _ = nix::sys::signal::killpg(nix::unistd::Pid::from_raw(group), nix::sys::signal::Signal::SIGKILL);
 }
 
-/// The folder of the proofs, for one run at a time: another run that wants it waits.
+/// What ran, each with its CPU time and its end: for whoever wants to know where the time goes.
+static LEDGER: Mutex<Option<File>> = Mutex::new(None);
+
+/// The folder of the proofs, for one run at a time: another run that wants it waits. What runs is listed there in `runs.tsv`.
 ///
 /// # Errors
 /// The folder cannot be made, or the system has no locks.
@@ -43,7 +47,10 @@ pub fn only_run(folder: &Path) -> Result<Flock<File>, String> {
     let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
     std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
     let file = File::create(folder.join("lock")).map_err(|error| failed(&error))?;
-    Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| failed(&error))
+    let lock = Flock::lock(file, FlockArg::LockExclusive).map_err(|(_, error)| failed(&error))?;
+    let ledger = File::options().create(true).append(true).open(folder.join("runs.tsv"));
+    *LEDGER.lock().unwrap_or_else(PoisonError::into_inner) = Some(ledger.map_err(|error| failed(&error))?);
+    Ok(lock)
 }
 
 /// How a program ended.
@@ -180,6 +187,10 @@ pub fn run(job: &Job) -> Result<(End, Duration), String> {
         // The shell's word for a signal.
         (Some(status), _) => status.code().filter(|code| *code <= 128).map_or(End::Killed, End::Code),
     };
+    if let Some(ledger) = LEDGER.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+        // It is there to be read by people: no run fails for it.
+        let _ = writeln!(ledger, "{}\t{:.2}\t{end:?}", job.output.display(), took.unwrap_or_default().as_secs_f64());
+    }
     Ok((end, took.unwrap_or_default()))
 }
 

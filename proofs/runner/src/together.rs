@@ -57,16 +57,15 @@ const SIZE: usize = 8;
 enum Way {
     /// All of them in one question.
     Together,
-    /// Each alone, and not for long.
-    Quick,
+    /// Each alone, and for no longer than this.
+    Brief(Duration),
     /// Each alone, until there is an answer.
     Whole,
 }
 
-const WAYS: [Way; 3] = [Way::Together, Way::Quick, Way::Whole];
-
-/// CPU time for a mutant in a case in which it may not fail at all.
-const QUICK: Duration = Duration::from_secs(12);
+/// A mutant may not fail at all in some case, and that takes long to find out: so every case is asked before any is asked for longer.
+const WAYS: [Way; 4] =
+    [Way::Together, Way::Brief(Duration::from_secs(12)), Way::Brief(Duration::from_secs(50)), Way::Whole];
 
 /// Bytes of the stack: what may be chosen keeps more in memory. (Were it too small, paths would end there and mutants survive.)
 const ROOM: u32 = 2 * STACK;
@@ -259,7 +258,7 @@ impl<'a> Asked<'a> {
                 left.retain(|number| !found.contains_key(number) && !judged.contains_key(number));
                 let groups: Vec<BTreeSet<usize>> = match way {
                     Way::Together => vec![left.clone()],
-                    Way::Quick | Way::Whole => left.iter().map(|number| BTreeSet::from([*number])).collect(),
+                    Way::Brief(_) | Way::Whole => left.iter().map(|number| BTreeSet::from([*number])).collect(),
                 };
                 if left.is_empty() {
                     break 'asking;
@@ -302,9 +301,9 @@ impl<'a> Asked<'a> {
         question.only = numbers.first().copied().filter(|_| numbers.len() == 1);
         let answer = match way {
             Way::Whole => ask_in_turn(self.tools, &self.folder, &question, (!slow).then_some(FIRST)),
-            Way::Together | Way::Quick => {
+            Way::Together | Way::Brief(_) => {
                 let solver = if slow { question.solver.at_once(self.tools) } else { question.solver };
-                let most = if way == Way::Together { TOGETHER } else { QUICK };
+                let most = if let Way::Brief(most) = way { most } else { TOGETHER };
                 let limit = question.limit.min(if slow { most * 4 } else { most });
                 cbmc::ask(self.tools, &self.folder, &Question { solver, limit, ..question })
             }
