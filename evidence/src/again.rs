@@ -29,7 +29,7 @@ impl Kept {
     }
 
     /// How many entries are.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.ids.len()
     }
 }
@@ -123,7 +123,7 @@ mod checks {
         let old = found();
         write(folder.path(), &old);
         let kept = again(folder.path(), &old);
-        assert!(["harness:holds", "mutant:m", super::TESTS].iter().all(|id| kept.has(id)) && kept.len() == 3);
+        assert!(["harness:holds", "mutant:m", super::TESTS].iter().all(|id| kept.has(id)) && kept.count() == 3);
         let left = kept.results.expect("kept");
         assert_eq!(left.campaigns[0].campaign.harnesses.len(), 1, "what had no answer is asked again");
     }
@@ -132,7 +132,7 @@ mod checks {
     fn nothing_stands_for_anything_else() {
         let folder = tempfile::tempdir().expect("a folder");
         let old = found();
-        assert_eq!(again(folder.path(), &old).len(), 0, "there is no earlier run");
+        assert_eq!(again(folder.path(), &old).count(), 0, "there is no earlier run");
         write(folder.path(), &old);
         let changes: [fn(&mut Results); 8] = [
             |now| now.provenance.commit = Some("another".to_owned()),
@@ -147,10 +147,10 @@ mod checks {
         for (number, change) in changes.into_iter().enumerate() {
             let mut now = old.clone();
             change(&mut now);
-            assert_eq!(again(folder.path(), &now).len(), 0, "change {number}");
+            assert_eq!(again(folder.path(), &now).count(), 0, "change {number}");
         }
         let text = std::fs::read_to_string(folder.path().join(results::FILE)).expect("read");
         std::fs::write(folder.path().join(results::FILE), text.replace("failed", "proved") + " ").expect("written");
-        assert_eq!(again(folder.path(), &old).len(), 0, "not what the run has written");
+        assert_eq!(again(folder.path(), &old).count(), 0, "not what the run has written");
     }
 }

@@ -52,8 +52,8 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         sources: &sources,
         kept: &kept,
     };
-    if kept.len() > 0 {
-        eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.len());
+    if kept.count() > 0 {
+        eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.count());
     }
     let progress = Progress::new(engines.works(), jobs);
     let nothing = beginning(nothing(provenance), &scope, &kept, campaigns);
@@ -108,7 +108,7 @@ fn beginning(nothing: Results, scope: &Scope, kept: &Kept, imported: Vec<Campaig
         first.provenance.flags = old.provenance.flags;
         let kept_since = Some(old.kept_since.unwrap_or(old.provenance.generated_unix));
         let Results { campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, .. } = old;
-        first = Results { campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, kept_since, ..first };
+        first = Results { kept_since, campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, ..first };
     }
     first.campaigns.extend(imported);
     first
