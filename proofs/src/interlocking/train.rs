@@ -318,7 +318,7 @@ harness! {
     t_ilk_train_release(e)
     theorem "T-ILK-10";
     requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-21", "ILK-22"];
-    assumptions [];
+    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -354,7 +354,7 @@ harness! {
     t_ilk_train_overlap(e)
     theorem "T-ILK-10";
     requirements ["ILK-14"];
-    assumptions [];
+    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -383,7 +383,7 @@ harness! {
     t_ilk_train(e)
     theorem "T-ILK-10";
     requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-14", "ILK-21", "ILK-22"];
-    assumptions [];
+    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
