@@ -50,9 +50,11 @@ pub struct Compiled {
 /// Which kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// As its sources are.
+    /// As its sources are, and the harnesses as large as they say.
     AsItIs,
-    /// With mutants in it, of which one can be selected at run time.
+    /// A wrong one, and the harnesses smaller: what a small one rejects, a large one does.
+    Wrong,
+    /// With wrong ones in it, of which one can be selected at run time, and the harnesses smaller.
     WithMutants,
 }
 
@@ -114,6 +116,9 @@ pub fn compile(
         // Where the kernel's own dependency is looked for.
         format!("-Ldependency={}", folder.display()),
     ];
+    if mutants != Kernel::AsItIs {
+        options.push("--cfg=small".to_owned());
+    }
     if mutants == Kernel::WithMutants {
         options.push("--cfg=mutants".to_owned());
     }

@@ -57,7 +57,7 @@ fn soundness_names_every_trap_and_no_other_and_every_guard_has_a_test() {
 
 /// What Kani does not check of itself (issues 4294 and 4282): a contract in place of a function, and a quantifier.
 #[test]
-fn no_contract_is_believed_and_no_quantifier_is_used() {
+fn no_contract_is_believed_no_quantifier_is_used_and_no_part_is_smaller() {
     let mut folders: Vec<PathBuf> = ["kernel/src", "proofs/src"].map(|folder| root().join(folder)).into();
     let mut seen = 0;
     while let Some(folder) = folders.pop() {
@@ -68,7 +68,9 @@ fn no_contract_is_believed_and_no_quantifier_is_used() {
                 continue;
             }
             let text = fs::read_to_string(&path).unwrap();
-            let found = ["stub_verified", "kani::forall", "kani::exists"].iter().find(|word| text.contains(**word));
+            // Nor is a harness smaller when it is compiled in a part of them: `small` is for wrong kernels only.
+            let words = ["stub_verified", "kani::forall", "kani::exists", "cfg!(chosen", "cfg!(any(chosen"];
+            let found = words.iter().find(|word| text.contains(**word));
             assert_eq!(found, None, "{}", path.display());
             seen += 1;
         }
