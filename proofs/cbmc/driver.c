@@ -2,7 +2,6 @@
 
    -DHARNESS=name      the exported function to run
    -DCASE=n -DCASES=m  the case to prove, of a harness that is split into cases
-   -DMEMORY=bytes      linear memory: the stack and the constant data, a multiple of 4
    -DREACH             replaces every claim by false: each one that can be reached must then FAIL
    -DBOTH              asks both in one run: beside each claim, `reach` of its number is such a false one
    -DMUTANTS           the code has mutants in it, and `mutants.h` lists those to ask for: MUTANTS(M) is M(number) for each. One of them
@@ -12,6 +11,8 @@
    -DTRAPS             with -DMUTANTS: a panic is as good as a claim that fails
    -DNATIVE            no CBMC: a program that prints what happens. Each line of its input is a run: the number of a mutant (0: none),
                        the case, and the arbitrary values in order
+
+   MEMORY is bytes of linear memory, a multiple of 4: the stack and the data. `harness.h` says it.
 
    Claims and cover points have numbers; each number is an assertion of its own, so that it has a verdict of its own.
    A trap (panic, overflow check, index out of bounds, division by zero, unreachable) is an assertion too.

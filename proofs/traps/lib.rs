@@ -12,6 +12,7 @@ mod cells;
 mod constants;
 mod division;
 mod exits;
+mod lowest;
 mod missing;
 mod overflow;
 mod products;

@@ -22,7 +22,7 @@ pub fn attempt(
     let sources = folder.join("sources");
     copy(root, &sources)?;
     write(&sources.join(mutant.path()), &changed(root, mutant)?)?;
-    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by, Kernel::AsItIs)?;
+    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by, Kernel::Wrong)?;
     let judge = |harness: &'static atc_proofs::Harness| {
         let asked = Asked::new(tools, &compiled, harness, options);
         // Nothing can be selected: it is what it is.

@@ -1,6 +1,5 @@
 //! One run of CBMC, and what it says.
 
-use crate::compile::STACK;
 use crate::process::{End, Job, Limits, run};
 use crate::tools::Tools;
 use serde::Deserialize;
@@ -30,7 +29,7 @@ pub const PROOF: &str = "--unwinding-assertions";
 /// How long [`Solver::Auto`] waits for the first solver.
 pub const FIRST: Duration = Duration::from_secs(20);
 
-/// Bytes of constant data that a harness may have.
+/// Bytes of constant data that a harness may have: a loop loads them, and is unwound as far.
 const DATA: u32 = 768;
 
 /// Which solver.
@@ -47,10 +46,12 @@ pub enum Solver {
 }
 
 impl Solver {
-    fn options(self, tools: &Tools) -> Vec<String> {
+    fn options(self, tools: &Tools, ask: Ask) -> Vec<String> {
+        // What holds has no counterexample, which is what this way of searching is for: a quarter less time.
+        let way = if matches!(ask, Ask::Proof | Ask::Control) { "--unsat" } else { "--default" };
         match self {
             Self::Auto | Self::Minisat => vec!["--sat-solver".to_owned(), "minisat2".to_owned()],
-            Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.guarded("kissat")],
+            Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.guarded("kissat", way)],
             Self::Z3 => vec!["--smt2".to_owned(), "--z3".to_owned()],
         }
     }
@@ -105,8 +106,6 @@ pub struct Question<'a> {
     pub case: (usize, usize),
     /// What of it.
     pub ask: Ask,
-    /// Bytes of the stack.
-    pub stack: u32,
     /// Which solver.
     pub solver: Solver,
     /// CPU time, for each run.
@@ -118,7 +117,7 @@ pub struct Question<'a> {
 impl<'a> Question<'a> {
     /// Does every claim of `harness` hold?
     pub fn proof(harness: &'a str, solver: Solver, limit: Duration) -> Self {
-        Self { harness, case: (0, 1), ask: Ask::Proof, stack: STACK, solver, limit, only: None }
+        Self { harness, case: (0, 1), ask: Ask::Proof, solver, limit, only: None }
     }
 }
 
@@ -242,7 +241,6 @@ pub fn defines(question: &Question) -> Vec<String> {
         format!("-DHARNESS={}", question.harness),
         format!("-DCASE={case}"),
         format!("-DCASES={cases}"),
-        format!("-DMEMORY={}", question.stack + DATA),
         "-DWASM_RT_USE_MMAP=0".to_owned(),
         "-DWASM_RT_NONCONFORMING_UNCHECKED_STACK_EXHAUSTION=1".to_owned(),
     ]
@@ -290,7 +288,7 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
     arguments.extend(more.iter().chain(&CBMC).map(ToString::to_string));
     arguments.extend(question.only.map(|number| format!("-DONLY={number}")));
     arguments.extend(values.then(|| "--trace".to_owned()));
-    arguments.extend(question.solver.options(tools));
+    arguments.extend(question.solver.options(tools, question.ask));
     let output = folder.join(format!("cbmc-{case}{name}.json"));
     let limits = Limits { cpu: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");

@@ -1,8 +1,8 @@
 //! From harness to C: rustc → wasm-ld → wasm2c.
 
-use crate::joins::{JOINED, no_crossing};
 use crate::loops::one_way_back;
 use crate::process::{End, Job, Limits, run};
+use crate::regions::apart;
 use crate::tools::Tools;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -23,11 +23,18 @@ pub const RUSTC: [&str; 8] = [
 /// The kernel and its arithmetic are only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
 const KERNEL: [&str; 2] = ["--crate-type=rlib", "-Clinker-plugin-lto"];
 
-/// Bytes of the stack in linear memory. A harness that needs more traps out of bounds.
-pub const STACK: u32 = 2048;
+/// Bytes of the stack in linear memory where it is not known what is needed. A harness that needs more traps out of bounds.
+const STACK: u32 = 4096;
 
-const LINK: [&str; 6] =
-    ["--no-entry", "--gc-sections", "--stack-first", "--initial-memory=65536", "--import-undefined", "--strip-debug"];
+const LINK: [&str; 7] = [
+    "--no-entry",
+    "--gc-sections",
+    "--stack-first",
+    "--initial-memory=65536",
+    "--import-undefined",
+    "--strip-debug",
+    "--export=__data_end",
+];
 
 const DRIVER: &str = include_str!("../../cbmc/driver.c");
 
@@ -43,9 +50,11 @@ pub struct Compiled {
 /// Which kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// As its sources are.
+    /// As its sources are, and the harnesses as large as they say.
     AsItIs,
-    /// With mutants in it, of which one can be selected at run time.
+    /// A wrong one, and the harnesses smaller: what a small one rejects, a large one does.
+    Wrong,
+    /// With wrong ones in it, of which one can be selected at run time, and the harnesses smaller.
     WithMutants,
 }
 
@@ -107,6 +116,9 @@ pub fn compile(
         // Where the kernel's own dependency is looked for.
         format!("-Ldependency={}", folder.display()),
     ];
+    if mutants != Kernel::AsItIs {
+        options.push("--cfg=small".to_owned());
+    }
     if mutants == Kernel::WithMutants {
         options.push("--cfg=mutants".to_owned());
     }
@@ -131,41 +143,73 @@ pub fn compile_one(tools: &Tools, source: &Path, folder: &Path) -> Result<Compil
 }
 
 impl Compiled {
-    /// Links the harness `name` alone and turns it into C. Returns the folder with `harness.c` and `harness.h`.
+    /// Links the harness `name` alone and turns it into C. Its stack has `stack` bytes, or as many as its frames need. Returns the folder with
+    /// `harness.c` and `harness.h`, which says how much memory there is.
     ///
     /// # Errors
     /// What the linker or wasm2c said.
-    pub fn to_c(&self, tools: &Tools, name: &str, stack: u32) -> Result<PathBuf, String> {
+    pub fn to_c(&self, tools: &Tools, name: &str, stack: Option<u32>) -> Result<PathBuf, String> {
         let folder = self.folder.join(name);
         fresh(&folder)?;
-        let wasm = folder.join("harness.wasm");
-        let mut link: Vec<String> = LINK.iter().map(ToString::to_string).collect();
-        link.extend([format!("--export={name}"), format!("-zstack-size={stack}"), "-o".to_owned()]);
-        link.extend([wasm.display().to_string(), self.library.display().to_string()]);
-        tool(tools, "wasm-ld", &link, &[], &folder)?;
-        let source = folder.join("harness.c");
-        let convert = [
-            "-n".to_owned(),
-            "h".to_owned(),
-            wasm.display().to_string(),
-            "-o".to_owned(),
-            source.display().to_string(),
-        ];
-        tool(tools, "wasm2c", &convert, &[], &folder)?;
-        let text = std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))?;
+        let mut text = self.linked(tools, name, &folder, stack.unwrap_or(STACK))?;
+        if let Some(needed) = frames(&text).filter(|_| stack.is_none()) {
+            text = self.linked(tools, name, &folder, needed)?;
+        }
+        let memory = memory(&text)?;
+        let header = folder.join("harness.h");
+        let declared = std::fs::read_to_string(&header).map_err(|error| format!("{}: {error}", header.display()))?;
+        write(&header, &with_memory(declared, memory))?;
         let original = one_way_back(&without_accessors(&text)?)?;
         write(&folder.join("original.c"), &original)?;
-        let text = if JOINED.contains(&name) { no_crossing(&original)? } else { original };
-        write(&source, &text)?;
+        write(&folder.join("harness.c"), &apart(&original)?)?;
         write(&folder.join("driver.c"), DRIVER)?;
         Ok(folder)
     }
+
+    /// The C of the harness `name` with so many bytes of stack, as wasm2c writes it.
+    fn linked(&self, tools: &Tools, name: &str, folder: &Path, stack: u32) -> Result<String, String> {
+        let (wasm, source) = (folder.join("harness.wasm"), folder.join("harness.c"));
+        let mut link: Vec<String> = LINK.iter().map(ToString::to_string).collect();
+        link.extend([format!("--export={name}"), format!("-zstack-size={stack}"), "-o".to_owned()]);
+        link.extend([wasm.display().to_string(), self.library.display().to_string()]);
+        tool(tools, "wasm-ld", &link, &[], folder)?;
+        let convert =
+            ["-n", "h", &wasm.display().to_string(), "-o", &source.display().to_string()].map(ToOwned::to_owned);
+        tool(tools, "wasm2c", &convert, &[], folder)?;
+        std::fs::read_to_string(&source).map_err(|error| format!("{}: {error}", source.display()))
+    }
 }
 
-/// Puts C that was written by hand where that of a harness would be.
-pub(crate) fn write_c(folder: &Path, header: &str) -> Result<(), String> {
+/// Bytes of stack for the frames of all functions: none calls itself. `None` if a frame is taken in a way that is not known here.
+fn frames(text: &str) -> Option<u32> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let taken = |place: usize| {
+        let [_, size, minus, ..] = lines.get(place..)? else { return None };
+        let size = size.strip_prefix("var_i1 = ")?.strip_suffix("u;")?;
+        (*minus == "var_i0 -= var_i1;").then(|| size.parse::<u32>().ok())?
+    };
+    let read = lines.iter().enumerate().filter(|(_, line)| line.contains("= instance->w2c_0x5F_stack_pointer;"));
+    let needed = read.map(|(place, _)| taken(place)).sum::<Option<u32>>()?;
+    // Nothing is at address 0: that would be nowhere.
+    Some((needed + 1).next_multiple_of(16))
+}
+
+/// Bytes of linear memory that are in use, stack and data, in whole words. The linker puts the stack first and says where the data end.
+fn memory(text: &str) -> Result<u32, String> {
+    let end =
+        text.lines().find_map(|line| line.trim().strip_prefix("instance->w2c_0x5F_data_end = ")?.strip_suffix("u;"));
+    let end = end.and_then(|end| end.parse::<u32>().ok());
+    end.map(|end| end.next_multiple_of(4)).ok_or_else(|| "the C does not say where its data end".to_owned())
+}
+
+fn with_memory(header: String, bytes: u32) -> String {
+    header + &format!("\n#define MEMORY {bytes}\n")
+}
+
+/// Puts C that was written by hand where that of a harness would be, with so many bytes of memory.
+pub(crate) fn write_c(folder: &Path, header: &str, memory: u32) -> Result<(), String> {
     fresh(folder)?;
-    write(&folder.join("harness.h"), header)?;
+    write(&folder.join("harness.h"), &with_memory(header.to_owned(), memory))?;
     write(&folder.join("harness.c"), "")?;
     write(&folder.join("driver.c"), DRIVER)
 }

@@ -3,7 +3,7 @@
 
 use crate::campaign::{HARD, Options, in_parallel};
 use crate::cbmc::{self, Ask, Question, Silence, ask_in_turn};
-use crate::compile::{Compiled, Kernel, STACK, compile, copy, write};
+use crate::compile::{Compiled, Kernel, compile, copy, write};
 use crate::control::is_smaller;
 use crate::mutants::{FIRST, Mutant, SLOW};
 use crate::report::{Control, Kill};
@@ -66,12 +66,6 @@ enum Way {
 /// A mutant may not fail at all in some case, and that takes long to find out: so every case is asked before any is asked for longer.
 const WAYS: [Way; 4] =
     [Way::Together, Way::Brief(Duration::from_secs(12)), Way::Brief(Duration::from_secs(50)), Way::Whole];
-
-/// Bytes of the stack: what may be chosen keeps more in memory. (Were it too small, paths would end there and mutants survive.)
-const ROOM: u32 = 2 * STACK;
-
-/// Bytes for the selectors of a group.
-const SELECTORS: u32 = 512;
 
 /// CPU time for mutants that are asked for together. It is there for many answers at once, not for hard ones.
 const TOGETHER: Duration = Duration::from_secs(30);
@@ -214,12 +208,12 @@ impl<'a> Asked<'a> {
         harness: &'static Harness,
         options: &'a Options,
     ) -> Result<Self, String> {
-        Ok(Self { tools, folder: compiled.to_c(tools, harness.name, ROOM)?, harness, options })
+        Ok(Self { tools, folder: compiled.to_c(tools, harness.name, None)?, harness, options })
     }
 
     fn question(&self, case: usize, ask: Ask) -> Question<'static> {
         let question = Question::proof(self.harness.name, self.options.solver, self.options.limit);
-        Question { case: (case, self.harness.cases), ask, stack: ROOM + SELECTORS, ..question }
+        Question { case: (case, self.harness.cases), ask, ..question }
     }
 
     fn list(&self, numbers: impl IntoIterator<Item = usize>) -> Result<(), String> {

@@ -42,14 +42,16 @@ impl Tools {
         Ok(Self { bin: provers.join("bin"), include: provers.join("include"), versions })
     }
 
-    /// A wrapper of the solver `tool` that ends with the runner. Written when it is first asked for.
-    pub fn guarded(&self, tool: &str) -> String {
-        let script = self.bin.join(format!("guarded-{tool}"));
-        let text = SOLVER.replacen('\n', &format!("\nsolver='{}'\n", self.path(tool).display()), 1);
+    /// A wrapper of the solver `tool` with an option of it, that ends with the runner. Written when it is first asked for.
+    pub fn guarded(&self, tool: &str, option: &str) -> String {
+        let name = format!("guarded-{tool}{option}");
+        let script = self.bin.join(&name);
+        let head = format!("\nsolver='{}'\nset -- {option} \"$@\"\n", self.path(tool).display());
+        let text = SOLVER.replacen('\n', &head, 1);
         if std::fs::read_to_string(&script).is_ok_and(|known| known == text) {
             return script.display().to_string();
         }
-        let part = self.bin.join(format!("guarded-{tool}.{:?}", std::thread::current().id()));
+        let part = self.bin.join(format!("{name}.{:?}", std::thread::current().id()));
         let written = std::fs::write(&part, text)
             .and_then(|()| std::fs::set_permissions(&part, std::fs::Permissions::from_mode(0o755)))
             .and_then(|()| std::fs::rename(&part, &script));

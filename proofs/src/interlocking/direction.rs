@@ -4,8 +4,8 @@ use super::{any_input, any_layout, any_state};
 use atc_kernel::interlocking::{Layout, Phase, Request, State, Travel};
 
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
-const ROUTES: usize = if cfg!(chosen) { 1 } else { 2 };
-const PATH: usize = if cfg!(chosen) { 2 } else { 4 };
+const ROUTES: usize = if cfg!(small) { 1 } else { 2 };
+const PATH: usize = if cfg!(small) { 2 } else { 4 };
 const SEGMENTS: usize = 2;
 
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 2 segments of up to 4 circuits";

@@ -29,7 +29,7 @@ use atc_kernel::time::Ticks;
 /// `ATC_PLACES` says otherwise (1 to 16); 4 for a wrong kernel: what a short path rejects, a long one does.
 pub const PLACES: usize = match option_env!("ATC_PLACES") {
     Some(number) => crate::harness::decimal(number),
-    None if cfg!(chosen) => 4,
+    None if cfg!(small) => 4,
     None => 16,
 };
 
@@ -37,7 +37,7 @@ pub const PLACES: usize = match option_env!("ATC_PLACES") {
 /// 2 for a wrong kernel.
 pub const PATH: usize = match option_env!("ATC_PATH") {
     Some(number) => crate::harness::decimal(number),
-    None if cfg!(chosen) => 2,
+    None if cfg!(small) => 2,
     None => 4,
 };
 

@@ -6,8 +6,8 @@ use atc_kernel::interlocking::{Phase, Position, Request};
 
 const ROUTES: usize = 2;
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
-const PATH: usize = if cfg!(chosen) { 2 } else { 4 };
-const POINTS: usize = if cfg!(chosen) { 2 } else { 16 };
+const PATH: usize = if cfg!(small) { 2 } else { 4 };
+const POINTS: usize = if cfg!(small) { 2 } else { 16 };
 
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 16 points, no segment";
 

@@ -4,8 +4,8 @@ use super::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
 use atc_kernel::interlocking::{Layout, MAX_CIRCUITS, SpeedCode, State, Works};
 
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
-const ROUTES: usize = if cfg!(chosen) { 1 } else { 2 };
-const PATH: usize = if cfg!(chosen) { 2 } else { 4 };
+const ROUTES: usize = if cfg!(small) { 1 } else { 2 };
+const PATH: usize = if cfg!(small) { 2 } else { 4 };
 
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 1 segment of up to 4 circuits";
 

@@ -29,9 +29,8 @@ pub struct Trap {
     /// About CBMC alone: neither the driver nor the rewriting of wasm2c's C is in the way.
     #[serde(default)]
     pub direct: bool,
-    /// Bytes of stack.
-    #[serde(default = "little")]
-    pub stack: u32,
+    /// Bytes of stack, or as many as its frames need, like a harness.
+    pub stack: Option<u32>,
     /// The claims that hold.
     #[serde(default)]
     pub hold: Vec<usize>,
@@ -60,11 +59,6 @@ pub struct Trap {
     /// the guard.
     #[serde(default)]
     pub known_wrong: Vec<String>,
-}
-
-/// Enough for what most traps keep in memory: the less there is, the faster.
-const fn little() -> u32 {
-    64
 }
 
 #[derive(Deserialize)]

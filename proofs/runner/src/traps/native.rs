@@ -20,13 +20,7 @@ pub fn run(trap: &Trap, folder: &Path, limit: Duration) -> Result<(Answer, Answe
         arguments.extend(["-I".to_owned(), folder.display().to_string()]);
         arguments.extend(["-I".to_owned(), crate::root().join("target/provers/include").display().to_string()]);
         if !trap.direct {
-            let memory = format!("-DMEMORY={}", trap.stack + 768);
-            arguments.extend([
-                format!("-DHARNESS={}", trap.name),
-                memory,
-                "-DCASE=0".to_owned(),
-                "-DCASES=1".to_owned(),
-            ]);
+            arguments.extend([format!("-DHARNESS={}", trap.name), "-DCASE=0".to_owned(), "-DCASES=1".to_owned()]);
             arguments.push("-DWASM_RT_USE_MMAP=0".to_owned());
             arguments.push("-DWASM_RT_NONCONFORMING_UNCHECKED_STACK_EXHAUSTION=1".to_owned());
         }

@@ -4,8 +4,8 @@ use super::{Trap, native};
 use crate::campaign::in_parallel;
 use crate::cbmc::{Answer, Question, Silence, Solver, ask_both};
 use crate::compile::{Compiled, compile_one, write, write_c};
-use crate::joins::no_crossing;
 use crate::loops::one_way_back;
+use crate::regions::apart;
 use crate::tools::Tools;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -95,6 +95,9 @@ pub fn trials(
     Ok(found.into_iter().flatten().collect())
 }
 
+/// Bytes of memory of a trap in C: it uses none.
+const LITTLE: u32 = 64;
+
 /// The C of a trap, in a folder of its own with the driver.
 fn to_c(tools: &Tools, trap: &Trap, sources: &Path, compiled: &Compiled, folder: &Path) -> Result<PathBuf, String> {
     if !trap.is_c() {
@@ -106,10 +109,10 @@ fn to_c(tools: &Tools, trap: &Trap, sources: &Path, compiled: &Compiled, folder:
     };
     let (folder, text) = (folder.join(&trap.name), read(&trap.file)?);
     if trap.direct {
-        write_c(&folder, "")?;
+        write_c(&folder, "", LITTLE)?;
         write(&folder.join("driver.c"), &(read("direct.h")? + &text))?;
     } else {
-        write_c(&folder, &(read("trap.h")? + &no_crossing(&one_way_back(&text)?)?))?;
+        write_c(&folder, &(read("trap.h")? + &apart(&one_way_back(&text)?)?), LITTLE)?;
     }
     Ok(folder)
 }
@@ -125,7 +128,7 @@ fn outcome(tools: &Tools, trap: &Trap, folder: &Path, way: Way, limit: Duration)
             };
         }
     };
-    let question = Question { stack: trap.stack, ..Question::proof(&trap.name, solver, limit) };
+    let question = Question::proof(&trap.name, solver, limit);
     let (proof, reach) = ask_both(tools, folder, &question, hard);
     trap.judge(&proof.and_then(|(proof, _)| Ok((proof, reach?.0))))
 }
