@@ -15,7 +15,7 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 
 /// The places of the path: what one train does to a route repeats from place to place.
-const LENGTH: usize = if cfg!(chosen) { 2 } else { 3 };
+const LENGTH: usize = if cfg!(small) { 2 } else { 3 };
 
 pub const BOUND: &str = match LENGTH {
     3 => "1 route of up to 3 circuits, 32 circuits",
