@@ -124,7 +124,7 @@ impl RouteState {
             Phase::InUse => followed && self.time <= route.release,
             Phase::Releasing => (unproved || followed) && self.time <= route.release,
         };
-        let arrived = swept && self.head == route.length && self.tail + 1 == route.length;
+        let arrived = swept && self.head == route.length && route.length.checked_sub(1) == Some(self.tail);
         let standing = self.stood.0 == 0 || self.overlap && arrived && self.stood <= route.stay;
         timed && standing && (route.exists() || self.phase == Phase::Idle)
     }

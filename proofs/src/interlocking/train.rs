@@ -333,11 +333,12 @@ harness! {
     }
     {
         let Some(scene) = any_scene(e) else { return };
-        let Scene { ground, route, before, after, train, .. } = &scene;
+        let Scene { ground, route, before, after, train, informed, .. } = &scene;
         let place = any_byte(e, "a place that stands for all (number)", 0..=2);
         let released = holds_place(route, *before, place) && !holds_place(route, *after, place);
         let behind = train.tail >= FIRST && train.tail - FIRST > place;
-        e.claim(Claim::Behind as u32, !released || !train.counts() || behind);
+        // It has made its move in this cycle: what counts is whether it may go on in the next.
+        e.claim(Claim::Behind as u32, !released || !informed.counts() || behind);
         let withdrawn = before.phase == Phase::Releasing;
         let anew = matches!(scene.request, Some(Request::Set(_))) && scene.output.answer == Some(Ok(()));
         let lets_in = scene.output.proceed.bits() != 0 || !scene.output.table.parts().2.grants[0].circuits.is_empty();
@@ -367,12 +368,12 @@ harness! {
     }
     {
         let Some(scene) = any_scene(e) else { return };
-        let Scene { ground, route, before, after, train, .. } = &scene;
+        let Scene { ground, route, before, after, train, informed, .. } = &scene;
         let had = before.phase != Phase::Idle && before.overlap;
         let given = had && !(after.phase != Phase::Idle && after.overlap);
         let stands = train.tail == ground.last && train.front == ground.last && train.moving == 0;
         let goes_on = train.front >= ground.over && !train.slid;
-        e.claim(Claim::Stands as u32, !given || !train.counts() || stands || goes_on);
+        e.claim(Claim::Stands as u32, !given || !informed.counts() || stands || goes_on);
         e.cover(Cover::Stands as u32, given && stands && !kept(route, *before).circuits.is_empty());
         e.cover(Cover::Slid as u32, !given && train.slid);
     }
