@@ -99,7 +99,9 @@ fn every_harness_that_is_smaller_for_a_wrong_kernel_has_a_control() {
         let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
         let imports = text.lines().take_while(|line| !line.starts_with("harness!")).collect::<Vec<_>>().join(" ");
         let sized = ["PLACES", "{PATH, ", " PATH, ", "super::PATH"].iter().any(|word| imports.contains(word));
-        let smaller = text.contains("cfg!(chosen)") || sized && text.contains("use super::");
+        let smaller = text.contains("cfg!(small)")
+            || text.contains("cfg!(any(small, kani))")
+            || sized && text.contains("use super::");
         if !smaller || text.contains("pub const ALL") {
             continue;
         }

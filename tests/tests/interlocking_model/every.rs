@@ -1,6 +1,6 @@
 //! Every state that a small station can reach, and every input in each of them.
 
-use std::collections::{BTreeSet, HashSet, VecDeque};
+use std::collections::{BTreeSet, HashSet};
 
 use atc_kernel::interlocking::{Epoch, Layout, Position, State, Travel};
 use atc_tests::sketch::{Line, Sketch, Way};
@@ -78,24 +78,35 @@ fn every_state_of_a_small_station() {
     let inputs = inputs();
     let kernel_inputs: Vec<_> = inputs.iter().map(input).collect();
     let first = (State::<3, 1>::INITIAL, Witness::new(&sketch));
-    let (mut seen, mut waiting) = (HashSet::from([first.clone()]), VecDeque::from([first]));
-    let mut steps = 0;
-    while let Some((state, witness)) = waiting.pop_front() {
-        for (read, kernel_input) in inputs.iter().zip(&kernel_inputs) {
-            let mut next_witness = witness.clone();
-            let said = next_witness.cycle(&sketch, read);
-            let (mut next, output) = layout.cycle(state, *kernel_input);
-            compare(&layout, &sketch, (&next_witness, &said), (&next, &output))
-                .unwrap_or_else(|what| panic!("{what}\n{read:?}\n{state:?}"));
-            // The number of the cycle is the one thing that never comes back soon.
-            next.epoch = Epoch(0);
-            steps += 1;
-            let pair = (next, next_witness);
-            if !seen.contains(&pair) {
-                seen.insert(pair.clone());
-                waiting.push_back(pair);
+    // What one state leads to that is not in `seen`, each once.
+    let follow = |states: &[(State<3, 1>, Witness)], seen: &HashSet<(State<3, 1>, Witness)>| {
+        let mut found = HashSet::new();
+        for (state, witness) in states {
+            for (read, kernel_input) in inputs.iter().zip(&kernel_inputs) {
+                let mut next_witness = witness.clone();
+                let said = next_witness.cycle(&sketch, read);
+                let (mut next, output) = layout.cycle(*state, *kernel_input);
+                compare(&layout, &sketch, (&next_witness, &said), (&next, &output))
+                    .unwrap_or_else(|what| panic!("{what}\n{read:?}\n{state:?}"));
+                // The number of the cycle is the one thing that never comes back soon.
+                next.epoch = Epoch(0);
+                let pair = (next, next_witness);
+                if !seen.contains(&pair) {
+                    found.insert(pair);
+                }
             }
         }
+        found
+    };
+    let (mut seen, mut level, mut steps) = (HashSet::from([first.clone()]), vec![first], 0);
+    while !level.is_empty() {
+        steps += level.len() * inputs.len();
+        let (one, other) = level.split_at(level.len() / 2);
+        let found = std::thread::scope(|scope| {
+            let other = scope.spawn(|| follow(other, &seen));
+            [follow(one, &seen), other.join().expect("no difference")]
+        });
+        level = found.into_iter().flatten().filter(|pair| seen.insert(pair.clone())).collect();
     }
     println!("{} states, {steps} steps", seen.len());
     // Each state of the one goes with one of the other: neither forgets or remembers more.
