@@ -7,6 +7,7 @@ use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
 use atc_kernel::time::Ticks;
 
+use crate::At;
 use crate::form::Position;
 use crate::graph::{Graph, Passed};
 
@@ -208,8 +209,11 @@ pub struct Values {
     pub settle: u8,
     /// The longest loss of shunt, in cycles.
     pub loss: u8,
-    /// The longest residual running.
+    /// The longest residual running, in ms and in cycles.
+    pub residual_ms: At<u32>,
     pub residual: Ticks,
+    /// The least that it can be, in ms: the age of a telegram, and the time to a stand from the highest speed.
+    pub least_residual_ms: u32,
     /// The longest time to a stand.
     pub standstill: Ticks,
     /// Whether every train acts on telegrams alone.
@@ -236,7 +240,9 @@ impl Default for Values {
             start: Ticks(0),
             settle: 0,
             loss: 0,
+            residual_ms: At::derived(0),
             residual: Ticks(0),
+            least_residual_ms: 0,
             standstill: Ticks(0),
             cab_signalled: false,
             turn: Ticks(0),

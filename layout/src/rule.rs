@@ -47,6 +47,8 @@ pub enum Rule {
     TurnUnderTelegram,
     /// After a start nothing moves until every release time and the turn time have passed, or the file says why not.
     StartTooShort,
+    /// The residual running covers the age of a telegram and the braking from the highest speed.
+    ResidualTooShort,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
     /// Circuits beyond the end of a route adjoin it.
@@ -96,6 +98,7 @@ impl Rule {
             Self::StartTooShort => {
                 "after a start nothing moves until release and turn times have passed, or the file says why not"
             }
+            Self::ResidualTooShort => "the residual running covers the age of a telegram and the braking from the highest speed",
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",
@@ -150,7 +153,9 @@ pub const fn remedy(rule: Kernel) -> &'static str {
     match rule {
         Kernel::PathTooLong => "divide it",
         Kernel::NoTime => "give a longer time or a shorter cycle",
-        Kernel::ClearShort | Kernel::ReleaseShort | Kernel::StayShort => "give a longer time",
+        Kernel::ClearShort => "give a longer clear_ms: by a whole cycle more than shunt_loss_ms",
+        Kernel::ReleaseShort => "give a release time of at least residual_ms and shunt_loss_ms",
+        Kernel::StayShort => "give a stay time of more than standstill_ms and shunt_loss_ms",
         Kernel::PointBothWays => {
             "run the overlap over the leg that the flank or the path leaves, or give a reason instead of the flank"
         }

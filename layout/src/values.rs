@@ -28,8 +28,10 @@ pub struct Times {
     pub settle_ms: At<u32>,
     /// How long a route stays locked after it was withdrawn with a train coming: at least `residual_ms` and `shunt_loss_ms`.
     pub release_ms: At<u32>,
-    /// The longest time for which a train still passes a signal after its authority was taken away.
-    pub residual_ms: At<u32>,
+    /// The longest time for which a train still passes a signal after its authority was taken away [default: the least that can be:
+    /// `telegram_age_ms` and the time to a stand from the highest speed].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub residual_ms: Option<At<u32>>,
     /// How long a train must have stood on the last circuit before the overlap is given up: longer than `standstill_ms` and `shunt_loss_ms`.
     pub stay_ms: At<u32>,
     /// The longest time in which a train comes to a stand once it is wholly on the last circuit of its route.
@@ -52,7 +54,7 @@ impl Default for Times {
             start_protected: None,
             settle_ms: At::derived(1_000),
             release_ms: At::derived(60_000),
-            residual_ms: At::derived(45_000),
+            residual_ms: None,
             stay_ms: At::derived(30_000),
             standstill_ms: At::derived(15_000),
             turn_ms: At::derived(5_000),

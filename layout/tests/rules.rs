@@ -275,10 +275,10 @@ fn what_derives_from_the_tracks() {
 
 #[test]
 fn distances_round_up_and_times_as_is_safe() {
-    let text = format!("{LOOP}\n[times]\ncycle_ms = 70\nclear_ms = 1001\n");
+    let text = format!("{LOOP}\n[times]\ncycle_ms = 70\nclear_ms = 1051\n");
     let compiled = Description::from_toml("loop", &text).unwrap().compile().unwrap();
     let plan = &compiled.plan;
-    assert_eq!(plan.clear, 15, "1001 ms at 70 ms, up");
+    assert_eq!(plan.clear, 16, "1051 ms at 70 ms, up");
     assert_eq!(plan.routes[0].drive.0, 142, "10 000 ms at 70 ms, down: it restricts");
     assert_eq!(plan.routes[0].release.0, 858, "60 000 ms at 70 ms, up: it permits");
     // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m.

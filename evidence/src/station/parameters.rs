@@ -37,7 +37,7 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         kept("Nothing moves after a start for", &times.start_ms, model.values.start.0.into(), "up"),
         kept("Settling time of points", &times.settle_ms, model.values.settle.into(), "up"),
         of_routes("Release time", &times.release_ms, |route| route.release.0, "up"),
-        kept("Residual running", &times.residual_ms, model.values.residual.0.into(), "up"),
+        kept("Residual running", &model.values.residual_ms, model.values.residual.0.into(), "up"),
         of_routes("Stay time", &times.stay_ms, |route| route.stay.0, "up"),
         kept("Time to a stand", &times.standstill_ms, model.values.standstill.0.into(), "up"),
         kept("Turn time of plain line", &times.turn_ms, model.values.turn.0.into(), "up"),
@@ -101,7 +101,7 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
     }
     // Of an imported file the report says what was assumed.
     if !description.source.text.is_empty() && report.taken.is_empty() {
-        for (name, value) in defaults(station) {
+        for (name, value) in defaults(station, model) {
             all.push(one(Origin::Default, name, value, String::new()));
         }
     }
@@ -116,7 +116,7 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
 }
 
 /// The values for the whole station that the file does not give.
-fn defaults(station: &Station) -> Vec<(&'static str, String)> {
+fn defaults(station: &Station, model: &Model) -> Vec<(&'static str, String)> {
     let times = &station.times;
     let mut all: Vec<(&'static str, &Range<usize>, String)> = [
         ("times.cycle_ms", &times.cycle_ms),
@@ -127,7 +127,7 @@ fn defaults(station: &Station) -> Vec<(&'static str, String)> {
         ("times.start_ms", &times.start_ms),
         ("times.settle_ms", &times.settle_ms),
         ("times.release_ms", &times.release_ms),
-        ("times.residual_ms", &times.residual_ms),
+        ("times.residual_ms", &model.values.residual_ms),
         ("times.stay_ms", &times.stay_ms),
         ("times.standstill_ms", &times.standstill_ms),
         ("times.turn_ms", &times.turn_ms),

@@ -74,6 +74,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_)];
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);
     StartTooShort => (Asked::Engineering, Stage::Model, Scope::File);
+    ResidualTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     SegmentOrder => (Asked::Engineering, Stage::Model, Scope::Segments);
     TooMany => (Asked::Form, Stage::Room, Scope::File);
 }

@@ -35,6 +35,12 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         let right = format!("start_ms must be at least {longest}, or start_protected say why every train stands");
         problems.push(Problem::new(Rule::StartTooShort, &times.start_ms.span, what, right));
     }
+    let (residual, least) = (&model.values.residual_ms, model.values.least_residual_ms);
+    if residual.value < least {
+        let what = format!("a train runs on for {residual} ms after its authority is taken, but a telegram lives and a brake takes {least} ms");
+        let right = format!("residual_ms must be at least {least}");
+        problems.push(Problem::new(Rule::ResidualTooShort, &residual.span, what, right));
+    }
     detectors(station, model, problems);
     segments(station, model, problems);
     fouling(station, model, problems);

@@ -68,9 +68,11 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         problems.push(Problem::new(Rule::Range, &times.settle_ms.span, what, "0 to 255 cycles are possible"));
         u8::MAX
     });
-    let residual = at_most("residual_ms", &times.residual_ms, cycle, problems);
     let standstill = at_most("standstill_ms", &times.standstill_ms, cycle, problems);
     let (speeds_kmh, braking) = codes(station, problems);
+    let least_residual_ms = times.telegram_age_ms.value.saturating_add(stopping_ms(station, speeds_kmh));
+    let residual_ms = times.residual_ms.clone().unwrap_or_else(|| At::derived(least_residual_ms));
+    let residual = at_most("residual_ms", &residual_ms, cycle, problems);
     let values = Values {
         cycle_ms: cycle.length().0,
         clear,
@@ -78,7 +80,9 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         loss: u8::try_from(loss.0).unwrap_or(u8::MAX),
         start,
         settle,
+        residual_ms,
         residual,
+        least_residual_ms,
         standstill,
         cab_signalled: station.cab_signalled,
         turn,
@@ -91,11 +95,29 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     (values, cycle)
 }
 
+/// The steepest fall, in ‰: a train may come either way.
+fn worst(station: &Station) -> i8 {
+    let gradients = station.circuits.iter().filter_map(|circuit| circuit.gradient.as_ref());
+    gradients.map(|gradient| gradient.value.saturating_abs().saturating_neg()).min().unwrap_or(0)
+}
+
+/// What every train has of its brake there.
+fn brake(station: &Station) -> Option<Deceleration> {
+    Deceleration::brake(station.braking.deceleration_mm_s2.value).map(|brake| brake.on(Gradient(worst(station))))
+}
+
+/// How long a train takes to a stand from the highest speed, in ms, rounded up.
+fn stopping_ms(station: &Station, speeds_kmh: [u16; MAX_CODES]) -> u32 {
+    let fastest = speeds_kmh.into_iter().max().map_or(0, u64::from);
+    // km/h in mm/s is 1e6 / 3600.
+    let of = |brake: Deceleration| (fastest * 1_000_000_000).div_ceil(3600 * u64::from(brake.mm_s2().max(1)));
+    brake(station).and_then(|brake| u32::try_from(of(brake)).ok()).unwrap_or(0)
+}
+
 fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [Metres; MAX_CODES]) {
     let given = &station.braking;
-    let worst = station.circuits.iter().filter_map(|circuit| circuit.gradient.as_ref());
-    let worst = worst.map(|gradient| gradient.value.saturating_abs().saturating_neg()).min().unwrap_or(0);
-    let brake = Deceleration::brake(given.deceleration_mm_s2.value).map(|brake| brake.on(Gradient(worst)));
+    let worst = worst(station);
+    let brake = brake(station);
     let speeds = &given.speeds_kmh;
     let mut right = !speeds.is_empty() && speeds.len() < MAX_CODES;
     right &= speeds.windows(2).all(|pair| pair[0] < pair[1]) && speeds.iter().all(|speed| (1..=409).contains(speed));

@@ -11,8 +11,8 @@ use crate::outcome::Trace;
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route, Segment, SegmentId,
-    SegmentSet, State as Kernel, Track, Travel,
+    CircuitSet, Directions, Element, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route, Segment,
+    SegmentId, SegmentSet, SpeedCode, State as Kernel, Track, Travel,
 };
 use atc_kernel::time::Ticks;
 use serde_json::json;
@@ -81,10 +81,23 @@ pub struct Cycle {
 impl Pair {
     fn layout(&self) -> Small {
         let mut plan = Plan::EMPTY;
-        plan.routes = [Route::NONE];
+        // The way in: a line that leads nowhere is not turned towards the station.
+        plan.routes = [Route {
+            entry: circuits(1),
+            approach: circuits(1),
+            path: [Element { circuits: circuits(1 << 1), positions: Positions::NONE }],
+            length: 1,
+            beyond: circuits(1 << 2),
+            from: SegmentSet::nth(0),
+            drive: Ticks(1),
+            release: Ticks(1),
+            stay: Ticks(1),
+            speed: SpeedCode(1),
+            ..Route::NONE
+        }];
         plan.segments = [Segment { circuits: [circuits(1)], length: 1, throat: CircuitSet::EMPTY }];
-        plan.lengths[0] = Metres(100);
-        plan.braking[0] = Metres(0);
+        plan.lengths[..2].fill(Metres(100));
+        plan.braking[..2].copy_from_slice(&[Metres(0), Metres(100)]);
         plan.clear = 1;
         plan.turn = Ticks(self.turn);
         Layout::new(plan).expect("a layout that keeps every rule")
@@ -222,7 +235,7 @@ impl Subject for Pair {
     /// The run of the first station's kernel, the cycle included in which it is unblocked. The further words of a step: what the second one does.
     fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
         let layout = self.layout();
-        let mut run = Run::begin("line", &["line"], &layout);
+        let mut run = Run::begin("line", &["line", "way in", "beyond"], &layout);
         run.step(&Self::unblocking(), BTreeMap::from([("hazard".to_owned(), json!(false))]));
         let word = |directions: Directions<1>| {
             if Self::sends(directions) {
