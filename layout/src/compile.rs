@@ -188,6 +188,7 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
         for (circuit, number) in place.circuits.iter_mut().zip(&segment.circuits) {
             *circuit = CircuitSet::nth(*number);
         }
+        plan.line = plan.line.and_at_most(segment.speed, place.all());
     }
     for (place, circuit) in plan.lengths.iter_mut().zip(&model.circuits) {
         *place = circuit.length;

@@ -159,6 +159,9 @@ pub struct Segment {
     /// The last circuit of every route that goes out to it [default: what those routes have in common].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub throat: Option<At<String>>,
+    /// The highest speed on it, in km/h: at most that of the line [default: that].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_kmh: Option<At<u16>>,
 }
 
 /// Two circuits between which there is no room for two trains.

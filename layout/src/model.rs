@@ -77,6 +77,8 @@ pub struct Segment {
     pub circuits: Vec<usize>,
     /// The last circuit of the routes out to it.
     pub throat: Option<usize>,
+    /// The speed code.
+    pub speed: SpeedCode,
     /// Where it is named.
     pub span: Range<usize>,
 }

@@ -4,7 +4,7 @@ mod common;
 mod meeting;
 
 use atc_kernel::interlocking::{
-    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteState, SpeedCode, State, Table, Travel, Works,
+    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteState, SpeedLimits, State, Table, Travel, Works,
 };
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
@@ -49,10 +49,10 @@ type Kernel = State<ROUTES, SEGMENTS>;
 fn rewritten(
     output: &Output<ROUTES>,
     state: &Kernel,
-    change: impl FnOnce(&mut [Grant; ROUTES], &mut [SpeedCode; 64]),
+    change: impl FnOnce(&mut [Grant; ROUTES], &mut SpeedLimits),
 ) -> Output<ROUTES> {
     let mut contents = output.table.read(state.epoch).expect("the table of this cycle");
-    change(&mut contents.grants, &mut contents.restrictions);
+    change(&mut contents.grants, &mut contents.standing.limits);
     Output { table: Table::write(state.epoch, contents), ..*output }
 }
 
@@ -96,7 +96,7 @@ impl Device for Wrong {
         let device = Small::with_what_proofs_need(plan_of_device).expect("a layout");
         let (mut after, output) = device.cycle(before, input);
         let output = match self {
-            Self::Unrestricted => rewritten(&output, &after, |_, restrictions| restrictions.fill(SpeedCode::MOST)),
+            Self::Unrestricted => rewritten(&output, &after, |_, limits| *limits = SpeedLimits::NONE),
             Self::GrantsWithoutProceed => rewritten(&output, &after, |grants, _| {
                 for (grant, (route, held)) in grants.iter_mut().zip(plan.routes.iter().zip(&after.routes)) {
                     if held.phase == Phase::Releasing && held.head == 0 {

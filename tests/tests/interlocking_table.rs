@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use atc_kernel::Machine as _;
 use atc_kernel::duplex::{Duplex, output};
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, Movement, Orders, Positions, Request,
-    RouteId, SegmentId, SegmentSet, SpeedCode, State, Table, Travel,
+    CircuitId, CircuitSet, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Orders, Positions,
+    Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, State, Table, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{self, Line, Need, Sketch, Way};
@@ -81,6 +81,13 @@ fn all_stop(telegrams: &[Movement; MAX_CIRCUITS]) -> bool {
     stop
 }
 
+/// The limits with one bit changed.
+fn limits(limits: SpeedLimits, code: usize, bit: u32) -> SpeedLimits {
+    let mut parts = limits.parts();
+    parts[code] = CircuitSet::from_bits(parts[code].bits() ^ 1 << bit);
+    SpeedLimits::from_parts(parts)
+}
+
 /// Every bit of the contents, as a list of changes.
 fn damaged(contents: Contents<2>) -> Vec<Contents<2>> {
     let mut all = Vec::new();
@@ -94,7 +101,12 @@ fn damaged(contents: Contents<2>) -> Vec<Contents<2>> {
     for bit in 0..64 {
         with(&|it| it.occupied = circuits(it.occupied, bit));
         with(&|it| it.blocked = circuits(it.blocked, bit));
+        with(&|it| it.standing.loose = circuits(it.standing.loose, bit));
+        for code in 0..MAX_CODES {
+            with(&|it| it.standing.limits = limits(it.standing.limits, code, bit));
+        }
         for route in 0..2 {
+            with(&|it| it.standing.bodies[route] = circuits(it.standing.bodies[route], bit));
             with(&|it| it.grants[route].train = circuits(it.grants[route].train, bit));
             with(&|it| it.grants[route].circuits = circuits(it.grants[route].circuits, bit));
             with(&|it| it.grants[route].last = circuits(it.grants[route].last, bit));
@@ -105,9 +117,6 @@ fn damaged(contents: Contents<2>) -> Vec<Contents<2>> {
         with(&|it| it.away = segments(it.away, bit));
         for route in 0..2 {
             with(&|it| it.grants[route].speed.0 ^= 1 << bit);
-        }
-        for circuit in 0..MAX_CIRCUITS {
-            with(&|it| it.restrictions[circuit].0 ^= 1 << bit);
         }
     }
     for route in 0..2 {
@@ -189,12 +198,14 @@ fn flips(state: State<2, 2>) -> Vec<State<2, 2>> {
     for bit in 0..64 {
         with(&|it| it.works.blocked = CircuitSet::from_bits(it.works.blocked.bits() ^ 1 << bit));
         with(&|it| it.works.confirmed = CircuitSet::from_bits(it.works.confirmed.bits() ^ 1 << bit));
+        for code in 0..MAX_CODES {
+            with(&|it| it.works.restrictions = limits(it.works.restrictions, code, bit));
+        }
     }
     for bit in 0..8 {
         with(&|it| it.directions.toward = SegmentSet::from_bits(it.directions.toward.bits() ^ 1 << bit));
         with(&|it| it.directions.away = SegmentSet::from_bits(it.directions.away.bits() ^ 1 << bit));
         for circuit in 0..MAX_CIRCUITS {
-            with(&|it| it.works.restrictions[circuit].0 ^= 1 << bit);
             with(&|it| {
                 let mut clear_for = it.track.clear_for();
                 clear_for[circuit] ^= 1 << bit;

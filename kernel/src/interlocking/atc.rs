@@ -1,6 +1,6 @@
 //! ATC: from the shared table to the stop circuit, the speed code and the telegram of each circuit.
 
-use super::layout::{Layout, MAX_CIRCUITS, SpeedCode};
+use super::layout::{Layout, SpeedCode};
 use super::set::{CircuitId, CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::table::Contents;
@@ -158,7 +158,11 @@ pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
     if hold.is_empty() {
         return Movement::stop_in(circuit);
     }
-    let speed = speed.or_lower(lowest(layout, contents, hold, circuit));
+    //= spec/interlocking.md#atc-4-speed-code
+    //# The speed code MUST NOT be above any limit of a circuit that is granted or that may be under the train, or above the highest code from which a train stops within the circuits that are granted.
+    let train = contents.standing.train(layout, contents.occupied, circuit.alone());
+    let limit = contents.standing.limits.over(train.or(hold));
+    let speed = speed.or_lower(limit).or_lower(stopping_within(layout, hold));
     Movement { stop, open: true, speed, hold }
 }
 
@@ -178,34 +182,24 @@ pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize>(
     }
 }
 
-/// The most restrictive code of restrictions and distance over `circuits`, for a train that comes from `from`.
+/// The highest code from which a train stops within the lengths of `circuits`.
 #[inline]
-fn lowest<const R: usize, const P: usize, const N: usize, const S: usize>(
+fn stopping_within<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
-    contents: &Contents<R>,
     circuits: CircuitSet,
-    from: CircuitId,
 ) -> SpeedCode {
-    //= spec/interlocking.md#atc-4-speed-code
-    //# The speed code MUST NOT be above that of any route that is granted, of any restriction on the circuits that are granted or on the train's own, or above the highest code from which a train stops within the circuits that are granted.
     let plan = layout.plan();
-    let mut code = SpeedCode::MOST;
     let mut distance = 0_u32;
-    let restricted = circuits.or(from.alone());
-    for number in 0..MAX_CIRCUITS {
-        let it = CircuitSet::nth(number);
-        if circuits.meets(it) {
-            distance = distance.saturating_add(u32::from(plan.lengths[number].0));
-        }
-        if restricted.meets(it) {
-            code = code.or_lower(contents.restrictions[number]);
+    for (number, length) in plan.lengths.iter().enumerate() {
+        if circuits.meets(CircuitSet::nth(number)) {
+            distance = distance.saturating_add(u32::from(length.0));
         }
     }
-    let mut stops = SpeedCode::STOP;
+    let mut code = SpeedCode::STOP;
     for (number, braking) in (0_u8..).zip(&plan.braking) {
         if *braking < Metres(u16::MAX) && u32::from(braking.0) <= distance {
-            stops = SpeedCode(number);
+            code = SpeedCode(number);
         }
     }
-    code.or_lower(stops)
+    code
 }

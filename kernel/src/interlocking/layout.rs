@@ -1,5 +1,6 @@
 //! The layout of a station: what the plan says, and the same once it is checked.
 
+use super::limits::SpeedLimits;
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
 use crate::distance::Metres;
 use crate::time::Ticks;
@@ -161,6 +162,25 @@ impl<const P: usize> Segment<P> {
         }
         all
     }
+
+    /// The occupied circuits of the segment, and its throat, that follow a circuit of `train` without a gap, on either side.
+    #[inline]
+    pub fn joined_to(&self, train: CircuitSet, occupied: CircuitSet) -> CircuitSet {
+        let mut joined = train;
+        let mut before = self.throat;
+        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+            let follows = place < self.length && before.meets(joined);
+            joined = joined.or(circuit.and(occupied).only_if(follows));
+            before = *circuit;
+        }
+        for back in 1..=P {
+            let place = P - back;
+            let outer = self.circuits[place].only_if(place < usize::from(self.length));
+            let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
+            joined = joined.or(inner.and(occupied).only_if(outer.meets(joined)));
+        }
+        joined
+    }
 }
 
 /// A layout as a plan gives it: up to `R` routes of up to `P` circuits each, `N` points, `S` segments. Not checked.
@@ -174,6 +194,8 @@ pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> 
     pub segments: [Segment<P>; S],
     /// The length of each circuit.
     pub lengths: [Metres; MAX_CIRCUITS],
+    /// The line speed of each circuit.
+    pub line: SpeedLimits,
     /// The distance within which a train stops from the speed of each code; the longest length where there is no such code.
     pub braking: [Metres; MAX_CODES],
     /// How many cycles in a row a circuit must be reported clear before it counts as clear, 1 to 255.
@@ -199,6 +221,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         points: [Point { detectors: CircuitSet::EMPTY }; N],
         segments: [Segment::NONE; S],
         lengths: [Metres(0); MAX_CIRCUITS],
+        line: SpeedLimits::NONE,
         braking: [Metres(u16::MAX); MAX_CODES],
         clear: 0,
         turn: Ticks(0),

@@ -13,11 +13,13 @@ mod atc;
 mod check;
 mod direction;
 mod layout;
+mod limits;
 mod point;
 mod request;
 mod route;
 mod set;
 mod signal;
+mod standing;
 mod state;
 mod table;
 mod track;
@@ -29,6 +31,7 @@ pub use direction::{Directions, Needs, Travel};
 pub use layout::{
     Element, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station,
 };
+pub use limits::SpeedLimits;
 pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
 pub use route::{Phase, Rear, RouteState};
@@ -36,6 +39,7 @@ pub use set::{
     CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,
 };
 pub use signal::{Grant, View, grant, ready, shows_proceed};
+pub use standing::Standing;
 pub use state::State;
 pub use table::{Contents, Epoch, Table};
 pub use track::Track;
@@ -148,7 +152,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
             grants,
             toward: state.directions.toward,
             away: state.directions.away.and(input.consent),
-            restrictions: state.works.restrictions,
+            standing: Standing::of(self, &state.routes, occupied, state.works.restrictions),
         };
         let table = Table::write(state.epoch, contents);
         let (permits, confirmed) = (state.directions.toward.without(closed), state.works.confirmed);

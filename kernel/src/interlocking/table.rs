@@ -1,8 +1,8 @@
 //! The table that interlocking and ATC share: written once a cycle by the one, read by the other.
 
-use super::layout::{MAX_CIRCUITS, SpeedCode};
 use super::set::{CircuitSet, SegmentSet};
 use super::signal::Grant;
+use super::standing::Standing;
 
 /// The number of a cycle, modulo 65 536.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -29,8 +29,8 @@ pub struct Contents<const R: usize> {
     pub toward: SegmentSet,
     /// The segments away from the station, as far as the neighbour permits this one to send.
     pub away: SegmentSet,
-    /// The highest speed code on each circuit by temporary restriction.
-    pub restrictions: [SpeedCode; MAX_CIRCUITS],
+    /// Where trains may stand, and the speed limits there.
+    pub standing: Standing<R>,
 }
 
 /// The contents of one cycle, with what tells a stale or damaged table.
@@ -52,7 +52,7 @@ impl<const R: usize> Table<R> {
             grants: [Grant::NONE; R],
             toward: SegmentSet::EMPTY,
             away: SegmentSet::EMPTY,
-            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+            standing: Standing::UNKNOWN,
         },
     };
 
@@ -94,8 +94,12 @@ fn fold<const R: usize>(epoch: Epoch, contents: &Contents<R>) -> u64 {
         check = check.rotate_left(5) ^ grant.last.bits();
         check = check.rotate_left(5) ^ (u64::from(grant.complete) | u64::from(grant.speed.0) << 8);
     }
-    for restriction in contents.restrictions {
-        check = check.rotate_left(5) ^ u64::from(restriction.0);
+    for limited in contents.standing.limits.parts() {
+        check = check.rotate_left(5) ^ limited.bits();
     }
+    for body in contents.standing.bodies {
+        check = check.rotate_left(5) ^ body.bits();
+    }
+    check = check.rotate_left(5) ^ contents.standing.loose.bits();
     !check
 }

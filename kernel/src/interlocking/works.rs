@@ -1,6 +1,7 @@
 //! Maintenance: blocks of circuits and temporary speed restrictions. Only commands change them.
 
-use super::layout::{MAX_CIRCUITS, SpeedCode};
+use super::layout::SpeedCode;
+use super::limits::SpeedLimits;
 use super::set::CircuitSet;
 
 /// What staff command in one cycle; empty sets where they command nothing.
@@ -26,13 +27,13 @@ pub struct Works {
     /// The blocked circuits that were found neither held nor occupied since: staff may rely on these.
     pub confirmed: CircuitSet,
     /// The highest speed code by temporary restriction.
-    pub restrictions: [SpeedCode; MAX_CIRCUITS],
+    pub restrictions: SpeedLimits,
 }
 
 impl Works {
     /// Every circuit is blocked and restricted to stop.
     pub const INITIAL: Self =
-        Self { blocked: CircuitSet::ALL, confirmed: CircuitSet::EMPTY, restrictions: [SpeedCode::STOP; MAX_CIRCUITS] };
+        Self { blocked: CircuitSet::ALL, confirmed: CircuitSet::EMPTY, restrictions: SpeedLimits::STOP };
 
     /// Whether only blocked circuits are confirmed.
     pub const fn is_valid(&self) -> bool {
@@ -47,14 +48,8 @@ impl Works {
         //# Blocks and restrictions MUST be set and cleared by command only, and a command to block or to restrict is always carried out.
         self.blocked = self.blocked.without(orders.unblock).or(orders.block);
         self.confirmed = self.confirmed.and(self.blocked);
-        for (number, restriction) in self.restrictions.iter_mut().enumerate() {
-            let circuit = CircuitSet::nth(number);
-            if orders.restrict.meets(circuit) {
-                *restriction = orders.speed.or_lower(SpeedCode::MOST);
-            } else if orders.lift.meets(circuit) {
-                *restriction = SpeedCode::MOST;
-            }
-        }
+        let changed = orders.restrict.or(orders.lift);
+        self.restrictions = self.restrictions.without(changed).and_at_most(orders.speed, orders.restrict);
         self
     }
 

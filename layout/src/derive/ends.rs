@@ -7,6 +7,7 @@ use crate::form::Station;
 use crate::model::{Circuits, Model, Note, Route};
 use crate::names::Names;
 use crate::problem::Problem;
+use crate::rule::Rule;
 
 /// Fills in, for every route with a path, what depends on its ends.
 pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut Vec<Problem>) {
@@ -60,6 +61,18 @@ pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut 
             to.inspect(|segment| note(format!("goes out to segment {}", model.segments[*segment].name)))
         });
         model.notes.extend(notes);
+        if let (Some(from), Some(approach)) = (from, &given.approach_kmh) {
+            let segment = &model.segments[from];
+            let line = model.values.speeds_kmh[usize::from(segment.speed.0)];
+            if line > approach.value {
+                let what = format!(
+                    "route {}: trains come up at {approach} km/h, and {} is for {line}",
+                    given.name, segment.name
+                );
+                let right = format!("give the segment a speed_kmh of {approach} as well");
+                problems.push(Problem::new(Rule::Range, &approach.span, what, right));
+            }
+        }
         let route = &mut model.routes[number];
         (route.conflicts, route.beyond, route.continuing) = (conflicts, beyond, continuing);
         (route.from, route.to) = (from, to);

@@ -13,7 +13,7 @@ pub use approach::{Back, Shortfall, back};
 use crate::at::At;
 use crate::form::Station;
 use crate::graph::Graph;
-use crate::model::{Circuit, Circuits, Model, Note, Point, Segment};
+use crate::model::{Circuit, Circuits, Model, Note, Point, Segment, Values};
 use crate::names::Names;
 use crate::problem::Problem;
 use crate::rule::Rule;
@@ -28,7 +28,7 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
     let mut model = Model { graph, values, ..Model::default() };
     model.circuits = circuits(station, problems);
     model.points = points(station, &names, &mut model.notes, problems);
-    model.segments = segments(station, &names, problems);
+    model.segments = segments(station, &names, &model.values, problems);
     for fouling in &station.fouling {
         let [one, other] = &fouling.between;
         if let (Some(one), Some(other)) = (names.circuit(one, problems), names.circuit(other, problems)) {
@@ -102,8 +102,9 @@ fn points(station: &Station, names: &Names, notes: &mut Vec<Note>, problems: &mu
     points
 }
 
-fn segments(station: &Station, names: &Names, problems: &mut Vec<Problem>) -> Vec<Segment> {
+fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Vec<Problem>) -> Vec<Segment> {
     let mut segments = Vec::new();
+    let line = values::line_kmh(station, values);
     for given in &station.segments {
         if given.circuits.is_empty() {
             let what = format!("segment {} has no circuit", given.name);
@@ -114,10 +115,16 @@ fn segments(station: &Station, names: &Names, problems: &mut Vec<Problem>) -> Ve
                 "name at least the one next to the station",
             ));
         }
+        if let Some(faster) = given.speed_kmh.as_ref().filter(|speed| speed.value > line.value) {
+            let what = format!("segment {}: {faster} km/h, and trains come up to signals at {line} km/h", given.name);
+            let right = format!("give at most {line} km/h, or raise line_kmh in [speed]");
+            problems.push(Problem::new(Rule::Range, &faster.span, what, right));
+        }
         segments.push(Segment {
             name: given.name.value.clone(),
             circuits: given.circuits.iter().filter_map(|name| names.circuit(name, problems)).collect(),
             throat: given.throat.as_ref().and_then(|name| names.circuit(name, problems)),
+            speed: values::code(values, given.speed_kmh.as_ref().unwrap_or(&line), problems),
             span: given.name.span.clone(),
         });
     }

@@ -177,15 +177,15 @@ fn the_way(
 }
 
 fn route_speed(station: &Station, given: &form::Route, model: &Model, route: &mut Route, problems: &mut Vec<Problem>) {
-    let highest = At::derived(model.values.speeds_kmh.into_iter().max().unwrap_or(0));
-    let line = station.speed.line_kmh.as_ref().unwrap_or(&highest);
-    let straight = station.speed.route_kmh.as_ref().unwrap_or(line);
+    let highest = model.values.speeds_kmh.into_iter().max().unwrap_or(0);
+    let line = values::line_kmh(station, &model.values);
+    let straight = station.speed.route_kmh.as_ref().unwrap_or(&line);
     let over_reverse =
         route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.position == form::Position::Reverse);
     let default = if over_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(straight) } else { straight };
     route.speed = values::code(&model.values, given.speed_kmh.as_ref().unwrap_or(default), problems);
-    let approach = given.approach_kmh.as_ref().unwrap_or(line);
-    if approach.value > highest.value {
+    let approach = given.approach_kmh.as_ref().unwrap_or(&line);
+    if approach.value > highest {
         let what = format!("route {}: trains come up at {approach} km/h, faster than any code", given.name);
         let right = format!("give at most {highest} km/h, or add a speed to [braking]");
         problems.push(Problem::new(Rule::Range, &approach.span, what, right));

@@ -172,6 +172,12 @@ pub fn stopping(brake: Deceleration, speed: KmhTenths) -> Option<Metres> {
     Some(Metres(least))
 }
 
+/// The highest speed of a train that comes up to a signal.
+pub fn line_kmh(station: &Station, values: &Values) -> At<u16> {
+    let highest = || At::derived(values.speeds_kmh.into_iter().max().unwrap_or(0));
+    station.speed.line_kmh.clone().unwrap_or_else(highest)
+}
+
 /// The highest code whose speed is not over `speed`.
 pub fn code(values: &Values, speed: &At<u16>, problems: &mut Vec<Problem>) -> SpeedCode {
     let fits = (1_u8..).zip(&values.speeds_kmh[1..]).filter(|(_, of_code)| (1..=speed.value).contains(*of_code));

@@ -85,6 +85,6 @@ fn segments(station: &mut Station, report: &mut Report) {
             circuits.iter().rev().map(|circuit| At::derived(station.circuits[*circuit].name.value.clone())).collect();
         let name = format!("line at {}", listed[0]);
         report.defaulted.push(format!("segment {name}: the circuits up to the open end {}", graph.joints[joint].name));
-        station.segments.push(Segment { name: At::derived(name), circuits: listed, throat: None });
+        station.segments.push(Segment { name: At::derived(name), circuits: listed, ..Segment::default() });
     }
 }

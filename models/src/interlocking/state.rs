@@ -5,7 +5,8 @@ use super::ground::Blade;
 use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circuits};
 use super::train::{Fate, Train};
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, Track, Works,
+    self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, SpeedLimits, Track,
+    Works,
 };
 
 /// The machine's state, without what never changes in a model and without the number of the cycle.
@@ -41,7 +42,7 @@ impl Kept {
     /// Takes down what may change.
     pub fn of(state: &kernel::State<ROUTES, SEGMENTS>) -> Self {
         let all = state.track.clear_for();
-        let code = |circuit: usize| state.works.restrictions[circuit] <= RESTRICTED;
+        let code = |circuit: usize| state.works.restrictions.over(CircuitSet::nth(circuit)) <= RESTRICTED;
         Self {
             clear_for: std::array::from_fn(|circuit| all[circuit]),
             stood: std::array::from_fn(|point| state.points.parts().0[point]),
@@ -60,12 +61,7 @@ impl Kept {
         clear_for[..CIRCUITS].copy_from_slice(&self.clear_for);
         let mut stood = [0; kernel::MAX_POINTS];
         stood[..POINTS].copy_from_slice(&self.stood);
-        let mut restrictions = [SpeedCode::MOST; kernel::MAX_CIRCUITS];
-        for (circuit, code) in restrictions.iter_mut().enumerate().take(CIRCUITS) {
-            if self.restricted >> circuit & 1 == 1 {
-                *code = RESTRICTED;
-            }
-        }
+        let restrictions = SpeedLimits::NONE.and_at_most(RESTRICTED, circuits(self.restricted));
         kernel::State {
             track: Track::from_parts(clear_for),
             started: layout.plan().start,

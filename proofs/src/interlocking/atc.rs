@@ -8,7 +8,7 @@ use crate::engine::{any_byte, any_flag};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Contents, Element, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Plan, Route, Segment,
-    SegmentSet, SpeedCode, begins, connect, movement, telegram,
+    SegmentSet, SpeedCode, SpeedLimits, Standing, begins, connect, movement, telegram,
 };
 use atc_kernel::time::Ticks;
 
@@ -97,8 +97,19 @@ fn any_contents<E: crate::Engine + ?Sized>(e: &mut E, line: &Line) -> Contents<R
         grants,
         toward: SegmentSet::from_bits(toward),
         away: SegmentSet::from_bits(away),
-        restrictions: [SpeedCode::MOST; MAX_CIRCUITS],
+        standing: STANDING,
     }
+}
+
+/// No train stands anywhere but at its front, and nothing is limited: what is granted does not depend on it.
+const STANDING: Standing<ROUTES> =
+    Standing { bodies: [CircuitSet::EMPTY; ROUTES], loose: CircuitSet::EMPTY, limits: SpeedLimits::NONE };
+
+/// The limit of one circuit, and of all others.
+fn limits(number: u16, its: u8, others: u8) -> SpeedLimits {
+    let it = CircuitSet::from_bits(bit(number));
+    let all = SpeedLimits::NONE.and_at_most(SpeedCode(its), it);
+    all.and_at_most(SpeedCode(others), CircuitSet::ALL.without(it))
 }
 
 /// The telegram that is sent in a circuit.
@@ -271,7 +282,7 @@ harness! {
 }
 
 harness! {
-    /// The speed code is not above that of a route that is granted, nor of a restriction on the own circuit or a granted one, nor above one from which a
+    /// The speed code is not above that of a route that is granted, nor the limit of the own circuit or a granted one, nor above one from which a
     /// train stops within what is granted.
     t_atc_2(e)
     theorem "T-ATC-2";
@@ -283,13 +294,13 @@ harness! {
     under_kani UNDER_KANI;
     claims {
         Route: "the speed code is not above that of a route with a granted circuit",
-        Restriction: "the speed code is not above the restriction of the own circuit or of a granted one",
+        Limit: "the speed code is not above the limit of the own circuit or of a granted one",
         Distance: "the braking distance of the speed code is not longer than the granted circuits together",
         Table: "a code without a braking distance is never sent",
     }
     covers {
         ByRoute: "the route limits the code",
-        ByRestriction: "a restriction limits the code",
+        ByLimit: "the limit of a circuit limits the code",
         ByDistance: "the distance limits the code",
         Most: "the highest code is sent",
     }
@@ -299,8 +310,8 @@ harness! {
         let number = e.word("a circuit that stands for all (number)", 0..=15) & 31;
         let own = e.word("the train's circuit (number)", 0..=8) & 31;
         let Some(circuit) = CircuitId::new(own.to_le_bytes()[0]) else { return };
-        let (its, others) = (any_byte(e, "its restriction (code)", 6..=7), any_byte(e, "restriction elsewhere (code)", 7..=7));
-        contents.restrictions = core::array::from_fn(|place| SpeedCode(if place == usize::from(number) { its } else { others }));
+        let (its, others) = (any_byte(e, "its limit (code)", 6..=7), any_byte(e, "limit elsewhere (code)", 7..=7));
+        contents.standing.limits = limits(number, its, others);
         let long = e.word("length of circuits with an even number (m)", 0..=400);
         let short = e.word("length of circuits with an odd number (m)", 0..=400);
         let mut plan = *line.plan();
@@ -329,7 +340,7 @@ harness! {
         }
         e.claim(Claim::Route as u32, by_route);
         let restricted = hold >> number & 1 == 1 || own == number && telegram.open;
-        e.claim(Claim::Restriction as u32, !restricted || speed <= its);
+        e.claim(Claim::Limit as u32, !restricted || speed <= its);
         let (mut sum, mut needed) = (0_u32, 0_u32);
         for place in 0..MAX_CIRCUITS {
             let length = if place % 2 == 0 { long } else { short };
@@ -343,9 +354,81 @@ harness! {
         e.claim(Claim::Distance as u32, needed <= sum);
         e.claim(Claim::Table as u32, usize::from(speed) < MAX_CODES && needed < u32::from(u16::MAX));
         e.cover(Cover::ByRoute as u32, telegram.open && speed == limit && speed > 0 && its == 7);
-        e.cover(Cover::ByRestriction as u32, telegram.open && restricted && speed == its && speed < limit && speed > 0);
+        e.cover(Cover::ByLimit as u32, telegram.open && restricted && speed == its && speed < limit && speed > 0);
         e.cover(Cover::ByDistance as u32, telegram.open && speed < limit && its == 7 && others == 7);
         e.cover(Cover::Most as u32, speed == 7);
+    }
+}
+
+/// Whether one train may stand on both circuits, by what the table says: they are of one body, next to each other on plain line with its throat, or
+/// nobody knows which train is in one of them.
+fn is_joint(line: &Line, standing: &Standing<ROUTES>, one: u64, other: u64) -> bool {
+    let mut joint = standing.loose.bits() & (one | other) != 0;
+    for body in standing.bodies {
+        joint |= body.bits() & one != 0 && body.bits() & other != 0;
+    }
+    for segment in &line.plan().segments {
+        let mut before = segment.throat.bits();
+        for place in 0..PATH {
+            let circuit = if place < length_of(segment) { segment.circuits[place].bits() } else { 0 };
+            joint |= before == one && circuit == other || before == other && circuit == one;
+            before = circuit;
+        }
+    }
+    joint
+}
+
+harness! {
+    /// The speed code is not above the limit of any circuit on which the train may stand: its front's, and with each of its circuits every other
+    /// occupied one that is joined to it. By induction from joint to joint these are all circuits of a train of any length.
+    t_atc_2_train(e)
+    theorem "T-ATC-2";
+    requirements ["ATC-4", "ATC-8"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    under_kani UNDER_KANI;
+    claims {
+        Front: "the circuit of the front is one of the train's",
+        Joined: "an occupied circuit that is joined to one of the train's is one of the train's",
+        Limit: "the speed code is not above the limit of any circuit of the train's",
+    }
+    covers {
+        Far: "the limit of a circuit that is not joined to that of the front limits the code",
+        Line: "a train stands on a route and on plain line",
+        Free: "an occupied circuit is not one of the train's",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let mut contents = any_contents(e, &line);
+        let occupied = contents.occupied;
+        let mut any = |what| any_circuits(e, what, 0..=0).and(occupied);
+        contents.standing.bodies = [any("on the first route (bits)"), any("on the second route (bits)")];
+        contents.standing.loose = any("in circuits that no route holds (bits)");
+        let own = e.word("the train's circuit (number)", 0..=8) & 31;
+        let (near, far) = (e.word("a circuit of the train (number)", 0..=15) & 31, e.word("one joined to it (number)", 0..=15) & 31);
+        let Some(front) = CircuitId::new(own.to_le_bytes()[0]) else { return };
+        let its = any_byte(e, "its limit (code)", 3..=4);
+        contents.standing.limits = limits(far, its, 7);
+        let mut plan = *line.plan();
+        // One circuit is enough to stop from every code.
+        plan.lengths = [Metres(MAX_CODES as u16); MAX_CIRCUITS];
+        plan.braking = [0, 1, 2, 3, 4, 5, 6, 7].map(Metres);
+        let Ok(line) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
+        let train = contents.standing.train(&line, occupied, front.alone());
+        let telegram = sent(&line, &contents, front);
+        e.claim(Claim::Front as u32, train.bits() >> own & 1 == 1);
+        let joint = occupied.bits() & bit(far) != 0 && is_joint(&line, &contents.standing, bit(near), bit(far));
+        let (has_near, has_far) = (train.bits() & bit(near) != 0, train.bits() & bit(far) != 0);
+        e.claim(Claim::Joined as u32, !joint || !has_near || has_far);
+        e.claim(Claim::Limit as u32, !telegram.open || !has_far || telegram.speed.0 <= its);
+        let apart = near != own && far != own && !is_joint(&line, &contents.standing, bit(own), bit(far));
+        e.cover(Cover::Far as u32, telegram.open && apart && joint && has_near && telegram.speed.0 == its);
+        let path = line.plan().routes[0].path[0].circuits.bits();
+        let outer = line.plan().segments[0].circuits[0].bits();
+        e.cover(Cover::Line as u32, train.bits() & path != 0 && train.bits() & outer != 0 && telegram.open && contents.standing.loose.bits() == 0);
+        e.cover(Cover::Free as u32, telegram.open && occupied.bits() & !train.bits() != 0);
     }
 }
 

@@ -278,7 +278,7 @@ harness! {
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
-        State: "routes, blocks and restrictions are those without the request, and so is every direction away from the station; and the confirmed blocks, unless a permission is lost",
+        State: "routes, points, blocks and restrictions are those without the request, and so is every direction away from the station; and the confirmed blocks, unless a permission is lost",
         Toward: "a direction towards the station is lost only by a request to turn that segment away, and none is won",
         Outputs: "signals, drives and grants are those without the request",
         Permits: "the neighbour is permitted no more than without the request",
@@ -301,7 +301,8 @@ harness! {
         let confirmed = works.confirmed == without.works.confirmed && output.confirmed == silent.confirmed;
         let same = after.routes[0] == without.routes[0]
             && works.blocked == without.works.blocked
-            && works.restrictions[5] == without.works.restrictions[5]
+            && works.restrictions == without.works.restrictions
+            && after.points == without.points
             && directions.away == without.directions.away;
         e.claim(Claim::State as u32, same && (confirmed || lost != 0));
         let turned = match input.request {
@@ -340,7 +341,6 @@ harness! {
     }
     {
         let Some(layout) = any_layout::<E, 1, 1, 0, 1>(e) else { return };
-        let circuit = usize::from(e.word("a circuit that stands for all (number)", 0..=63) & 63);
         let epoch = Epoch(e.word("a cycle (number)", 0..=3));
         let initial = layout.initial();
         e.claim(Claim::Valid as u32, initial.is_valid(&layout));
@@ -349,7 +349,7 @@ harness! {
         e.claim(Claim::Nothing as u32, initial.routes[0].phase == Phase::Idle && none && directions.withdrawn[0].0 == 0);
         let works = initial.works;
         let blocked = works.blocked.bits() == u64::MAX && works.confirmed.bits() == 0;
-        e.claim(Claim::Blocked as u32, blocked && works.restrictions[circuit].0 == 0);
+        e.claim(Claim::Blocked as u32, blocked && works.restrictions.parts()[0].bits() == u64::MAX);
         let safe = <Layout<1, 1, 0, 1> as Machine>::SAFE;
         let dark = safe.proceed.bits() == 0 && safe.drives.normal.bits() | safe.drives.reverse.bits() == 0;
         let silent = safe.permits.bits() == 0 && safe.confirmed.bits() == 0 && safe.answer.is_none();

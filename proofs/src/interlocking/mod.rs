@@ -21,7 +21,7 @@ use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
     CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan, Point,
     PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId,
-    SegmentSet, Settling, SpeedCode, State, Track, Travel, Works,
+    SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -85,12 +85,14 @@ pub const ALL: &[Harness] = &[
     atc::t_atc_1_connect::HARNESS,
     atc::t_atc_1_apart::HARNESS,
     atc::t_atc_2::HARNESS,
+    atc::t_atc_2_train::HARNESS,
     atc::t_atc_4::HARNESS,
     atc::t_atc_4_each::HARNESS,
     layout::t_lay_2::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,
     train::t_ilk_train_overlap::HARNESS,
+    train::t_ilk_train_body::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
@@ -267,7 +269,7 @@ fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> S
         works: Works {
             blocked: any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: any_circuits(e, "confirmed (bits)", 0..=0),
-            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+            restrictions: SpeedLimits::STOP,
         },
         epoch: Epoch(e.word("epoch", 0..=u16::MAX)),
     }

@@ -4,7 +4,8 @@ use super::any_circuits;
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Layout, MAX_CIRCUITS, Plan, SegmentSet, SpeedCode, Table,
+    CircuitId, CircuitSet, Contents, Epoch, Grant, Layout, MAX_CODES, Plan, SegmentSet, SpeedCode, SpeedLimits,
+    Standing, Table,
 };
 use atc_kernel::time::Ticks;
 
@@ -36,7 +37,11 @@ fn any_contents<E: Engine + ?Sized, const R: usize>(e: &mut E) -> Contents<R> {
         grants: core::array::from_fn(|_| any_grant(e)),
         toward: SegmentSet::from_bits(e.word("toward (bits)", 0..=1).to_le_bytes()[0]),
         away: SegmentSet::from_bits(e.word("away (bits)", 0..=1).to_le_bytes()[0]),
-        restrictions: core::array::from_fn(|_| SpeedCode(e.word("restriction (code)", 0..=7).to_le_bytes()[0])),
+        standing: Standing {
+            bodies: core::array::from_fn(|_| any_set(e, "one train (bits)")),
+            loose: any_set(e, "any train (bits)"),
+            limits: SpeedLimits::from_parts(core::array::from_fn(|_| any_set(e, "limited to a code (bits)"))),
+        },
     }
 }
 
@@ -55,14 +60,14 @@ fn flipped_code(code: SpeedCode, bit: u16) -> SpeedCode {
 /// The fields of a grant.
 const OF_A_GRANT: usize = 5;
 
-/// The first case that is a restriction.
-const RESTRICTIONS: usize = 6 + GRANTS * OF_A_GRANT;
+/// The first case that is where trains stand: the bodies and the loose circuits.
+const STANDING: usize = 6 + GRANTS * OF_A_GRANT;
 
-/// The fields of a table: epoch, check, occupied, blocked, toward, away, those of each grant, each restriction.
-const FIELDS: usize = RESTRICTIONS + MAX_CIRCUITS / TOGETHER;
+/// The first case that is the limits of a code.
+const LIMITS: usize = STANDING + GRANTS + 1;
 
-/// How many restrictions are one case.
-const TOGETHER: usize = 8;
+/// The fields of a table: epoch, check, occupied, blocked, toward, away, those of each grant, where trains stand, the limits of each code.
+const FIELDS: usize = LIMITS + MAX_CODES;
 
 harness! {
     /// A table is read as it was written in the cycle in which it was written; an older one is refused, and so is one with a wrong bit,
@@ -102,10 +107,17 @@ harness! {
             3 => wrong.blocked = flipped(wrong.blocked, bit),
             4 => wrong.toward = flipped_segment(wrong.toward, bit),
             5 => wrong.away = flipped_segment(wrong.away, bit),
-            RESTRICTIONS.. => {
-                for (number, restriction) in wrong.restrictions.iter_mut().enumerate() {
-                    let here = number / TOGETHER == field - RESTRICTIONS && number % TOGETHER == usize::from(bit >> 3 & 7);
-                    *restriction = if here { flipped_code(*restriction, bit) } else { *restriction };
+            LIMITS.. => {
+                let mut limits = wrong.standing.limits.parts();
+                for (code, limited) in limits.iter_mut().enumerate() {
+                    *limited = if code == field - LIMITS { flipped(*limited, bit) } else { *limited };
+                }
+                wrong.standing.limits = SpeedLimits::from_parts(limits);
+            }
+            STANDING.. => {
+                let standing = &mut wrong.standing;
+                for (number, set) in standing.bodies.iter_mut().chain([&mut standing.loose]).enumerate() {
+                    *set = if number == field - STANDING { flipped(*set, bit) } else { *set };
                 }
             }
             _ => {
@@ -141,7 +153,7 @@ struct Scene {
 fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let circuit = CircuitId::new(any_byte(e, "a circuit that stands for all (number)", 0..=7));
     let layout = Layout::with_what_proofs_need(Plan { clear: 1, turn: Ticks(1), ..Plan::EMPTY });
-    let contents = Contents { restrictions: [SpeedCode(7); MAX_CIRCUITS], ..any_contents(e) };
+    let contents = any_contents(e);
     let now = Epoch(e.word("this cycle (epoch)", 0..=1));
     e.assume(circuit.is_some() && layout.is_ok());
     Some(Scene { layout: layout.ok()?, contents, now, circuit: circuit? })
@@ -174,7 +186,7 @@ harness! {
     theorem "T-ATC-3";
     requirements ["ATC-6"];
     assumptions [];
-    bound "1 route, no segment, no restriction";
+    bound "1 route, no segment";
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
@@ -201,7 +213,7 @@ harness! {
     theorem "T-ATC-3";
     requirements ["ATC-6"];
     assumptions [];
-    bound "1 route, no segment, no restriction";
+    bound "1 route, no segment";
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {

@@ -9,8 +9,8 @@ use super::{any_input, any_layout, any_route_state, held, kept};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Epoch, Input, Layout, MAX_CIRCUITS, Output, Phase, Plan, Rear, Request, Route, RouteState,
-    SegmentSet, Settling, SpeedCode, State, Track, Works,
+    CircuitSet, Directions, Epoch, Input, Layout, Output, Phase, Plan, Rear, Request, Route, RouteState, SegmentSet,
+    Settling, SpeedLimits, State, Track, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -235,8 +235,12 @@ fn holds(train: &Train, ground: &Ground, state: &RouteState) -> bool {
     holds && (!train.slid || followed && state.overlap)
 }
 
+/// The code of every temporary restriction.
+const RESTRICTED: u8 = 5;
+
 /// Any state of a device with one route, whose circuits count as occupied as the input says.
 fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
+    let restricted = super::any_circuits(e, "restricted (bits)", 0..=0);
     State {
         track: Track::INITIAL,
         started: Ticks(u16::MAX),
@@ -251,7 +255,9 @@ fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
         works: Works {
             blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: CircuitSet::EMPTY,
-            restrictions: [SpeedCode::STOP; MAX_CIRCUITS],
+            restrictions: SpeedLimits::from_parts(core::array::from_fn(|code| {
+                restricted.only_if(code == usize::from(RESTRICTED))
+            })),
         },
         epoch: Epoch(0),
     }
@@ -267,6 +273,8 @@ struct Scene {
     train: Train,
     /// The train at the end of the cycle.
     informed: Train,
+    /// The circuits that have been restricted for a cycle or more.
+    restricted: CircuitSet,
     output: Output<1>,
     request: Option<Request>,
 }
@@ -291,6 +299,9 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     }
     let train = train.moves(e, &ground);
     let input: Input = any_input(e);
+    let orders = input.orders;
+    let restricted =
+        device.works.restrictions.parts()[usize::from(RESTRICTED)].without(orders.restrict.or(orders.lift));
     e.assume(train.is_reported(&ground, input.occupied));
     let (after, output) = layout.interlock(device, input);
     let (_, _, contents) = output.table.parts();
@@ -298,7 +309,7 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let lets_in = output.proceed.bits() & 1 == 1 || granted;
     let informed = train.informed(e, &ground, lets_in, input.occupied);
     let after = after.routes[0];
-    Some(Scene { ground, route, before, after, train, informed, output, request: input.request })
+    Some(Scene { ground, route, before, after, train, informed, restricted, output, request: input.request })
 }
 
 /// Whether the place is held by the route.
@@ -405,5 +416,56 @@ harness! {
         e.cover(Cover::Entered as u32, after.phase == Phase::InUse && train.front == FIRST);
         e.cover(Cover::Late as u32, train.front == FIRST && train.late > 0);
         e.cover(Cover::Let as u32, informed.authority && !train.authority);
+    }
+}
+
+harness! {
+    /// Every two circuits on which the train stands next to each other, the entry and the path of its route, are told to the ATC as those of one
+    /// train; and the limit of each circuit of the path under it is none above that of the route, or of a restriction.
+    t_ilk_train_body(e)
+    theorem "T-ATC-2";
+    requirements ["ATC-8", "ATC-9"];
+    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running"];
+    bound BOUND;
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Joined: "two neighbouring circuits in which the train is reported, the first of them the entry or in the path, and the second in the path, are of one body",
+        Route: "the limit of a circuit of the path in which it is reported is not above the speed of the route",
+        Restriction: "nor above that of a restriction, there or at the entry",
+        Known: "no circuit of the path in which it is reported is one that no route holds",
+    }
+    covers {
+        Entry: "the train stands at the entry and in the path",
+        Path: "it stands in two circuits of the path, and a place is released behind it",
+        Restricted: "its tail stands in a restricted circuit",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let Scene { ground, route, informed, restricted, output, .. } = &scene;
+        let (first, last) = informed.seen();
+        let (_, _, contents) = output.table.parts();
+        let standing = contents.standing;
+        let under = |position: u8| first <= position && position <= last && informed.counts();
+        let (mut joined, mut by_route, mut by_restriction, mut known) = (true, true, true, true);
+        let mut before = (ENTRY, ground.entry);
+        by_restriction &= !under(ENTRY) || !restricted.meets(ground.entry) || standing.limits.over(ground.entry).0 <= RESTRICTED;
+        for (position, circuit) in (FIRST..).zip(&ground.path) {
+            let here = position <= ground.last && under(position);
+            let both = here && under(before.0);
+            joined &= !both || standing.bodies[0].contains(before.1.or(*circuit));
+            let limit = standing.limits.over(*circuit).0;
+            by_route &= !here || limit <= route.speed.0;
+            by_restriction &= !here || !restricted.meets(*circuit) || limit <= RESTRICTED;
+            known &= !here || !standing.loose.meets(*circuit);
+            before = (position, *circuit);
+        }
+        e.claim(Claim::Joined as u32, joined);
+        e.claim(Claim::Route as u32, by_route);
+        e.claim(Claim::Restriction as u32, by_restriction);
+        e.claim(Claim::Known as u32, known);
+        e.cover(Cover::Entry as u32, under(ENTRY) && under(FIRST));
+        e.cover(Cover::Path as u32, under(FIRST + 1) && last > FIRST + 1 && scene.after.tail > 0);
+        e.cover(Cover::Restricted as u32, under(FIRST) && last > FIRST && restricted.meets(ground.path[0]));
     }
 }

@@ -1,7 +1,7 @@
 //! Maintenance (T-ILK-8): blocks, restrictions, and which blocks staff may rely on.
 
 use super::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
-use atc_kernel::interlocking::{Layout, MAX_CIRCUITS, SpeedCode, State, Works};
+use atc_kernel::interlocking::{CircuitSet, Layout, SpeedCode, SpeedLimits, State, Works};
 
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
 const ROUTES: usize = if cfg!(small) { 1 } else { 2 };
@@ -22,7 +22,7 @@ harness! {
     claims {
         Blocked: "a circuit is blocked exactly if that is commanded, or it was and the opposite is not commanded",
         Restricted: "its restriction is the commanded one, and changes by command only; a command to restrict goes before one to lift",
-        Told: "the shared table has these blocks and restrictions, whatever routes do",
+        Told: "the shared table has these blocks, and no limit above the restriction, whatever routes do",
         Confirmed: "only a blocked circuit that no route holds is confirmed",
         Clear: "it becomes confirmed only while it is not occupied",
         Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and the neighbour has not been permitted to send for the turn time",
@@ -44,8 +44,9 @@ harness! {
         let has = |bits: u64| bits & it != 0;
         let restriction = SpeedCode(e.word("its restriction (code)", 0..=7).to_le_bytes()[0]);
         let elsewhere = SpeedCode(e.word("restriction elsewhere (code)", 0..=7).to_le_bytes()[0]);
-        let restrictions: [SpeedCode; MAX_CIRCUITS] =
-            core::array::from_fn(|place| if it >> place & 1 == 1 { restriction } else { elsewhere });
+        let alone = CircuitSet::from_bits(it);
+        let restrictions =
+            SpeedLimits::NONE.and_at_most(restriction, alone).and_at_most(elsewhere, CircuitSet::ALL.without(alone));
         let blocked = any_circuits(e, "blocked (bits)", 0..=u16::MAX);
         // A valid state confirms nothing else.
         let confirmed = any_circuits(e, "confirmed, if blocked (bits)", 0..=u16::MAX).and(blocked);
@@ -83,17 +84,19 @@ harness! {
         let (restrict, lift) = (has(orders.restrict.bits()), has(orders.lift.bits()));
         let commanded = if orders.speed.0 < 7 { orders.speed.0 } else { 7 };
         let wanted = if restrict { commanded } else if lift { 7 } else { restriction.0 };
-        let mut found = 0;
         let (_, _, contents) = output.table.parts();
-        let mut told = 0;
-        for place in 0..32 {
-            if it >> place & 1 == 1 {
-                found = after.works.restrictions[place].0;
-                told = contents.restrictions[place].0;
+        // The lowest code that the circuit is limited to.
+        let lowest = |limits: SpeedLimits| {
+            let mut lowest = 7;
+            for (code, limited) in (0..8).zip(limits.parts()) {
+                lowest = if has(limited.bits()) && code < lowest { code } else { lowest };
             }
-        }
+            lowest
+        };
+        let found = lowest(after.works.restrictions);
         e.claim(Claim::Restricted as u32, found == wanted);
-        e.claim(Claim::Told as u32, has(contents.blocked.bits()) == expected && told == wanted);
+        let told = lowest(contents.standing.limits) <= wanted;
+        e.claim(Claim::Told as u32, has(contents.blocked.bits()) == expected && told);
         let mut in_route = false;
         for number in 0..ROUTES {
             let route = &layout.plan().routes[number];

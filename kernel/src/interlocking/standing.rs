@@ -1,0 +1,79 @@
+//! Where trains may stand behind their fronts, and which speed limits hold there.
+
+use super::layout::Layout;
+use super::limits::SpeedLimits;
+use super::route::RouteState;
+use super::set::CircuitSet;
+
+/// What is known of where trains stand, and of the limits under them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Standing<const R: usize> {
+    /// For each held route the occupied circuits of its path, and of its entry while no place is released: one train may stand on all of them.
+    pub bodies: [CircuitSet; R],
+    /// The occupied circuits that are neither plain line nor of the path of a held route: nobody knows which train is there.
+    pub loose: CircuitSet,
+    /// The highest code on each circuit: of the line, of temporary restrictions, of the route that holds it and, where none does, of every
+    /// route over it.
+    pub limits: SpeedLimits,
+}
+
+impl<const R: usize> Standing<R> {
+    /// Any train may stand anywhere, and trains stop.
+    pub const UNKNOWN: Self =
+        Self { bodies: [CircuitSet::EMPTY; R], loose: CircuitSet::ALL, limits: SpeedLimits::STOP };
+
+    /// What the routes in these states say of it.
+    #[inline]
+    pub fn of<const P: usize, const N: usize, const S: usize>(
+        layout: &Layout<R, P, N, S>,
+        routes: &[RouteState; R],
+        occupied: CircuitSet,
+        restrictions: SpeedLimits,
+    ) -> Self {
+        let plan = layout.plan();
+        let mut bodies = [CircuitSet::EMPTY; R];
+        let mut held = CircuitSet::EMPTY;
+        let mut limits = restrictions.and(plan.line);
+        for ((route, state), body) in plan.routes.iter().zip(routes).zip(&mut bodies) {
+            let path = state.path(route).circuits;
+            held = held.or(path);
+            limits = limits.and_at_most(route.speed, path);
+            let within = path.and(occupied);
+            let entering = state.tail == 0 && !within.is_empty();
+            *body = within.or(route.entry.and(occupied).only_if(entering));
+        }
+        for route in &plan.routes {
+            limits = limits.and_at_most(route.speed, route.held_from(0).circuits.without(held));
+        }
+        let mut known = held;
+        for segment in &plan.segments {
+            known = known.or(segment.all());
+        }
+        Self { bodies, loose: occupied.without(known), limits }
+    }
+
+    /// Where the train may stand whose front is in `front`: everything that may be one train with it, and where that is not known, every occupied
+    /// circuit.
+    #[inline]
+    pub fn train<const P: usize, const N: usize, const S: usize>(
+        &self,
+        layout: &Layout<R, P, N, S>,
+        occupied: CircuitSet,
+        front: CircuitSet,
+    ) -> CircuitSet {
+        let (mut train, mut longer) = (front, front);
+        for _ in 0..=MAX_JOINTS {
+            train = longer;
+            for body in &self.bodies {
+                longer = longer.or(body.only_if(body.meets(longer)));
+            }
+            for segment in &layout.plan().segments {
+                longer = longer.or(segment.joined_to(longer, occupied));
+            }
+        }
+        if longer != train || train.meets(self.loose) { occupied.or(train) } else { train }
+    }
+}
+
+/// How many borders of routes and segments a train is followed over.
+const MAX_JOINTS: usize = 4;
