@@ -211,9 +211,10 @@ pub struct Values {
     pub settle: u8,
     /// The longest loss of shunt, in cycles.
     pub loss: u8,
-    /// The longest residual running, in ms and in cycles.
-    pub residual_ms: At<u32>,
+    /// The longest residual running.
     pub residual: Ticks,
+    /// The same in ms, as the file gives it or as it is derived.
+    pub residual_ms: At<u32>,
     /// The least that it can be, in ms: the age of a telegram, and the time to a stand from the highest speed.
     pub least_residual_ms: u32,
     /// The longest time to a stand.

@@ -116,7 +116,7 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
 }
 
 /// The values for the whole station that the file does not give.
-fn defaults(station: &Station, model: &Model) -> Vec<(&'static str, String)> {
+fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, String)> {
     let times = &station.times;
     let mut all: Vec<(&'static str, &Range<usize>, String)> = [
         ("times.cycle_ms", &times.cycle_ms),
@@ -127,7 +127,6 @@ fn defaults(station: &Station, model: &Model) -> Vec<(&'static str, String)> {
         ("times.start_ms", &times.start_ms),
         ("times.settle_ms", &times.settle_ms),
         ("times.release_ms", &times.release_ms),
-        ("times.residual_ms", &model.values.residual_ms),
         ("times.stay_ms", &times.stay_ms),
         ("times.standstill_ms", &times.standstill_ms),
         ("times.turn_ms", &times.turn_ms),
@@ -135,6 +134,9 @@ fn defaults(station: &Station, model: &Model) -> Vec<(&'static str, String)> {
     ]
     .map(|(name, time)| (name, &time.span, format!("{time} ms")))
     .into();
+    if let Some(residual) = model.map(|model| &model.values.residual_ms) {
+        all.push(("times.residual_ms", &residual.span, format!("{residual} ms")));
+    }
     let braking = &station.braking;
     let brake = &braking.deceleration_mm_s2;
     all.push(("braking.deceleration_mm_s2", &brake.span, format!("{brake} mm/s²")));

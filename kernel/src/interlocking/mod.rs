@@ -176,7 +176,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
                 Some(Request::Set(asked)) if usize::from(asked.number()) == number => {
                     let refusal = request::refuse_route(self, &state.routes, number, sight);
                     if refusal.is_none() {
-                        state.routes[number] = RouteState::RESERVED;
+                        state.routes[number] = state.routes[number].requested();
                     }
                     answer = Some(refusal);
                 }

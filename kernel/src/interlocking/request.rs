@@ -81,8 +81,11 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     if !route.exists() {
         return Some(Refusal::Unknown);
     }
-    if routes[asked].is_held() {
-        return Some(Refusal::AlreadyHeld);
+    let held = routes[asked];
+    if held.is_held() {
+        let blocked = held.path(route).circuits.meets(sight.blocked) || route.to.meets(sight.closed);
+        let other = if blocked { Some(Refusal::Blocked) } else { None };
+        return if held.may_resume() { other } else { Some(Refusal::AlreadyHeld) };
     }
     let (path, overlap) = (route.held_from(0), route.overlap);
     let mut refusal = None;

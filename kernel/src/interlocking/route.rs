@@ -246,6 +246,19 @@ impl RouteState {
         if at_once { Self::IDLE } else { Self { phase: Phase::Releasing, time: Ticks(0), ..self } }
     }
 
+    /// Whether it was withdrawn after a train had entered it.
+    #[inline]
+    pub fn may_resume(&self) -> bool {
+        self.phase == Phase::Releasing && self.head > 0
+    }
+
+    /// The route is requested: anew where it was withdrawn with a train in it.
+    #[inline]
+    #[must_use]
+    pub fn requested(self) -> Self {
+        if self.is_held() { Self { phase: Phase::InUse, ..self } } else { Self::RESERVED }
+    }
+
     /// The reservation after the points have been looked at: `ready` if all is detected, clear and unblocked.
     #[inline]
     #[must_use]

@@ -85,6 +85,7 @@ fn line(made: &mut Station, side: &str, joints: &[&str; 3], name: &str) {
         name: at(name),
         circuits: vec![at(format!("{side}1")), at(format!("{side}2"))],
         throat: None,
+        speed_kmh: None,
     });
 }
 

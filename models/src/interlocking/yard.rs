@@ -183,10 +183,10 @@ impl<D: Device> Yard<D> {
     fn commands(&self, state: &State) -> Vec<(Option<Request>, Orders)> {
         let mut commands = vec![(None, Orders::default())];
         for request in &self.environment.requests {
-            let held = |route: kernel::RouteId| state.kept.routes[usize::from(route.number())].is_held();
+            let of = |route: kernel::RouteId| state.kept.routes[usize::from(route.number())];
             let sensible = match *request {
-                Request::Set(route) => !held(route),
-                Request::Withdraw(route) => held(route),
+                Request::Set(route) => !of(route).is_held() || of(route).may_resume(),
+                Request::Withdraw(route) => of(route).is_held(),
                 Request::Drive(point, position) => state.blades[usize::from(point.number())].rests() != Some(position),
                 Request::Turn(segment, travel) => match travel {
                     Travel::Toward => !state.kept.directions.toward.has(segment),
