@@ -38,6 +38,13 @@ pub struct Model {
     pub notes: Vec<Note>,
 }
 
+impl Model {
+    /// For how long at most a train may count on what was before: the longest release time, or the turn time.
+    pub fn longest_authority(&self) -> Ticks {
+        self.routes.iter().map(|route| route.release).max().unwrap_or_default().max(self.values.turn)
+    }
+}
+
 /// A circuit.
 #[derive(Clone, Debug, Default)]
 pub struct Circuit {
@@ -207,6 +214,8 @@ pub struct Values {
     pub clear: u8,
     /// The time after a start.
     pub start: Ticks,
+    /// The same in ms, as the file gives it or as it is derived.
+    pub start_ms: At<u32>,
     /// The settling time of points, in cycles.
     pub settle: u8,
     /// The longest loss of shunt, in cycles.
@@ -241,6 +250,7 @@ impl Default for Values {
             cycle_ms: 0,
             clear: 0,
             start: Ticks(0),
+            start_ms: At::derived(0),
             settle: 0,
             loss: 0,
             residual_ms: At::derived(0),

@@ -98,7 +98,9 @@ impl Rule {
             Self::StartTooShort => {
                 "after a start nothing moves until release and turn times have passed, or the file says why not"
             }
-            Self::ResidualTooShort => "the residual running covers the age of a telegram and the braking from the highest speed",
+            Self::ResidualTooShort => {
+                "the residual running covers the age of a telegram and the braking from the highest speed"
+            }
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",

@@ -19,8 +19,9 @@ pub struct Times {
     pub drive_ms: At<u32>,
     /// The longest time of a point's stroke.
     pub throw_ms: At<u32>,
-    /// How long after a start nothing moves, is confirmed or turned: at least every release time and the turn time.
-    pub start_ms: At<u32>,
+    /// How long after a start nothing moves, is confirmed or turned [default: the least that can be: the longest release time, or the turn time].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_ms: Option<At<u32>>,
     /// Why a shorter time after a start is enough: every train is known to stand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_protected: Option<At<String>>,
@@ -50,7 +51,7 @@ impl Default for Times {
             shunt_loss_ms: At::derived(1_000),
             drive_ms: At::derived(10_000),
             throw_ms: At::derived(7_000),
-            start_ms: At::derived(60_000),
+            start_ms: None,
             start_protected: None,
             settle_ms: At::derived(1_000),
             release_ms: At::derived(60_000),

@@ -34,7 +34,7 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         row("Longest loss of shunt", format!("{} ms", times.shunt_loss_ms), "", &times.shunt_loss_ms.span),
         of_routes("Drive time", &times.drive_ms, |route| route.drive.0, "down"),
         row("Longest stroke of a point", format!("{} ms", longest_stroke(model)), "", &times.throw_ms.span),
-        kept("Nothing moves after a start for", &times.start_ms, model.values.start.0.into(), "up"),
+        kept("Nothing moves after a start for", &model.values.start_ms, model.values.start.0.into(), "up"),
         kept("Settling time of points", &times.settle_ms, model.values.settle.into(), "up"),
         of_routes("Release time", &times.release_ms, |route| route.release.0, "up"),
         kept("Residual running", &model.values.residual_ms, model.values.residual.0.into(), "up"),
@@ -124,7 +124,6 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
         ("times.shunt_loss_ms", &times.shunt_loss_ms),
         ("times.drive_ms", &times.drive_ms),
         ("times.throw_ms", &times.throw_ms),
-        ("times.start_ms", &times.start_ms),
         ("times.settle_ms", &times.settle_ms),
         ("times.release_ms", &times.release_ms),
         ("times.stay_ms", &times.stay_ms),
@@ -134,8 +133,9 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
     ]
     .map(|(name, time)| (name, &time.span, format!("{time} ms")))
     .into();
-    if let Some(residual) = model.map(|model| &model.values.residual_ms) {
-        all.push(("times.residual_ms", &residual.span, format!("{residual} ms")));
+    if let Some(values) = model.map(|model| &model.values) {
+        all.push(("times.start_ms", &values.start_ms.span, format!("{} ms", values.start_ms)));
+        all.push(("times.residual_ms", &values.residual_ms.span, format!("{} ms", values.residual_ms)));
     }
     let braking = &station.braking;
     let brake = &braking.deceleration_mm_s2;

@@ -33,7 +33,7 @@ pub use layout::{
 };
 pub use limits::SpeedLimits;
 pub use point::Settling;
-pub use request::{Refusal, Request, Sight, refuse_point, refuse_route};
+pub use request::{Refusal, Request, Sight, refuse_again, refuse_point, refuse_route};
 pub use route::{Phase, Rear, RouteState};
 pub use set::{
     CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,
@@ -120,12 +120,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         //= spec/interlocking.md#ilk-24-start
         //# After a start, until the layout's time has passed, a device MUST refuse to set a route, to drive a point and to turn a segment, and confirm no block.
         let moves = !matches!(input.request, None | Some(Request::Withdraw(_)));
-        let (alone, answer) = if starting && moves {
-            let idle = Input { request: None, ..input };
-            (self.carry_out(&mut state, idle, sight).0, Some(Err(Refusal::Starting)))
-        } else {
-            self.carry_out(&mut state, input, sight)
-        };
+        let refused = starting && moves;
+        let heard = Input { request: if refused { None } else { input.request }, ..input };
+        let (alone, answer) = self.carry_out(&mut state, heard, sight);
+        let answer = if refused { Some(Err(Refusal::Starting)) } else { answer };
         let mut demand = Demand { wanted: alone, ..Demand::default() };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
             demand = demand.with(route, *held);
@@ -174,7 +172,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         for (number, route) in self.plan().routes.iter().enumerate() {
             match input.request {
                 Some(Request::Set(asked)) if usize::from(asked.number()) == number => {
+                    let held = state.routes[number];
+                    let again = request::refuse_again(route, held, sight);
                     let refusal = request::refuse_route(self, &state.routes, number, sight);
+                    let refusal = if held.may_resume() { again } else { refusal };
                     if refusal.is_none() {
                         state.routes[number] = state.routes[number].requested();
                     }

@@ -81,11 +81,8 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     if !route.exists() {
         return Some(Refusal::Unknown);
     }
-    let held = routes[asked];
-    if held.is_held() {
-        let blocked = held.path(route).circuits.meets(sight.blocked) || route.to.meets(sight.closed);
-        let other = if blocked { Some(Refusal::Blocked) } else { None };
-        return if held.may_resume() { other } else { Some(Refusal::AlreadyHeld) };
+    if routes[asked].is_held() {
+        return Some(Refusal::AlreadyHeld);
     }
     let (path, overlap) = (route.held_from(0), route.overlap);
     let mut refusal = None;
@@ -111,6 +108,13 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     } else {
         Some(Refusal::PointUnderTrain)
     }
+}
+
+/// Why a route that was withdrawn with a train in it cannot be in use again; `None` if it can.
+#[inline]
+pub fn refuse_again<const P: usize>(route: &Route<P>, state: RouteState, sight: Sight) -> Option<Refusal> {
+    let blocked = state.path(route).circuits.meets(sight.blocked) || route.to.meets(sight.closed);
+    blocked.then_some(Refusal::Blocked)
 }
 
 /// Why `route` cannot be reserved while `other` holds what it holds. The numbers are those of the two.

@@ -30,6 +30,8 @@ impl<const R: usize> Standing<R> {
         occupied: CircuitSet,
         restrictions: SpeedLimits,
     ) -> Self {
+        //= spec/interlocking.md#atc-9-limits
+        //# The limit of a circuit MUST NOT be above its line speed, a temporary restriction, the speed of the route that holds it or, where none does, of any route over it.
         let plan = layout.plan();
         let mut bodies = [CircuitSet::EMPTY; R];
         let mut held = CircuitSet::EMPTY;
@@ -61,6 +63,8 @@ impl<const R: usize> Standing<R> {
         occupied: CircuitSet,
         front: CircuitSet,
     ) -> CircuitSet {
+        //= spec/interlocking.md#atc-8-train
+        //# A train MUST be taken to stand on its front's circuit and, from there on, on every occupied circuit that is of the same held route, its entry included while no place is released, or follows on plain line; and on every occupied circuit where one of these is neither of a held route nor of plain line.
         let (mut train, mut longer) = (front, front);
         for _ in 0..=MAX_JOINTS {
             train = longer;

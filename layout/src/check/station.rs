@@ -27,17 +27,19 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         let right = format!("turn_ms must be more than {}", times.telegram_age_ms);
         problems.push(Problem::new(Rule::TurnUnderTelegram, &times.turn_ms.span, what, right));
     }
-    let longest = model.routes.iter().map(|route| route.release).max().unwrap_or_default().max(model.values.turn);
+    let longest = model.longest_authority();
     if model.values.start < longest && times.start_protected.is_none() {
         let (start, longest) = (u32::from(model.values.start.0) * cycle, u32::from(longest.0) * cycle);
         let what =
             format!("after a start nothing moves for {start} ms, but a train may count on a route for {longest} ms");
         let right = format!("start_ms must be at least {longest}, or start_protected say why every train stands");
-        problems.push(Problem::new(Rule::StartTooShort, &times.start_ms.span, what, right));
+        problems.push(Problem::new(Rule::StartTooShort, &model.values.start_ms.span, what, right));
     }
     let (residual, least) = (&model.values.residual_ms, model.values.least_residual_ms);
     if residual.value < least {
-        let what = format!("a train runs on for {residual} ms after its authority is taken, but a telegram lives and a brake takes {least} ms");
+        let what = format!(
+            "a train runs on for {residual} ms after its authority is taken, but a telegram lives and a brake takes {least} ms"
+        );
         let right = format!("residual_ms must be at least {least}");
         problems.push(Problem::new(Rule::ResidualTooShort, &residual.span, what, right));
     }

@@ -42,6 +42,10 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
         let route = route::route(station, given, &names, &model, cycle, problems);
         model.routes.push(route);
     }
+    if station.times.start_ms.is_none() {
+        model.values.start = model.longest_authority();
+        model.values.start_ms = At::derived(u32::from(model.values.start.0) * model.values.cycle_ms);
+    }
     ends::ends(station, &names, &mut model, problems);
     positions::positions(&mut model);
     approaches(station, &names, &mut model, problems);

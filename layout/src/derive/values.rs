@@ -61,7 +61,9 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     });
     let turn = ticks("turn_ms", &times.turn_ms, Rounding::Permits, cycle, problems);
     let loss = at_most("shunt_loss_ms", &times.shunt_loss_ms, cycle, problems);
-    let start = at_most("start_ms", &times.start_ms, cycle, problems);
+    // Where the file says nothing it is derived from the routes.
+    let start_ms = times.start_ms.clone().unwrap_or_else(|| At::derived(0));
+    let start = at_most("start_ms", &start_ms, cycle, problems);
     let settle = at_most("settle_ms", &times.settle_ms, cycle, problems);
     let settle = u8::try_from(settle.0).unwrap_or_else(|_| {
         let what = format!("settle_ms is {} cycles", settle.0);
@@ -79,6 +81,7 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         // More than that is more than any T_clear.
         loss: u8::try_from(loss.0).unwrap_or(u8::MAX),
         start,
+        start_ms,
         settle,
         residual_ms,
         residual,

@@ -360,10 +360,10 @@ harness! {
     }
 }
 
-/// Whether one train may stand on both circuits, by what the table says: they are of one body, next to each other on plain line with its throat, or
-/// nobody knows which train is in one of them.
+/// Whether a train on `one` may stand on `other` too, by what the table says: they are of one body, next to each other on plain line with its throat,
+/// or nobody knows which train is on `one`.
 fn is_joint(line: &Line, standing: &Standing<ROUTES>, one: u64, other: u64) -> bool {
-    let mut joint = standing.loose.bits() & (one | other) != 0;
+    let mut joint = standing.loose.bits() & one != 0;
     for body in standing.bodies {
         joint |= body.bits() & one != 0 && body.bits() & other != 0;
     }

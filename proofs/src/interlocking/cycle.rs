@@ -1,10 +1,10 @@
 //! The whole cycle (T-ILK-1): that it is made of the parts that the other theorems are about, and that a refusal leaves no trace.
 
-use super::{any_cycle, any_input, any_layout, any_state, bit};
+use super::{any_cycle, any_input, any_layout, any_state, bit, held};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, RouteState,
+    CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, Route, RouteState,
     SegmentSet, Sight, State, Travel, View, grant, ready, refuse_route, shows_proceed,
 };
 
@@ -90,6 +90,11 @@ struct Parts {
     refused: bool,
 }
 
+/// Whether what the route still holds of its path is blocked, or the line that it leads to.
+fn is_blocked<const P: usize>(route: &Route<P>, state: RouteState, sight: Sight) -> bool {
+    held(route, state).circuits.bits() & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0
+}
+
 /// One cycle of any layout in any valid state, as route `it` sees it. None if nothing is assumed to be so.
 fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
     e: &mut E,
@@ -127,17 +132,21 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let withdrawn =
         matches!(input.request, Some(Request::Withdraw(asked)) if is_it(asked.number())) && mine.phase != Phase::Idle;
     let untouched = now == end(mine);
-    let refusal = refuse_route(&layout, &followed, it, sight);
-    let free = refusal.is_none();
+    // A route that was withdrawn with a train in it is in use again; any other is reserved.
+    let again = mine.phase == Phase::Releasing && mine.head > 0;
+    let free =
+        if again { !is_blocked(route, mine, sight) } else { refuse_route(&layout, &followed, it, sight).is_none() };
     let done = output.answer == Some(Ok(()));
-    let reserved = if free { done && now == end(RouteState::RESERVED) } else { !done && untouched };
+    let resumed = RouteState { phase: Phase::InUse, ..mine };
+    let requested = if again { now == resumed } else { now == end(RouteState::RESERVED) };
+    let reserved = if free { done && requested } else { !done && untouched };
     let others = (0..R).any(|number| number != it && followed[number].phase != Phase::Idle);
     let (epoch, _, contents) = output.table.parts();
     Some(Parts {
         untouched: asked || withdrawn || untouched,
         withdrawn: !withdrawn || now == end(mine.withdraw(route, sight.occupied)),
         reserved: !asked || reserved,
-        once: !asked || mine.phase == Phase::Idle || !done,
+        once: !asked || mine.phase == Phase::Idle || again || !done,
         aspect: (output.proceed.bits() >> it & 1 == 1) == shows_proceed(route, now, view),
         grant: contents.grants[it] == grant(route, now, view),
         epoch: after.epoch.0 == before.epoch.0.wrapping_add(1) && epoch == after.epoch,
@@ -175,8 +184,8 @@ harness! {
     claims {
         Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
         Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
-        Reserved: "a route that is asked for is reserved if the conflict check, after all have followed their trains, finds nothing; and otherwise as untouched",
-        Once: "a held route is not reserved again",
+        Reserved: "a route that is asked for is reserved, or in use again if it was withdrawn with a train in it, if the conflict check, after all have followed their trains, finds nothing; and otherwise as untouched",
+        Once: "a held route is not reserved again, but one that was withdrawn with a train in it",
         Aspect: "its signal shows what the route and the same circuits and points say",
         Grant: "and so does its grant",
         Epoch: "the cycle has the next number, and so has its table",
@@ -203,8 +212,8 @@ harness! {
     claims {
         Untouched: "a route that is not asked for follows its train and is reserved if it is ready, no more",
         Withdrawn: "a route that is withdrawn follows its train first, and is withdrawn if it is held then",
-        Reserved: "a route that is asked for is reserved if the conflict check finds nothing; and otherwise as untouched",
-        Once: "a held route is not reserved again",
+        Reserved: "a route that is asked for is reserved, or in use again if it was withdrawn with a train in it, if the conflict check finds nothing; and otherwise as untouched",
+        Once: "a held route is not reserved again, but one that was withdrawn with a train in it",
         Aspect: "its signal shows what the route, the same circuits and points, and the segments with a blocked circuit say",
         Grant: "and so does its grant",
         Epoch: "the cycle has the next number, and so has its table",

@@ -123,7 +123,7 @@ harness! {
         e.claim(Claim::Released as u32, idle || after.tail == before.tail || after.tail == before.tail + 1 && released);
         let still = after.head == 0 && after.tail == 0 && after.overlap;
         e.claim(Claim::Unproved as u32, before.proved || idle || still);
-        let over = before.phase == Phase::Releasing && before.time.0 + 1 >= route.release.0;
+        let over = before.phase == Phase::Releasing && u32::from(before.time.0) + 1 >= u32::from(route.release.0);
         let all_clear = !scene.path_occupied(before) && !scene.overlap_occupied(before);
         // The last place may be released in this very cycle, and the overlap with it.
         let last = before.tail + 1 >= route.length && released || before.tail == route.length;
@@ -309,7 +309,7 @@ harness! {
         let ready = any_flag(e, "all is ready (odd: yes)");
         let after = before.reserve(route, scene.occupied, ready);
         let provisional = before.phase == Phase::Provisional;
-        let late = before.time.0 + 1 >= route.drive.0;
+        let late = u32::from(before.time.0) + 1 >= u32::from(route.drive.0);
         e.claim(Claim::Set as u32, !provisional || (after.phase == Phase::Set) == ready);
         e.claim(Claim::Failed as u32, !provisional || (after.phase == Phase::Failed) == (!ready && late));
         let same = after.phase == before.phase && after.time == before.time && after.proved == before.proved;

@@ -235,8 +235,8 @@ fn holds(train: &Train, ground: &Ground, state: &RouteState) -> bool {
     holds && (!train.slid || followed && state.overlap)
 }
 
-/// The code of every temporary restriction.
-const RESTRICTED: u8 = 5;
+/// The code of every temporary restriction, and of the line where it is slow.
+const SLOW: u8 = 5;
 
 /// Any state of a device with one route, whose circuits count as occupied as the input says.
 fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
@@ -256,7 +256,7 @@ fn any_device<E: Engine + ?Sized>(e: &mut E) -> State<1, 0> {
             blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: CircuitSet::EMPTY,
             restrictions: SpeedLimits::from_parts(core::array::from_fn(|code| {
-                restricted.only_if(code == usize::from(RESTRICTED))
+                restricted.only_if(code == usize::from(SLOW))
             })),
         },
         epoch: Epoch(0),
@@ -273,8 +273,8 @@ struct Scene {
     train: Train,
     /// The train at the end of the cycle.
     informed: Train,
-    /// The circuits that have been restricted for a cycle or more.
-    restricted: CircuitSet,
+    /// The circuits where the line is slow, or that have been restricted for a cycle or more.
+    slow: CircuitSet,
     output: Output<1>,
     request: Option<Request>,
 }
@@ -283,6 +283,8 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let mut plan: Plan<1, LENGTH, 0, 0> = any_plan(e);
     // A rule of engineering, kept from the start: who draws values would break it with nearly all of them.
     plan.routes[0].approach = plan.routes[0].approach.or(plan.routes[0].entry);
+    let slow = super::any_circuits(e, "slow line (bits)", 0..=0);
+    plan.line = SpeedLimits::from_parts(core::array::from_fn(|code| slow.only_if(code == usize::from(SLOW))));
     let layout = Layout::with_what_proofs_need(plan).ok();
     e.assume(layout.is_some());
     let layout = layout?;
@@ -305,8 +307,8 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let train = train.moves(e, &ground);
     let input: Input = any_input(e);
     let orders = input.orders;
-    let restricted =
-        device.works.restrictions.parts()[usize::from(RESTRICTED)].without(orders.restrict.or(orders.lift));
+    let restricted = device.works.restrictions.parts()[usize::from(SLOW)].without(orders.restrict.or(orders.lift));
+    let slow = restricted.or(plan.line.parts()[usize::from(SLOW)]);
     e.assume(train.is_reported(&ground, input.occupied));
     let (after, output) = layout.interlock(device, input);
     let (_, _, contents) = output.table.parts();
@@ -314,7 +316,7 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let lets_in = output.proceed.bits() & 1 == 1 || granted;
     let informed = train.informed(e, &ground, lets_in, input.occupied);
     let after = after.routes[0];
-    Some(Scene { ground, route, before, after, train, informed, restricted, output, request: input.request })
+    Some(Scene { ground, route, before, after, train, informed, slow, output, request: input.request })
 }
 
 /// Whether the place is held by the route.
@@ -436,9 +438,9 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Joined: "two neighbouring circuits in which the train is reported, the first of them the entry or in the path, and the second in the path, are of one body",
-        Route: "the limit of a circuit of the path in which it is reported is not above the speed of the route",
-        Restriction: "nor above that of a restriction, there or at the entry",
-        Known: "no circuit of the path in which it is reported is one that no route holds",
+        Route: "the limit of a circuit of the path is not above the speed of the route, whether it holds the circuit or not",
+        Restriction: "nor is that of a circuit in which the train is reported above a restriction or the speed of the line, there or at the entry",
+        Known: "an occupied circuit of the path counts as one that no route holds exactly if the route does not hold it; and none in which the train is reported does",
     }
     covers {
         Entry: "the train stands at the entry and in the path",
@@ -447,22 +449,24 @@ harness! {
     }
     {
         let Some(scene) = any_scene(e) else { return };
-        let Scene { ground, route, informed, restricted, output, .. } = &scene;
+        let Scene { ground, route, informed, after, slow, output, .. } = &scene;
         let (first, last) = informed.seen();
         let (_, _, contents) = output.table.parts();
         let standing = contents.standing;
         let under = |position: u8| first <= position && position <= last && informed.counts();
         let (mut joined, mut by_route, mut by_restriction, mut known) = (true, true, true, true);
         let mut before = (ENTRY, ground.entry);
-        by_restriction &= !under(ENTRY) || !restricted.meets(ground.entry) || standing.limits.over(ground.entry).0 <= RESTRICTED;
+        by_restriction &= !under(ENTRY) || !slow.meets(ground.entry) || standing.limits.over(ground.entry).0 <= SLOW;
         for (position, circuit) in (FIRST..).zip(&ground.path) {
-            let here = position <= ground.last && under(position);
+            let in_path = position <= ground.last;
+            let here = in_path && under(position);
             let both = here && under(before.0);
             joined &= !both || standing.bodies[0].contains(before.1.or(*circuit));
             let limit = standing.limits.over(*circuit).0;
-            by_route &= !here || limit <= route.speed.0;
-            by_restriction &= !here || !restricted.meets(*circuit) || limit <= RESTRICTED;
-            known &= !here || !standing.loose.meets(*circuit);
+            by_route &= !in_path || limit <= route.speed.0;
+            by_restriction &= !here || !slow.meets(*circuit) || limit <= SLOW;
+            let loose = contents.occupied.meets(*circuit) && !holds_place(route, *after, position - FIRST);
+            known &= !in_path || standing.loose.meets(*circuit) == loose && !(here && loose);
             before = (position, *circuit);
         }
         e.claim(Claim::Joined as u32, joined);
@@ -471,6 +475,6 @@ harness! {
         e.claim(Claim::Known as u32, known);
         e.cover(Cover::Entry as u32, under(ENTRY) && under(FIRST));
         e.cover(Cover::Path as u32, under(FIRST + 1) && last > FIRST + 1 && scene.after.tail > 0);
-        e.cover(Cover::Restricted as u32, under(FIRST) && last > FIRST && restricted.meets(ground.path[0]));
+        e.cover(Cover::Restricted as u32, under(FIRST) && last > FIRST && slow.meets(ground.path[0]));
     }
 }

@@ -1,6 +1,7 @@
 //! Maintenance (T-ILK-8): blocks, restrictions, and which blocks staff may rely on.
 
 use super::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
+use crate::engine::any_byte;
 use atc_kernel::interlocking::{CircuitSet, Layout, SpeedCode, SpeedLimits, State, Works};
 
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
@@ -42,8 +43,8 @@ harness! {
         let state: State<ROUTES, 1> = any_state(e);
         let it = bit(e.word("a circuit that stands for all (number)", 0..=15));
         let has = |bits: u64| bits & it != 0;
-        let restriction = SpeedCode(e.word("its restriction (code)", 0..=7).to_le_bytes()[0]);
-        let elsewhere = SpeedCode(e.word("restriction elsewhere (code)", 0..=7).to_le_bytes()[0]);
+        let restriction = SpeedCode(any_byte(e, "its restriction (code)", 0..=7) & 7);
+        let elsewhere = SpeedCode(any_byte(e, "restriction elsewhere (code)", 0..=7) & 7);
         let alone = CircuitSet::from_bits(it);
         let restrictions =
             SpeedLimits::NONE.and_at_most(restriction, alone).and_at_most(elsewhere, CircuitSet::ALL.without(alone));
@@ -95,7 +96,10 @@ harness! {
         };
         let found = lowest(after.works.restrictions);
         e.claim(Claim::Restricted as u32, found == wanted);
-        let told = lowest(contents.standing.limits) <= wanted;
+        let mut told = true;
+        for (here, there) in after.works.restrictions.parts().iter().zip(contents.standing.limits.parts()) {
+            told &= !has(here.bits()) || has(there.bits());
+        }
         e.claim(Claim::Told as u32, has(contents.blocked.bits()) == expected && told);
         let mut in_route = false;
         for number in 0..ROUTES {

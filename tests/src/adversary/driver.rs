@@ -64,10 +64,20 @@ pub fn hear(
 
 /// The circuits ahead of the front within `distance`, the first of them at least.
 pub fn ahead(train: &Train, ground: &Ground, points: &Points, distance: i64) -> Mask {
+    run_over(train, ground, points, |covered, first| covered < distance || first)
+}
+
+/// The circuits that the front runs over within `distance`; none if it stays in its own.
+pub fn within(train: &Train, ground: &Ground, points: &Points, distance: i64) -> Mask {
+    run_over(train, ground, points, |covered, _| covered < distance)
+}
+
+/// The circuits ahead of the front, piece by piece while `goes_on` says so of the distance covered, and of whether no other circuit was found yet.
+fn run_over(train: &Train, ground: &Ground, points: &Points, goes_on: impl Fn(i64, bool) -> bool) -> Mask {
     let (mut found, mut covered) = (0, train.to_joint());
     let (mut piece, mut joint) = (train.front().piece, train.front().exit);
     let here = bit(train.front_circuit(ground));
-    while covered < distance || found & !here == 0 {
+    while goes_on(covered, found & !here == 0) {
         let Some(next) = ground.across(joint, piece) else { break };
         let reverse = ground.pieces[next].point.is_some_and(|point| points.lies(point));
         found |= bit(ground.pieces[next].circuit);
@@ -83,12 +93,11 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: u64)
     let by_telegram = (told.limit - train.run).max(0);
     let (distance, speed) = match train.driver {
         Driver::Telegrams => {
-            train.authority =
-                if told.speed > 0 && by_telegram > 0 { ahead(train, ground, points, by_telegram) } else { 0 };
+            train.authority = if told.speed > 0 { within(train, ground, points, by_telegram) } else { 0 };
             (by_telegram, told.speed)
         }
         Driver::Signals if told.neighbour => {
-            train.authority = ahead(train, ground, points, by_telegram);
+            train.authority = within(train, ground, points, by_telegram);
             (by_telegram, told.speed)
         }
         Driver::Signals => {

@@ -4,10 +4,6 @@
 use super::arsenal::Arsenal;
 use super::judge::Family;
 
-/// Whether the kernel's rules are mended. **Inverted by this one line**: `false` says that the adversary must find every fault of
-/// [`KNOWN`]; `true`, that it must find none of them, nor any other, on any station.
-pub const MENDED: bool = false;
-
 /// A fault.
 #[derive(Clone, Copy, Debug)]
 pub struct Fault {
@@ -23,8 +19,10 @@ pub struct Fault {
     pub ends_in: &'static [Family],
     /// The station on which it is looked for.
     pub layout: &'static str,
-    /// A seed with which it is found soon.
+    /// A seed with which it was found soon.
     pub seed: u64,
+    /// Whether the rules are mended: then it is found no more.
+    pub mended: bool,
 }
 
 const TELEGRAMS: Arsenal = Arsenal { drivers: [true, false], ..Arsenal::RUNNING };
@@ -40,6 +38,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
         seed: 18,
+        mended: true,
     },
     Fault {
         name: "bobbing circuit",
@@ -49,6 +48,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
         seed: 38,
+        mended: true,
     },
     Fault {
         name: "withdrawn route grants again",
@@ -58,6 +58,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Unasked],
         layout: LOOP,
         seed: 11,
+        mended: true,
     },
     Fault {
         name: "point leaves after an individual command",
@@ -67,6 +68,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment],
         layout: LOOP,
         seed: 6,
+        mended: true,
     },
     Fault {
         name: "speed of the tail",
@@ -76,6 +78,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Speed],
         layout: LOOP,
         seed: 40,
+        mended: true,
     },
     Fault {
         name: "restriction under the tail",
@@ -85,6 +88,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Restriction],
         layout: LOOP,
         seed: 4,
+        mended: true,
     },
     Fault {
         name: "consent ended",
@@ -94,6 +98,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Worker, Family::Collision, Family::Authority],
         layout: LOOP,
         seed: 20,
+        mended: true,
     },
     Fault {
         name: "turned while occupied after a restart",
@@ -103,6 +108,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Collision, Family::Authority],
         layout: LOOP,
         seed: 27,
+        mended: true,
     },
     Fault {
         name: "restart forgets the approach",
@@ -112,6 +118,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment],
         layout: LOOP,
         seed: 1,
+        mended: true,
     },
     Fault {
         name: "telegram against the direction",
@@ -121,5 +128,6 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Unasked, Family::Derailment],
         layout: LOOP,
         seed: 1,
+        mended: false,
     },
 ];

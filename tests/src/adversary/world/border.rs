@@ -1,10 +1,15 @@
 //! Where the world of the station meets its neighbours: trains appear, and are told on the far side of the border how far they may run.
 
 use super::super::device::all;
-use super::super::ground::{NEIGHBOUR_SIGNAL_MM, OUTSIDE_MM, bit, members};
+use super::super::ground::{Ground, NEIGHBOUR_SIGNAL_MM, OUTSIDE_MM, bit, members};
 use super::super::moves::Arrival;
 use super::super::train::{Heard, Train, leg};
 use super::World;
+
+/// How far before the border a train has the speed of a restriction behind it: it may hear nothing for the life of a telegram.
+fn margin(ground: &Ground) -> i64 {
+    5_000 + ground.fastest * ground.life * ground.cycle_ms / 1000
+}
 
 impl World<'_> {
     pub(super) fn send(&mut self, line: usize, arrival: Arrival) {
@@ -14,7 +19,8 @@ impl World<'_> {
             let at = OUTSIDE_MM - NEIGHBOUR_SIGNAL_MM;
             // It passes the signal at a speed at which it can keep to a restriction behind the border.
             let slow = self.truth.restricted[it.outermost].0.min(self.ground.fastest);
-            let most = (slow * slow + 2 * self.ground.brake * (NEIGHBOUR_SIGNAL_MM - 10_000)).isqrt();
+            let room = (NEIGHBOUR_SIGNAL_MM - margin(self.ground) - 5_000).max(0);
+            let most = (slow * slow + 2 * self.ground.brake * room).isqrt();
             let speed = arrival.speed.min(most).min(self.ground.fastest);
             self.appear(piece, far, at, Arrival { length: arrival.length.min(at), speed, ..arrival });
         }
@@ -119,7 +125,8 @@ impl World<'_> {
         let limit = train.run + train.to_joint() + ground.lengths[line.outermost];
         // The neighbour knows the restriction behind its border (`limits-reach-over-the-border`).
         let slow = self.truth.restricted[line.outermost].0.min(ground.fastest);
-        let speed = (slow * slow + 2 * ground.brake * (train.to_joint() - 5_000).max(0)).isqrt().min(ground.fastest);
+        let speed =
+            (slow * slow + 2 * ground.brake * (train.to_joint() - margin(ground)).max(0)).isqrt().min(ground.fastest);
         let heard = Heard { limit, speed, hold: bit(line.outermost), age: 0, neighbour: true };
         Some(if open { heard } else { Heard { neighbour: true, ..Heard::STOP } })
     }
