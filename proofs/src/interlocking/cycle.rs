@@ -90,6 +90,12 @@ struct Parts {
     refused: bool,
 }
 
+/// One route follows its train. A function of its own, so that the loop around it is short.
+#[inline(never)]
+fn follow<const P: usize>(state: RouteState, route: &Route<P>, occupied: CircuitSet) -> RouteState {
+    state.follow(route, occupied)
+}
+
 /// Whether what the route still holds of its path is blocked, or the line that it leads to.
 fn is_blocked<const P: usize>(route: &Route<P>, state: RouteState, sight: Sight) -> bool {
     held(route, state).circuits.bits() & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0
@@ -121,7 +127,7 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let view = View { occupied: sight.occupied, blocked: sight.blocked, closed: unsent, firm };
     let mut followed = before.routes;
     for (state, route) in followed.iter_mut().zip(&plan.routes) {
-        *state = state.follow(route, sight.occupied);
+        *state = follow(*state, route, sight.occupied);
     }
     let (route, mine, now) = (&plan.routes[it], followed[it], after.routes[it]);
     let end = |state: RouteState| state.reserve(route, sight.occupied, ready(route, state, view));
