@@ -325,7 +325,7 @@ pub fn parse(text: &str) -> Result<Answer, String> {
         return Err(format!("cbmc does not see all the code: {warning}"));
     }
     if !text.lines().any(|line| matches!(line, "VERIFICATION SUCCESSFUL" | "VERIFICATION FAILED")) {
-        return Err(format!("cbmc gave no status: {}", text.lines().last().unwrap_or_default()));
+        return Err(format!("cbmc gave no status: {}", text.lines().next_back().unwrap_or_default()));
     }
     let mut answer = Answer { unwound: crate::unwound::largest(text.lines()), ..Answer::default() };
     let mut names = BTreeMap::new();
