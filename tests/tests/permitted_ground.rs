@@ -31,6 +31,18 @@ fn where_the_trains_stop() {
     assert!(STOP_MM < conventional && conventional < STOP_MM + LENGTH_MM, "{conventional} mm");
 }
 
+/// Nothing flaps: where the permission falls, it does not rise again within the time of three frames.
+#[test]
+fn the_permission_does_not_flap_at_a_border() {
+    let speeds: Vec<_> = drive(Train::New).iter().map(|moment| moment.output.speed_km_h).collect();
+    let first = speeds.iter().position(|speed| speed.is_some_and(|speed| speed.0 > 250)).expect("it goes");
+    for (cycle, window) in speeds.windows(8).enumerate().skip(first) {
+        let (before, after) = (window[0], window[7]);
+        let least = window.iter().min().copied().flatten();
+        assert!(least >= before.min(after), "cycle {cycle}: {window:?}");
+    }
+}
+
 /// At no place is more permitted than the ground allows there: the code, the restriction of the sub telegram, and a speed from
 /// which the service brake on the real gradient stops the train before the point. In floating point, and from the ground alone.
 #[test]
