@@ -71,19 +71,23 @@ fn never_more_than_the_ground_allows() {
     assert!(bound_by_pattern > 20 && bound_by_limit > 20, "{bound_by_pattern} {bound_by_limit}");
 }
 
-/// What the sub telegram tells is not assumed before it is there: the lowest limit holds until then.
+/// What the sub telegram tells is not assumed before it is there: until then the lowest limit holds, or that of the section behind.
 #[test]
 fn the_worst_until_the_sub_telegram() {
     let config = ground::config();
-    let mut waits = 0;
+    let (mut waits, mut carried) = (0, 0);
     for moment in drive(Train::New) {
         let state = moment.output.state.expect("the oracle says it");
         let Some(section) = state.section else { continue };
         if state.sub.iter().all(|sub| sub.section != section) {
             let permitted = moment.output.speed_km_h.expect("a code is there");
-            assert!(permitted <= config.lowest_limit_km_h, "{permitted} at {} mm", moment.at_mm);
+            let place = SECTIONS.iter().position(|one| one.number == u32::from(section)).expect("of the line");
+            let behind = place.checked_sub(1).map(|behind| config.speeds_km_h[SECTIONS[behind].limit_rank as usize]);
+            let limit = behind.map_or(config.lowest_limit_km_h, |limit| limit.max(config.lowest_limit_km_h));
+            assert!(permitted <= limit, "{permitted} at {} mm", moment.at_mm);
             waits += 1;
+            carried += u32::from(permitted > config.lowest_limit_km_h);
         }
     }
-    assert!(waits > 0);
+    assert!(waits > 0 && carried > 0, "{waits} {carried}");
 }

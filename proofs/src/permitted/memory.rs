@@ -157,6 +157,7 @@ harness! {
     bound "tables of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
     claims {
         Same: "after the cycle both remember the same but for the kind of line",
         Digital: "where the first one was told of a digital line last, they are in the same state",

@@ -22,7 +22,7 @@ pub use distance::{t_per_4, t_per_4_fix, t_per_4_metres};
 pub use memory::{
     per_9, per_machine, per_total, t_per_2, t_per_5_evidence, t_per_6, t_per_6_announced, t_per_7, t_per_8,
 };
-pub use permission::{t_per_1, t_per_5, t_per_5_border, t_per_5_permission, t_per_5_speed};
+pub use permission::{t_per_1, t_per_5, t_per_5_behind, t_per_5_border, t_per_5_permission, t_per_5_speed};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]
@@ -33,6 +33,7 @@ pub const ALL: &[Harness] = &[
     t_per_4_fix::HARNESS,
     t_per_4_metres::HARNESS,
     t_per_5::HARNESS,
+    t_per_5_behind::HARNESS,
     t_per_5_border::HARNESS,
     t_per_5_evidence::HARNESS,
     t_per_5_speed::HARNESS,

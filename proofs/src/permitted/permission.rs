@@ -1,6 +1,6 @@
 //! What is permitted in a state: PER-1, PER-3, PER-5, PER-6, PER-13 to PER-15.
 
-use super::{Line, any_code, any_distance, any_fixed, any_kind, any_line, any_speed, any_state, any_target};
+use super::{any_code, any_distance, any_fixed, any_kind, any_line, any_speed, any_state, any_target};
 use crate::pattern::{any_brake, any_gradient};
 use crate::{Engine, any_flag};
 use atc_kernel::distance::{Metres, Millimetres};
@@ -82,17 +82,6 @@ fn known(fixed: &[Option<Fixed>; 2], target: &Target) -> Option<(Gradient, KmhTe
     known
 }
 
-/// What limits a train on the way to a target: with what is known of its section, else with the worst.
-fn limits(line: &Line, target: &Target, known: Option<(Gradient, KmhTenths)>) -> Option<Limits> {
-    let (gradient, section) = known.or(Some((line.settings.worst, line.speed(line.settings.lowest)?)))?;
-    Some(Limits {
-        deceleration: line.settings.brake.on(gradient),
-        distance: Millimetres(target.to_stop.0.saturating_sub(u32::from(line.settings.margin.0) * 1000)),
-        ground: target.limit,
-        section,
-    })
-}
-
 /// How far away the point of the section behind is, in metres.
 const BEHIND_M: u16 = 300;
 
@@ -106,66 +95,117 @@ fn any_metres<E: Engine + ?Sized>(e: &mut E) -> u16 {
     }
 }
 
-/// A state with a target, in which fixed data of its section are in the first place, in the second, or not there.
-fn any_guided<E: Engine + ?Sized>(e: &mut E, line: &Line) -> (State, Target) {
-    let target = any_target(e);
-    let mut state = State { target: Some(target), ..any_state(e, line) };
-    // Case by case, so that what is selected is a constant choice.
-    match e.choose("fixed data of the target's section", 3) {
-        0 => e.assume(state.fixed.iter().flatten().all(|fixed| fixed.section != target.section)),
-        1 => state.fixed[0] = Some(Fixed { section: target.section, ..any_fixed(e) }),
-        _ => state.fixed[1] = Some(Fixed { section: target.section, ..any_fixed(e) }),
-    }
-    e.assume(state.is_valid(&line.permitted));
-    (state, target)
-}
-
 harness! {
-    /// Without the sub telegram of the target's section the worst gradient and the lowest limit count, with it its own; and the limits
-    /// by the target of the section behind go with it. The limits of a target count while it is fresh, and after that as a last
-    /// pattern until it is forgotten.
+    /// Without the sub telegram of the target's section the worst gradient and the lowest limit count, with it its own. The
+    /// limits of a target count while it is fresh, and after that as a last pattern until it is forgotten.
     t_per_5(e)
     theorem "T-PER-5";
-    requirements ["PER-5", "PER-6", "PER-15"];
+    requirements ["PER-5", "PER-6"];
     assumptions ["four-speeds", "sub-data-worst"];
     bound "tables of 4 speeds";
     cases 3;
     unwind 33 = 1 + crate::aspect::LONGEST;
     apart [0 1 2];
     claims {
-        Own: "what limits the train is the gradient and limit of fixed data of the section, or without them the worst gradient and the lowest limit; the distance less the margin, and the ground's speed",
-        Known: "with fixed data of the section nothing else counts",
-        Behind: "without them the limits by the target of the section behind count as well, if there is one, with its own section's data or the worst",
+        Worst: "no fixed data of the section: the worst gradient and the lowest limit",
+        Known: "fixed data of the section: its own gradient and limit",
+        Limits: "what limits the train is that gradient, the distance less the margin, the ground's speed and that limit",
         Kind: "a target not older than the freshness is fresh; an older one is missing",
         None: "without a target telegrams are lost",
     }
     covers {
         Assumed: "the worst is assumed, and the target is fresh",
         Second: "the fixed data of the section are not the newest",
-        Border: "the section behind counts, with its own data",
     }
     {
         let Some(line) = any_line(e) else { return };
-        let (state, target) = any_guided(e, &line);
-        let guidance = state.guidance(&line.permitted, &target);
-        // What is known is claimed first; so that no two sums of a gradient are compared, the limits are made of the kernel's own.
-        let known_here = known(&state.fixed, &target);
+        let target = any_target(e);
+        let mut state = State { target: Some(target), ..any_state(e, &line) };
+        // Case by case, so that what is selected is a constant choice: none, the newest, or the other.
+        match e.choose("fixed data of the target's section", 3) {
+            0 => e.assume(state.fixed.iter().flatten().all(|fixed| fixed.section != target.section)),
+            1 => state.fixed[0] = Some(Fixed { section: target.section, ..any_fixed(e) }),
+            _ => state.fixed[1] = Some(Fixed { section: target.section, ..any_fixed(e) }),
+        }
+        e.assume(state.is_valid(&line.permitted));
         let here = state.of_section(target.section);
-        e.claim(Claim::Own as u32, here == known_here && Some(guidance.own) == limits(&line, &target, here));
-        e.claim(Claim::Known as u32, known_here.is_none() || guidance.behind.is_none());
-        let known_behind = state.behind.and_then(|behind| known(&state.fixed, &behind));
-        let there = state.behind.and_then(|behind| state.of_section(behind.section));
-        let behind = state.behind.and_then(|behind| limits(&line, &behind, there));
-        let right = there == known_behind && guidance.behind == behind;
-        e.claim(Claim::Behind as u32, known_here.is_some() || right);
+        let mut known = [false; 2];
+        for (slot, fixed) in state.fixed.iter().enumerate() {
+            if let Some(fixed) = fixed {
+                known[slot] = fixed.section == target.section;
+                let own = here.is_some_and(|(gradient, limit)| gradient == fixed.gradient && limit == fixed.limit);
+                e.claim(Claim::Known as u32, !known[slot] || own);
+            }
+        }
+        let limits = state.limits(&line.permitted, &target);
+        let assumed = here.is_none() && Some(limits.section) == line.speed(line.settings.lowest);
+        e.claim(Claim::Worst as u32, known != [false; 2] || assumed);
+        e.cover(Cover::Second as u32, known == [false, true]);
+
+        let (gradient, section) = here.unwrap_or((line.settings.worst, limits.section));
+        let expected = Limits {
+            deceleration: line.settings.brake.on(gradient),
+            distance: Millimetres(target.to_stop.0.saturating_sub(u32::from(line.settings.margin.0) * 1000)),
+            ground: target.limit,
+            section,
+        };
+        e.claim(Claim::Limits as u32, limits == expected);
         let fresh = target.age.0 <= line.settings.fresh.0;
-        let expected = if fresh { Telegrams::Fresh(guidance) } else { Telegrams::Missing(guidance) };
-        e.claim(Claim::Kind as u32, state.telegrams(&line.permitted) == expected);
-        e.claim(Claim::None as u32, State { target: None, ..state }.telegrams(&line.permitted) == Telegrams::Lost);
-        e.cover(Cover::Assumed as u32, known_here.is_none() && fresh);
-        let second = state.fixed[1].is_some_and(|fixed| fixed.section == target.section);
-        e.cover(Cover::Second as u32, second);
-        e.cover(Cover::Border as u32, known_here.is_none() && known_behind.is_some());
+        // Which limits go with it is `t_per_5_permission`'s.
+        let kind = match state.telegrams(&line.permitted) {
+            Telegrams::Fresh(_) => fresh,
+            Telegrams::Missing(_) => !fresh,
+            Telegrams::Lost => false,
+        };
+        e.claim(Claim::Kind as u32, kind);
+        let without = State { target: None, ..state }.telegrams(&line.permitted);
+        e.claim(Claim::None as u32, matches!(without, Telegrams::Lost));
+        e.cover(Cover::Assumed as u32, known == [false; 2] && fresh);
+    }
+}
+
+harness! {
+    /// The limits by the target of the section behind go with those of the target if and only if nothing is known of its section.
+    t_per_5_behind(e)
+    theorem "T-PER-5";
+    requirements ["PER-15"];
+    assumptions ["four-speeds"];
+    bound "tables of 4 speeds";
+    cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
+    claims {
+        Own: "the target's own limits are what its section has (t_per_5)",
+        Known: "with fixed data of the target's section nothing else counts",
+        Behind: "without them, and with a target behind, the limits by that count as well: for its point, its ground's speed, and its own section",
+    }
+    covers {
+        Border: "the section behind counts",
+        Known: "it does not, though there is one",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let target = any_target(e);
+        let state = State { target: Some(target), ..any_state(e, &line) };
+        let Guidance { own, behind } = state.guidance(&line.permitted, &target);
+        let own_is = own.distance == state.limits(&line.permitted, &target).distance && own.ground == target.limit;
+        e.claim(Claim::Own as u32, own_is);
+        let mut known = false;
+        for fixed in state.fixed.iter().flatten() {
+            known |= fixed.section == target.section;
+        }
+        e.claim(Claim::Known as u32, !known || behind.is_none());
+        let right = match (state.behind, behind) {
+            (None, None) => true,
+            (Some(target), Some(behind)) => {
+                let own = state.limits(&line.permitted, &target);
+                behind.distance == own.distance && behind.ground == own.ground && behind.section == own.section
+            }
+            _ => false,
+        };
+        e.claim(Claim::Behind as u32, known || right);
+        e.cover(Cover::Border as u32, behind.is_some());
+        e.cover(Cover::Known as u32, known && state.behind.is_some());
     }
 }
 

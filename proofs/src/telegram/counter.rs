@@ -140,7 +140,7 @@ harness! {
         if let Some(last) = before.last {
             same = header == last;
             e.assume(header.section != last.section || u32::from(last.counter.0) == (u32::from(header.counter.0) + earlier % 256) % 256);
-            repeated = header.section == last.section && earlier + window < 256;
+            repeated = header.section == last.section && earlier < 256 - window;
             let remembered = u32::from(before.age.0) + 1 < u32::from(sequence.memory().0);
             beyond = remembered && header.section == last.section && (256 - window..256).contains(&earlier);
             first = header.section != last.section || u32::from(before.age.0) + 1 >= u32::from(sequence.memory().0);
