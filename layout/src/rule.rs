@@ -45,6 +45,8 @@ pub enum Rule {
     ClearUnderShunt,
     /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
     TurnUnderTelegram,
+    /// The ground counts on telegrams for as long as trains act on them. Held where the trains' times are known.
+    TelegramLives,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
     /// Circuits beyond the end of a route adjoin it.
@@ -91,6 +93,7 @@ impl Rule {
             Self::FoulingUndeclared => "routes over circuits that foul each other exclude each other",
             Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
+            Self::TelegramLives => "the ground counts on telegrams for as long as trains act on them",
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",
