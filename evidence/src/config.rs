@@ -9,6 +9,7 @@ use atc_kernel::aspect::{AspectTable, TableError, Times, TimesError, TimesMs};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::supervision::{Supervision, SupervisionError};
 use atc_kernel::time::{Millis, Ticks};
+use atc_layout::lives::TrainLives;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -164,6 +165,16 @@ fn tenths(speed: &Spanned<f64>, at: &dyn Fn(std::ops::Range<usize>) -> String) -
 }
 
 impl Checked {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What its trains do with telegrams, if it sends any.
+    pub fn lives(&self) -> Option<TrainLives> {
+        self.signal.as_ref().map(Signal::lives)
+    }
+
     /// The specific part of the case, with the verdicts of the theorems that it instantiates.
     pub fn case(&self, evidence: &[Evidence]) -> Line {
         let times = self.times;

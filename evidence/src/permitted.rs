@@ -14,6 +14,7 @@ use atc_kernel::permitted::{Permitted, PermittedError, Settings};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
 use atc_kernel::time::{Millis, Ticks};
+use atc_layout::lives::TrainLives;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -181,9 +182,23 @@ impl Signal {
         u64::from(256 - u16::from(self.permitted.settings().sequence.window())) * self.frame
     }
 
+    /// The most by which a telegram may be older than the last one and is known to be.
+    fn reach(&self) -> u8 {
+        u8::MAX - self.permitted.settings().sequence.window()
+    }
+
+    /// What a train of this line does with main telegrams.
+    pub fn lives(&self) -> TrainLives {
+        TrainLives {
+            ahead_ms: self.frame,
+            life_ms: self.past(self.permitted.settings().life),
+            reaction_ms: self.reaction,
+        }
+    }
+
     /// The longest that a train runs on a main telegram after the ground has thought better of it.
     fn obeyed(&self) -> u64 {
-        self.frame + self.past(self.permitted.settings().life) + self.reaction
+        self.lives().acts_ms()
     }
 
     /// The same for a sub telegram.
@@ -236,6 +251,12 @@ impl Signal {
                     .map_or_else(|| "none: stale before the next one comes".to_owned(), |most| most.to_string()),
                 "the age counts from the telegram before: at most the freshness, the memory and the window",
                 "T-PER-1, T-PER-8, T-TEL-6",
+            ),
+            row(
+                "A telegram that is late is refused, while its stream is remembered, by up to",
+                format!("{} telegrams, {} ms", self.reach(), u64::from(self.reach()) * self.frame),
+                "255 less the window; beyond it, after a silence and in another section: the condition counter-reach",
+                "T-TEL-6",
             ),
             row(
                 "A digital line without telegrams ends in stop within",

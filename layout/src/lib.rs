@@ -3,6 +3,7 @@
 //! * [`read`] and [`Description`]: a layout in the words of its file ([`form`]).
 //! * [`Description::compile`]: names become numbers, what the file leaves out is derived, every rule is checked ([`Rule`]), and the
 //!   kernel's plan comes out ([`Compiled`]).
+//! * [`lives`]: what the ground counts on telegrams to live, held against what trains do.
 //! * [`Errors`]: every broken rule with its place in the file and what would be right.
 
 mod at;
@@ -15,6 +16,7 @@ pub mod draw;
 pub mod form;
 pub mod graph;
 pub mod import;
+pub mod lives;
 pub mod model;
 mod names;
 mod problem;

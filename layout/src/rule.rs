@@ -49,6 +49,8 @@ pub enum Rule {
     StartTooShort,
     /// The residual running covers the age of a telegram and the braking from the highest speed.
     ResidualTooShort,
+    /// The ground counts on telegrams for as long as trains act on them. Held where the trains' times are known.
+    TelegramLives,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
     /// Circuits beyond the end of a route adjoin it.
@@ -101,6 +103,7 @@ impl Rule {
             Self::ResidualTooShort => {
                 "the residual running covers the age of a telegram and the braking from the highest speed"
             }
+            Self::TelegramLives => "the ground counts on telegrams for as long as trains act on them",
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",

@@ -44,8 +44,8 @@ enum Wrong {
     TargetForEver,
     /// A sub telegram never grows old.
     FixedForEver,
-    /// Missing telegrams are not counted.
-    MissingNotCounted,
+    /// Where a digital line is told after an analog one the code is enough.
+    BorderPermits,
     /// Telegrams are fresh for as long as they live.
     StaleIsFresh,
     /// Every telegram is used, whatever its number.
@@ -88,11 +88,13 @@ impl Device for Wrong {
             Self::TargetForEver => {
                 if let Some(target) = &mut state.target {
                     target.age = Ticks(0);
-                    state.missing = Ticks(0);
                 }
             }
             Self::FixedForEver => state.fixed.iter_mut().flatten().for_each(|fixed| fixed.age = Ticks(0)),
-            Self::MissingNotCounted => state.missing = Ticks(0),
+            Self::BorderPermits if heard.line == Some(LineKind::Digital) && state.line == LineKind::Analog => {
+                let (next, permission) = step(permitted, state, heard);
+                return (next, Permission { speed: heard.analog, ..permission });
+            }
             Self::StaleIsFresh => {
                 let settings = Settings { fresh: life, ..*permitted.settings() };
                 return step(&Permitted::new(settings).expect("parameters"), state, heard);
@@ -127,7 +129,7 @@ impl Device for Wrong {
                     target.beyond = main.route.beyond_exit();
                 }
             }
-            Self::CodeUnheard => {}
+            Self::CodeUnheard | Self::BorderPermits => {}
         }
         step(permitted, state, heard)
     }
@@ -149,8 +151,7 @@ fn wrong_ages_turn_red() {
     }
     red(wrong(Wrong::PointKept, &drawn, usual, Environment { fix: Fix::Any, ..codes }), "not-above-ground");
     red(wrong(Wrong::TargetForEver, &drawn, usual, codes), "silence-stops");
-    red(wrong(Wrong::MissingNotCounted, &drawn, usual, codes), "silence-stops");
-    red(wrong(Wrong::MissingNotCounted, &drawn, usual, codes), "stands-in-time");
+    red(wrong(Wrong::TargetForEver, &drawn, usual, codes), "stands-in-time");
     let (long, silent) = (Small { life: 4, ..usual }, Environment { code: Delivery::Never, keeps: 4, ..codes });
     red(wrong(Wrong::StaleIsFresh, &drawn, long, silent), "silence-stops");
     let mut restricted = Layout::digital(&[8, 2], &[10]);
@@ -168,6 +169,11 @@ fn wrong_codes_and_lines_turn_red() {
     let codes = Environment { code: Delivery::Any, ..Environment::USUAL };
     red(wrong(Wrong::CodeUnheard, &slow, Small { lowest: 1, ..Small::USUAL }, codes), "not-above-code");
     red(wrong(Wrong::HigherOfTwo, &Layout::digital(&[4, 4], &[4]), Small::USUAL, codes), "not-above-ground");
+    let border = Layout {
+        sections: vec![Section::plain(LineKind::Analog, 2), Section::plain(LineKind::Digital, 4)],
+        points: vec![6],
+    };
+    red(wrong(Wrong::BorderPermits, &border, Small::USUAL, codes), "silence-stops");
     let analog = Layout { sections: vec![Section::plain(LineKind::Analog, 4)], points: vec![4] };
     let conventional = Ride::new(Conventional, analog, Small::USUAL, codes, SAFE);
     assert!(outcome(conventional).ok());
@@ -328,7 +334,5 @@ fn a_ride_starts_in_the_kernels_initial_state() {
     let layout = Layout::digital(&[3], &[3]);
     let ride = Ride::new(Real, layout, Small::USUAL, Environment::USUAL, SAFE);
     let [state] = ride.initial()[..] else { panic!("one initial state") };
-    let bound = Ticks(Small::USUAL.life + 1);
-    assert_eq!(State { missing: Ticks(u16::MAX), ..state.kept.0 }, ride.permitted().initial());
-    assert_eq!(state.kept.0.missing, bound);
+    assert_eq!(state.kept.0, ride.permitted().initial());
 }

@@ -31,6 +31,18 @@ fn where_the_trains_stop() {
     assert!(STOP_MM < conventional && conventional < STOP_MM + LENGTH_MM, "{conventional} mm");
 }
 
+/// Nothing flaps: where the permission falls, it does not rise again within the time of three frames.
+#[test]
+fn the_permission_does_not_flap_at_a_border() {
+    let speeds: Vec<_> = drive(Train::New).iter().map(|moment| moment.output.speed_km_h).collect();
+    let first = speeds.iter().position(|speed| speed.is_some_and(|speed| speed.0 > 250)).expect("it goes");
+    for (cycle, window) in speeds.windows(8).enumerate().skip(first) {
+        let (before, after) = (window[0], window[7]);
+        let least = window.iter().min().copied().flatten();
+        assert!(least >= before.min(after), "cycle {cycle}: {window:?}");
+    }
+}
+
 /// At no place is more permitted than the ground allows there: the code, the restriction of the sub telegram, and a speed from
 /// which the service brake on the real gradient stops the train before the point. In floating point, and from the ground alone.
 #[test]
@@ -59,19 +71,23 @@ fn never_more_than_the_ground_allows() {
     assert!(bound_by_pattern > 20 && bound_by_limit > 20, "{bound_by_pattern} {bound_by_limit}");
 }
 
-/// What the sub telegram tells is not assumed before it is there: the lowest limit holds until then.
+/// What the sub telegram tells is not assumed before it is there: until then the lowest limit holds, or that of the section behind.
 #[test]
 fn the_worst_until_the_sub_telegram() {
     let config = ground::config();
-    let mut waits = 0;
+    let (mut waits, mut carried) = (0, 0);
     for moment in drive(Train::New) {
         let state = moment.output.state.expect("the oracle says it");
         let Some(section) = state.section else { continue };
         if state.sub.iter().all(|sub| sub.section != section) {
             let permitted = moment.output.speed_km_h.expect("a code is there");
-            assert!(permitted <= config.lowest_limit_km_h, "{permitted} at {} mm", moment.at_mm);
+            let place = SECTIONS.iter().position(|one| one.number == u32::from(section)).expect("of the line");
+            let behind = place.checked_sub(1).map(|behind| config.speeds_km_h[SECTIONS[behind].limit_rank as usize]);
+            let limit = behind.map_or(config.lowest_limit_km_h, |limit| limit.max(config.lowest_limit_km_h));
+            assert!(permitted <= limit, "{permitted} at {} mm", moment.at_mm);
             waits += 1;
+            carried += u32::from(permitted > config.lowest_limit_km_h);
         }
     }
-    assert!(waits > 0);
+    assert!(waits > 0 && carried > 0, "{waits} {carried}");
 }

@@ -92,7 +92,17 @@ impl Witness {
 
     /// The last main telegram that is used, if it is not too old, with its age and the distance to the stopping point.
     fn target(&self) -> Option<(Main, usize, i128)> {
+        self.last_of(&self.used_mains())
+    }
+
+    /// The same of the section before the one of `main`.
+    fn behind(&self, main: Main) -> Option<(Main, usize, i128)> {
         let used = self.used_mains();
+        let last = used.iter().rposition(|(_, other)| other.section.0 != main.section.0)?;
+        self.last_of(&used[..=last])
+    }
+
+    fn last_of(&self, used: &[(usize, Main)]) -> Option<(Main, usize, i128)> {
         let (last, main) = *used.last()?;
         let life = usize::from(self.settings.life.0);
         let stream: Vec<_> = self.mains().iter().map(|(cycle, _)| *cycle).collect();
@@ -126,9 +136,22 @@ impl Witness {
         (age <= usize::from(self.settings.fixed_life.0)).then_some((sub.gradient, limit))
     }
 
+    /// The speed by a telegram to a point; without a sub telegram no limit is under that by the section behind.
     fn digital(&self, main: Main, to_stop: i128) -> u16 {
-        let worst = (self.settings.worst, self.speed(self.settings.lowest).expect("checked"));
-        let (Gradient(permille), limit) = self.known(main.section.0).unwrap_or(worst);
+        let lowest = self.speed(self.settings.lowest).expect("checked");
+        self.known(main.section.0).map_or_else(
+            || {
+                let by_it = self.behind(main).map_or(0, |(behind, _, to_stop)| {
+                    let (gradient, limit) = self.known(behind.section.0).unwrap_or((self.settings.worst, lowest));
+                    self.curve(behind, to_stop, gradient, limit)
+                });
+                self.curve(main, to_stop, self.settings.worst, lowest.max(by_it))
+            },
+            |(gradient, limit)| self.curve(main, to_stop, gradient, limit),
+        )
+    }
+
+    fn curve(&self, main: Main, to_stop: i128, Gradient(permille): Gradient, limit: u16) -> u16 {
         let permille = i128::from(permille);
         let brake = i128::from(self.settings.brake.mm_s2());
         // 9.84375 mm/s² for each thousandth of fall, rounded up; 9.6875 for each of climb, rounded down.
@@ -145,26 +168,6 @@ impl Witness {
         self.heard[..=cycle].iter().rev().find_map(|heard| heard.line).unwrap_or(LineKind::Digital)
     }
 
-    /// For how long telegrams have been missing; None: for ever.
-    fn missing(&self) -> Option<usize> {
-        let stream: Vec<_> = self.mains().iter().map(|(cycle, _)| *cycle).collect();
-        let used = self.used_mains().last().map(|(cycle, _)| (*cycle, Self::sent(&stream, *cycle)));
-        let border = (1..self.heard.len())
-            .rev()
-            .find(|at| self.line(*at) == LineKind::Digital && self.line(at - 1) == LineKind::Analog);
-        let since = match (used, border) {
-            // A border under a target that still runs down changes nothing.
-            (Some((cycle, sent)), Some(border))
-                if cycle < border && border - sent > usize::from(self.settings.life.0) =>
-            {
-                border
-            }
-            (Some((_, sent)), _) => sent,
-            (None, border) => border?,
-        };
-        Some(self.now() - since)
-    }
-
     fn hear(&mut self, heard: Heard) -> (Permission, Option<i128>) {
         self.heard.push(heard);
         let target = self.target();
@@ -176,11 +179,7 @@ impl Witness {
             (LineKind::Digital, None, Some(fresh)) => (Some(pattern(fresh)), Basis::Pattern),
             (LineKind::Analog, Some(code), None) => (Some(code), Basis::Analog),
             (LineKind::Digital, Some(code), None) => {
-                if self.missing().is_some_and(|missing| missing <= usize::from(self.settings.life.0)) {
-                    (Some(target.map_or(code, |target| code.min(pattern(target)))), Basis::RunningDown)
-                } else {
-                    (Some(0), Basis::Nothing)
-                }
+                target.map_or((Some(0), Basis::Nothing), |target| (Some(code.min(pattern(target))), Basis::RunningDown))
             }
             (_, None, _) => (None, Basis::Nothing),
         };

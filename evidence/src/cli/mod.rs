@@ -183,7 +183,12 @@ fn planned(root: &Path, config: Option<&Path>, layout: Option<&Path>) -> Result<
         None => config::parse("evidence/examples/my-line.toml", config::EXAMPLE),
     }
     .map_err(one)?;
-    let station = layout.map(station::read).transpose()?;
+    // Of the trains that run there only a line of one's own says anything; the example does not.
+    let trains = config.and_then(|_| line.lives());
+    let station = layout.map(station::read).transpose()?.map(|station| match trains {
+        Some(trains) => station.with_trains(line.name(), trains),
+        None => station,
+    });
     plan(root, (line, station), mutants::catalogue(root).map_err(one)?)
 }
 

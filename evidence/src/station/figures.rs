@@ -67,8 +67,10 @@ fn approach(station: &form::Station, model: &Model) -> String {
     let lost = (u64::from(fastest) * u64::from(station.times.shunt_loss_ms.value)).div_ceil(3600);
     let covers = if least == most { format!("{least} m") } else { format!("{least} to {most} m, by route") };
     format!(
-        "The data check holds every approach against braking and telegram age: {covers}. What a train runs while its shunt is \
-         lost is not in it: {lost} m at {fastest} km/h, to be added by hand."
+        "The data check holds every approach against braking and telegram age: {covers}. It counts on telegrams on which no train acts for \
+         longer than {} ms: with `--config` the trains of a line are held against that, without it compare them by hand. What a train runs while its shunt is \
+         lost is not in it: {lost} m at {fastest} km/h, to be added by hand.",
+        station.times.telegram_age_ms
     )
 }
 

@@ -9,11 +9,12 @@ pub mod needed;
 pub mod parameters;
 pub mod rules;
 
-use crate::case::{Check, Conclusion, Condition, DataCheck, Evidence, Finding, Kind, Station, StationCondition};
+use crate::case::{Asked, Check, Conclusion, Condition, DataCheck, Evidence, Finding, Kind, Station, StationCondition};
 use crate::error::Fault;
 use crate::inputs::provenance::sha256;
 use crate::verdict::Verdict;
 use atc_layout::import::{Imported, read_any};
+use atc_layout::lives::{self, TrainLives};
 use atc_layout::model::Model;
 use atc_layout::{Description, Errors, Rule, draw, table};
 use rules::{Scope, Stage};
@@ -32,6 +33,9 @@ const HARNESSES: &str = "proofs/src/interlocking";
 #[derive(Clone, Debug)]
 pub struct Checked {
     station: Station,
+    description: Description,
+    /// Everything derived; nothing if the layout breaks a rule.
+    model: Option<Model>,
     /// The assumptions with figures of this station.
     figures: Vec<(&'static str, String)>,
 }
@@ -95,7 +99,36 @@ pub fn check(source: &str, sha256: &str, imported: &Imported) -> Checked {
         layout: description.to_toml(),
     };
     let figures = model.map(|model| figures::figures(&description.station, model)).unwrap_or_default();
-    Checked { station, figures }
+    Checked { station, description: description.clone(), model: sound, figures }
+}
+
+impl Checked {
+    /// Holds the layout against what the trains of a line do with telegrams; `line` is that line's name.
+    #[must_use]
+    pub fn with_trains(mut self, line: &str, train: TrainLives) -> Self {
+        let Some(model) = &self.model else { return self };
+        let broken = match lives::compare(&self.description, model, train) {
+            Ok(()) => Vec::new(),
+            Err(errors) => {
+                let source = self.description.source.name.clone();
+                let finding = |problem: atc_layout::Problem| Finding {
+                    at: place(&source, problem.place),
+                    what: problem.what,
+                    right: problem.right,
+                };
+                errors.problems.into_iter().map(finding).collect()
+            }
+        };
+        self.station.checks.push(DataCheck {
+            rule: Rule::TelegramLives.name(),
+            text: Rule::TelegramLives.text().to_owned(),
+            asked: Asked::Engineering,
+            scope: format!("the trains of “{line}”"),
+            check: if broken.is_empty() { Check::Kept } else { Check::Broken },
+            broken,
+        });
+        self
+    }
 }
 
 /// The control table, from its own form for spreadsheets.

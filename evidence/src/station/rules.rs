@@ -51,7 +51,7 @@ macro_rules! rules {
     };
 }
 
-rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_)];
+rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | Rule::TelegramLives];
     Form => (Asked::Form, Stage::Form, Scope::File);
     NameTwice => (Asked::Form, Stage::Tracks, Scope::File);
     NoSuchName => (Asked::Form, Stage::Tracks, Scope::File);
@@ -106,7 +106,7 @@ rules! { PLAN, plan_is_complete, Kernel, (Asked, Scope), [];
     ManySegments => (Asked::Engineering, Scope::Routes);
 }
 
-/// All rules, in the order in which they are checked.
+/// All rules of a layout alone, in the order in which they are checked.
 pub fn all() -> impl Iterator<Item = (Rule, Asked, Stage, Scope)> {
     let file = FILE.iter().map(|(rule, (asked, stage, scope))| (*rule, *asked, *stage, *scope));
     file.chain(PLAN.iter().map(|(rule, (asked, scope))| (Rule::Plan(*rule), *asked, Stage::Plan, *scope)))

@@ -5,6 +5,7 @@ use crate::case::{Asked, Check, Condition, Evidence, Kind, Origin, Station};
 use crate::verdict::Verdict;
 use atc_layout::Description;
 use atc_layout::import::Imported;
+use atc_layout::lives::TrainLives;
 use std::path::{Path, PathBuf};
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
@@ -75,6 +76,48 @@ fn a_broken_rule_is_named_with_its_place_and_what_follows_it_is_not_called_kept(
     assert_eq!(verdict(&broken, "name-twice"), Check::Broken);
     assert_eq!(verdict(&broken, "range"), Check::NotChecked);
     assert!(broken.drawing.is_empty() && broken.parameters.is_empty());
+}
+
+/// The two sets of parameters of the sessions `telegram-lives-wayside` and `telegram-lives-on-board`: the passing loop with its
+/// default times, and the on-board device with its own.
+#[test]
+fn a_layout_that_counts_on_shorter_lives_than_its_trains_have_is_refused() {
+    let on_board = atc_oracle::machine::permitted::Config::default();
+    let train =
+        |life_ms: u32| TrainLives { ahead_ms: 530, life_ms: u64::from(life_ms + on_board.cycle_ms), reaction_ms: 0 };
+    let with =
+        |text: &str, train| checked(text).with_trains("L", train).case(&[theorem("t_ilk_1", Verdict::Proved)], &[]);
+    assert_eq!((on_board.fresh_ms, on_board.life_ms), (2200, 5000));
+    for life_ms in [on_board.fresh_ms, on_board.life_ms] {
+        let refused = with(LOOP, train(life_ms));
+        let found = &refused.broken().next().expect("broken").broken[0];
+        let acts = 530 + life_ms + on_board.cycle_ms;
+        let what =
+            format!("the ground counts on telegrams that live for 1000 ms, and trains act on them for {acts} ms");
+        assert!(found.what.starts_with(&what), "{found:?}");
+        let right = format!("telegram_age_ms must be {acts} or more, or the train's life end within 470 ms");
+        assert_eq!(found.right, right);
+        assert_eq!(verdict(&refused, "telegram-lives"), Check::Broken);
+        assert_eq!(conclusion(&refused).verdict, Verdict::Failed);
+    }
+    // Lives that agree, to the millisecond.
+    let longest = TrainLives { ahead_ms: 530, life_ms: 300, reaction_ms: 170 };
+    let kept = with(LOOP, longest);
+    assert_eq!(verdict(&kept, "telegram-lives"), Check::Kept);
+    assert!(kept.is_sound());
+    assert!(!with(LOOP, TrainLives { reaction_ms: 171, ..longest }).is_sound());
+    // The release times of routes, each at its place.
+    let release = with(&format!("{LOOP}\n[times]\ntelegram_age_ms = 900000\n"), train(70_000));
+    assert_ne!(verdict(&release, "approach-too-short"), Check::Kept);
+    let slow = with(LOOP, train(70_000));
+    let findings = &slow.broken().next().expect("broken").broken;
+    assert_eq!(findings.len(), 9, "{findings:?}");
+    assert!(
+        findings[0].what.contains("is released after 60000 ms")
+            && findings[0].right.contains("release_ms must be 70540")
+    );
+    // Without a line nothing is claimed.
+    assert!(station(LOOP).checks.iter().all(|one| one.rule != "telegram-lives"));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! point before which it must stop is computed. The lower of the two is permitted. What is not known is taken to be at its
 //! worst; what is old is not used.
 //!
-//! Requirements: `spec/permitted.md`, PER-1 to PER-12. Read in this order: [`Permitted`] (parameters), [`Heard`] and
+//! Requirements: `spec/permitted.md`, PER-1 to PER-15. Read in this order: [`Permitted`] (parameters), [`Heard`] and
 //! [`Permission`], [`State`] with its `is_valid`, [`step`].
 
 mod parameters;
@@ -69,7 +69,7 @@ pub enum Basis {
     Pattern,
     /// The lower of analog code and pattern.
     Both,
-    /// Telegrams are missing: the lower of analog code and the last pattern, if one is still running down.
+    /// Telegrams are missing: the lower of analog code and the last pattern, which is running down.
     RunningDown,
 }
 
@@ -78,9 +78,9 @@ pub enum Basis {
 pub enum Telegrams<T> {
     /// The last one is fresh.
     Fresh(T),
-    /// They are missing, for no longer than the life. The last one, if its pattern still runs down.
-    Missing(Option<T>),
-    /// They are missing for longer.
+    /// They are missing, for no longer than the life: the pattern of the last one runs down.
+    Missing(T),
+    /// They are missing for longer, or none was ever used.
     Lost,
 }
 
@@ -95,6 +95,15 @@ pub struct Limits {
     pub ground: KmhTenths,
     /// The limit of the section.
     pub section: KmhTenths,
+}
+
+/// What limits the train by its target, and by that of the section behind where the section of the target is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Guidance {
+    /// By the target.
+    pub own: Limits,
+    /// By the target of the section behind, as long as no sub telegram of the target's section is known.
+    pub behind: Option<Limits>,
 }
 
 /// One cycle.
@@ -115,7 +124,11 @@ impl State {
         let main = heard.main.filter(|main| known(main.speed));
         let sub = heard.sub.filter(|sub| known(sub.curve) && known(sub.restriction));
         let mut next = self.later(permitted, heard.moved);
-        next.follow(heard.line);
+        //= spec/permitted.md#per-2-the-line
+        //# The kind of line MUST change only when the train is told, and a train that was told nothing yet MUST take the line for digital.
+        //= spec/permitted.md#per-11-an-announcement
+        //# What the train is told of the line MUST change the kind of line and nothing else.
+        next.line = heard.line.unwrap_or(next.line);
 
         //= spec/permitted.md#per-12-the-age
         //# The age of a telegram that is used MUST be counted from the telegram before it in its stream.
@@ -123,8 +136,11 @@ impl State {
         let (main_stream, judgement) = permitted.sequence().step(next.main_stream, main.map(|main| main.header()));
         next.main_stream = main_stream;
         if let (Some(main), Judgement::Accepted) = (main, judgement) {
-            next.target = Some(next.target(permitted, main, (self.fix.unwrap_or_default(), heard.moved), ages.0));
-            next.missing = ages.0;
+            let target = next.target(permitted, main, (self.fix.unwrap_or_default(), heard.moved), ages.0);
+            if next.target.is_some_and(|before| before.section.0 != target.section.0) {
+                next.behind = next.target;
+            }
+            next.target = Some(target);
         }
         //= spec/permitted.md#per-10-the-fix
         //# A measured distance to the exit MUST be used only if it was measured after one main telegram and before the next one, both of the same section.
@@ -142,33 +158,20 @@ impl State {
     fn later(self, permitted: &Permitted, moved: Millimetres) -> Self {
         let age = |age: Ticks| Ticks(age.0.saturating_add(1));
         let mut next = self;
-        next.missing = age(next.missing);
         next.fix = next.fix.map(|fix| fix.less(moved));
         //= spec/permitted.md#per-8-age
         //# A main telegram older than its life and a sub telegram older than its life MUST be forgotten.
-        next.target = next
-            .target
-            .map(|target| Target { age: age(target.age), to_stop: target.to_stop.less(moved), ..target })
-            .filter(|target| target.age.0 <= permitted.life().0);
+        for slot in [&mut next.target, &mut next.behind] {
+            *slot = slot
+                .map(|target| Target { age: age(target.age), to_stop: target.to_stop.less(moved), ..target })
+                .filter(|target| target.age.0 <= permitted.life().0);
+        }
         for slot in &mut next.fixed {
             *slot = slot
                 .map(|fixed| Fixed { age: age(fixed.age), ..fixed })
                 .filter(|fixed| fixed.age.0 <= permitted.fixed_life().0);
         }
         next
-    }
-
-    /// Goes on to another kind of line, if the train is told of one.
-    fn follow(&mut self, line: Option<LineKind>) {
-        //= spec/permitted.md#per-2-the-line
-        //# The kind of line MUST change only when the train is told, and a train that was told nothing yet MUST take the line for digital.
-        let line = line.unwrap_or(self.line);
-        //= spec/permitted.md#per-11-the-count
-        //# The time in which telegrams are missing MUST be counted as the age of the last main telegram that was used is, and begin again only where a train without a target comes to a digital line.
-        if self.line == LineKind::Analog && line == LineKind::Digital {
-            self.missing = self.target.map_or(Ticks(0), |target| target.age);
-        }
-        self.line = line;
     }
 
     /// Where the train must stop and how fast it may be, by a main telegram that is used, and that was sent `age` cycles ago or
@@ -205,42 +208,46 @@ impl State {
         self.fixed[0] = Some(learned);
     }
 
-    /// The gradient and the limit that count in a section.
-    pub fn of_section(&self, permitted: &Permitted, section: SectionId) -> (Gradient, KmhTenths) {
-        //= spec/permitted.md#per-5-the-worst
-        //# As long as no sub telegram of the main telegram's section is known, the worst gradient and the lowest limit MUST be assumed.
+    /// The gradient and the limit that sub telegrams say of a section; `None` if none of it is known.
+    pub fn of_section(&self, section: SectionId) -> Option<(Gradient, KmhTenths)> {
         let its = |fixed: &&Fixed| fixed.section.0 == section.0;
         let [newest, other] = &self.fixed;
-        match newest.as_ref().filter(its).or(other.as_ref().filter(its)) {
-            Some(fixed) => (fixed.gradient, fixed.limit),
-            None => (permitted.worst(), permitted.limit(permitted.lowest())),
-        }
+        let known = newest.as_ref().filter(its).or(other.as_ref().filter(its));
+        known.map(|fixed| (fixed.gradient, fixed.limit))
     }
 
-    /// What limits the train by the telegrams, on the way to its target.
+    /// What limits the train by the telegrams, on the way to `target`.
     pub fn limits(&self, permitted: &Permitted, target: &Target) -> Limits {
-        let (gradient, limit) = self.of_section(permitted, target.section);
+        //= spec/permitted.md#per-5-the-worst
+        //# As long as no sub telegram of the main telegram's section is known, the worst gradient MUST be assumed, and the lowest limit where PER-15 has no other.
+        let worst = (permitted.worst(), permitted.limit(permitted.lowest()));
+        let (gradient, section) = self.of_section(target.section).unwrap_or(worst);
         Limits {
             deceleration: permitted.brake().on(gradient),
             distance: target.to_stop.less(permitted.margin().millimetres()),
             ground: target.limit,
-            section: limit,
+            section,
         }
     }
 
+    /// What limits the train on the way to `target`, at a border also by the target of the section behind.
+    pub fn guidance(&self, permitted: &Permitted, target: &Target) -> Guidance {
+        let behind = if self.of_section(target.section).is_some() { None } else { self.behind };
+        Guidance { own: self.limits(permitted, target), behind: behind.map(|behind| self.limits(permitted, &behind)) }
+    }
+
     /// What there is of telegrams in this state.
-    pub fn telegrams(&self, permitted: &Permitted) -> Telegrams<Limits> {
-        let limits = self.target.map(|target| self.limits(permitted, &target));
-        match (self.target, limits) {
-            (Some(target), Some(limits)) if target.age.0 <= permitted.fresh().0 => Telegrams::Fresh(limits),
-            _ if self.missing.0 <= permitted.life().0 => Telegrams::Missing(limits),
-            _ => Telegrams::Lost,
+    pub fn telegrams(&self, permitted: &Permitted) -> Telegrams<Guidance> {
+        match self.target {
+            Some(target) if target.age.0 <= permitted.fresh().0 => Telegrams::Fresh(self.guidance(permitted, &target)),
+            Some(target) => Telegrams::Missing(self.guidance(permitted, &target)),
+            None => Telegrams::Lost,
         }
     }
 
     /// The permission in this state with this analog code; `None`: no code.
     pub fn permission(&self, permitted: &Permitted, code: Option<KmhTenths>) -> Permission {
-        Permission::new(self.line, self.telegrams(permitted).map(Limits::speed), code)
+        Permission::new(self.line, self.telegrams(permitted).map(Guidance::speed), code)
     }
 }
 
@@ -252,12 +259,23 @@ impl Limits {
     }
 }
 
+impl Guidance {
+    /// The speed by the target, with what is known of its section.
+    #[inline]
+    pub fn speed(self) -> KmhTenths {
+        //= spec/permitted.md#per-15-the-border
+        //# In place of a lowest limit that is assumed, the speed by the target of the section behind MUST be the limit if it is higher, for as long as that target lives.
+        let section = self.behind.map_or(self.own.section, |behind| self.own.section.max(behind.speed()));
+        Limits { section, ..self.own }.speed()
+    }
+}
+
 impl<T> Telegrams<T> {
     /// The same with each `T` made a `U`.
     fn map<U>(self, make: fn(T) -> U) -> Telegrams<U> {
         match self {
             Self::Fresh(fresh) => Telegrams::Fresh(make(fresh)),
-            Self::Missing(last) => Telegrams::Missing(last.map(make)),
+            Self::Missing(last) => Telegrams::Missing(make(last)),
             Self::Lost => Telegrams::Lost,
         }
     }
@@ -273,16 +291,20 @@ impl Permission {
             //= spec/permitted.md#per-1-the-lower
             //# Where an analog code and a fresh main telegram are both there, the lower of their speeds MUST be permitted.
             (_, Telegrams::Fresh(speed), Some(code)) => Self { speed: Some(code.min(speed)), basis: Basis::Both },
+            //= spec/permitted.md#per-13-no-code-on-a-digital-line
+            //# On a digital line without a code the speed by a fresh main telegram MUST be permitted.
             (LineKind::Digital, Telegrams::Fresh(speed), None) => Self { speed: Some(speed), basis: Basis::Pattern },
             //= spec/permitted.md#per-3-an-analog-line
-            //# On an analog line the speed of the code MUST be permitted if no main telegram is fresh, and nothing without a code.
+            //# On an analog line without a fresh main telegram the speed of the code MUST be permitted.
             (LineKind::Analog, _, Some(code)) => Self { speed: Some(code), basis: Basis::Analog },
             //= spec/permitted.md#per-6-missing-telegrams
             //# On a digital line without a fresh main telegram the lower of the code and the last pattern MUST be permitted while it runs down, then a speed of 0, and nothing without a code.
             (LineKind::Digital, Telegrams::Missing(last), Some(code)) => {
-                Self { speed: Some(last.map_or(code, |last| code.min(last))), basis: Basis::RunningDown }
+                Self { speed: Some(code.min(last)), basis: Basis::RunningDown }
             }
             (LineKind::Digital, Telegrams::Lost, Some(_)) => Self { speed: Some(KmhTenths(0)), basis: Basis::Nothing },
+            //= spec/permitted.md#per-14-no-code-on-an-analog-line
+            //# On an analog line without a code there MUST be no permission, whether a main telegram is fresh or not.
             (_, _, None) => Self::NOTHING,
         }
     }

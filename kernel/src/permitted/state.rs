@@ -11,12 +11,12 @@ use crate::time::Ticks;
 pub struct State {
     /// The kind of line that the train is on.
     pub line: LineKind,
-    /// Cycles in which telegrams are missing, on a digital line: as old as the target, or older.
-    pub missing: Ticks,
     /// The distance to the exit that was measured first after the last main telegram, less what the train moved since.
     pub fix: Option<Millimetres>,
-    /// The last main telegram that was used.
+    /// The last main telegram that was used. Telegrams are missing for as long as it is old, and lost when it is forgotten.
     pub target: Option<Target>,
+    /// The last one of the section before the target's.
+    pub behind: Option<Target>,
     /// The last sub telegrams that were used, of two sections, the newest first.
     pub fixed: [Option<Fixed>; 2],
     /// The counters of the main telegrams.
@@ -54,28 +54,29 @@ pub struct Fixed {
 }
 
 impl State {
-    /// Nothing is known, and telegrams have been missing for ever.
+    /// Nothing is known.
     pub const INITIAL: Self = Self {
         line: LineKind::Digital,
-        missing: Ticks(u16::MAX),
         fix: None,
         target: None,
+        behind: None,
         fixed: [None; 2],
         main_stream: Stream::EMPTY,
         sub_stream: Stream::EMPTY,
     };
 
-    /// Whether `permitted` can be in this state: nothing is older than its life, no target is older than
-    /// telegrams are missing, the streams are valid, and the two sub
+    /// Whether `permitted` can be in this state: nothing is older than its life, the streams are valid, and the two sub
     /// telegrams are of two sections.
     pub fn is_valid(&self, permitted: &Permitted) -> bool {
         let [newest, other] = &self.fixed;
+        let alive = |target: &Option<Target>| target.is_none_or(|target| target.age.0 <= permitted.life().0);
         let young = |fixed: &Option<Fixed>| fixed.is_none_or(|fixed| fixed.age.0 <= permitted.fixed_life().0);
         let two = match (newest, other) {
             (Some(newest), Some(other)) => newest.section.0 != other.section.0,
             _ => true,
         };
-        self.target.is_none_or(|target| target.age.0 <= permitted.life().0 && target.age.0 <= self.missing.0)
+        alive(&self.target)
+            && alive(&self.behind)
             && young(newest)
             && young(other)
             && two

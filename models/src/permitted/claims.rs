@@ -55,8 +55,12 @@ impl<D: Device> Ride<D> {
         let before = &state.ghosts;
         let digital = self.kind_at(train.place) == LineKind::Digital;
         let from_analog = self.kind_at(state.train.place) == LineKind::Analog;
-        let begins = digital && from_analog;
-        let silent = if cycle.heard.main.is_some() || begins { 0 } else { before.silent + 1 };
+        // On an analog line nothing is sent: there the count stops where telegrams are lost. It does not begin again at the border.
+        let silent = match cycle.heard.main {
+            Some(_) => 0,
+            None if digital && !from_analog => before.silent + 1,
+            None => (before.silent + 1).min(self.small.life + 1),
+        };
         let section = self.layout.section_at(train.place);
         let here = |id: u16| usize::from(id) == section;
         let same = section == self.layout.section_at(state.train.place);

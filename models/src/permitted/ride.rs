@@ -27,7 +27,6 @@ use atc_kernel::permitted::{self, Basis, Heard, LineKind, Permitted};
 use atc_kernel::position::{Interval, Measured, Moved, Position};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Length, Main, Route, SectionId, Stream, Sub};
-use atc_kernel::time::Ticks;
 
 /// The model: the device `D` on a line, in an environment.
 #[derive(Clone, Debug)]
@@ -251,13 +250,7 @@ impl<D: Device> Ride<D> {
             });
             Stream { last, ..stream }
         };
-        let missing = kernel.missing.min(Ticks(self.small.life + 1));
-        Kept(permitted::State {
-            missing,
-            main_stream: on(kernel.main_stream),
-            sub_stream: on(kernel.sub_stream),
-            ..kernel
-        })
+        Kept(permitted::State { main_stream: on(kernel.main_stream), sub_stream: on(kernel.sub_stream), ..kernel })
     }
 }
 

@@ -35,15 +35,17 @@ pub struct Ground {
     pub repeats: u8,
 }
 
-/// The device's state, with a hash. The time in which telegrams are missing is counted no further than one cycle beyond its bound.
+/// The device's state, with a hash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Kept(pub permitted::State);
 
 impl Hash for Kept {
     fn hash<H: Hasher>(&self, hasher: &mut H) {
-        let permitted::State { line, missing, fix, target, fixed, main_stream, sub_stream } = self.0;
-        (line, missing, fix).hash(hasher);
-        target.map(|target| (target.section, target.beyond, target.limit, target.to_stop, target.age)).hash(hasher);
+        let permitted::State { line, fix, target, behind, fixed, main_stream, sub_stream } = self.0;
+        (line, fix).hash(hasher);
+        for target in [target, behind] {
+            target.map(|target| (target.section, target.beyond, target.limit, target.to_stop, target.age)).hash(hasher);
+        }
         fixed.map(|fixed| fixed.map(|f| (f.section, f.gradient, f.limit, f.age))).hash(hasher);
         let stream =
             |stream: Stream| (stream.last.map(|last| (last.section, last.counter)), stream.in_order, stream.age);

@@ -1,9 +1,7 @@
 //! One run of CBMC, and what it says.
 
-use crate::process::{End, Job, Limits, run};
+use crate::process::{End, Job, Limits, errors_of, run};
 use crate::tools::Tools;
-use serde::Deserialize;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
@@ -11,7 +9,8 @@ use std::time::Duration;
 /// The options of every run. `--no-standard-checks`: what can go wrong in the wasm2c code is an assertion in the
 /// driver, and the C it writes relies on wrapping.
 /// Memory up to 16 KB, in words, is followed cell by cell: as a whole it would be an array, which costs far more.
-pub const CBMC: [&str; 9] = [
+/// The report is text: as JSON it has how every assertion fails, asked for or not, in up to 100 MB.
+pub const CBMC: [&str; 8] = [
     "--no-standard-checks",
     "--object-bits",
     "14",
@@ -20,7 +19,6 @@ pub const CBMC: [&str; 9] = [
     "--slice-formula",
     "--max-field-sensitivity-array-size",
     "4096",
-    "--json-ui",
 ];
 
 /// The options of a proof: a bound that is too small fails. (What rejects a mutant does so within the bound.)
@@ -289,7 +287,7 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
     arguments.extend(question.only.map(|number| format!("-DONLY={number}")));
     arguments.extend(values.then(|| "--trace".to_owned()));
     arguments.extend(question.solver.options(tools, question.ask));
-    let output = folder.join(format!("cbmc-{case}{name}.json"));
+    let output = folder.join(format!("cbmc-{case}{name}.txt"));
     let limits = Limits { cpu: question.limit, memory_kib: 8 << 20 };
     let program = tools.path("cbmc");
     // CBMC puts the problem of an external solver into a file.
@@ -306,7 +304,9 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
             return Err(Silence::Broken(format!("cbmc ended with code {code}; see {}", output.display())));
         }
     }
-    let text = std::fs::read_to_string(&output).map_err(|error| Silence::Broken(error.to_string()))?;
+    // Its warnings are among the errors.
+    let read = |path: &Path| std::fs::read_to_string(path).map_err(|error| Silence::Broken(error.to_string()));
+    let text = read(&errors_of(&output))? + &read(&output)?;
     let answer = parse(&text).map_err(Silence::Broken)?;
     let all_hold = answer.holds.values().all(|holds| *holds);
     if all_hold == (end == End::Code(0)) {
@@ -316,87 +316,61 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
     }
 }
 
-/// A part of CBMC's report; what it has beside this is of no interest here.
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
-struct Item<'a> {
-    #[serde(borrow)]
-    message_text: Option<Cow<'a, str>>,
-    #[serde(borrow)]
-    message_type: Option<Cow<'a, str>>,
-    c_prover_status: Option<&'a str>,
-    #[serde(borrow, default)]
-    result: Vec<Property<'a>>,
-}
-
-#[derive(Deserialize)]
-struct Property<'a> {
-    #[serde(borrow, default)]
-    description: Cow<'a, str>,
-    #[serde(borrow, default)]
-    status: Cow<'a, str>,
-    #[serde(borrow, default)]
-    trace: Vec<Step<'a>>,
-}
-
-#[derive(Deserialize)]
-struct Step<'a> {
-    #[serde(borrow, rename = "stepType")]
-    kind: Option<Cow<'a, str>>,
-    #[serde(borrow)]
-    lhs: Option<Cow<'a, str>>,
-    #[serde(borrow)]
-    value: Option<Binary<'a>>,
-}
-
-#[derive(Deserialize)]
-struct Binary<'a> {
-    binary: Option<&'a str>,
-}
-
-/// Reads CBMC's JSON. An unfinished text, a warning about a missing body or an unknown status is an error.
+/// Reads CBMC's report. An unfinished text, a warning about a missing body or an unknown status is an error.
 ///
 /// # Errors
 /// What is wrong with the text.
 pub fn parse(text: &str) -> Result<Answer, String> {
-    let document: Vec<Item> = serde_json::from_str(text).map_err(|error| format!("cbmc's JSON is broken: {error}"))?;
-    let messages = || document.iter().filter_map(|item| item.message_text.as_deref().map(|text| (item, text)));
-    if let Some((_, warning)) = messages().find(|(_, text)| text.contains("no body for")) {
+    if let Some(warning) = text.lines().find(|line| line.contains("no body for")) {
         return Err(format!("cbmc does not see all the code: {warning}"));
     }
-    if !document.iter().any(|item| item.c_prover_status.is_some()) {
-        let errors = messages().filter(|(item, _)| item.message_type.as_deref() == Some("ERROR"));
-        let said: Vec<_> = errors.map(|(_, text)| text).collect();
-        return Err(format!("cbmc gave no status: {}", said.join("; ")));
+    if !text.lines().any(|line| matches!(line, "VERIFICATION SUCCESSFUL" | "VERIFICATION FAILED")) {
+        return Err(format!("cbmc gave no status: {}", text.lines().next_back().unwrap_or_default()));
     }
-    let unwound = crate::unwound::largest(messages().map(|(_, text)| text));
-    let mut answer = Answer { unwound, ..Answer::default() };
-    for property in document.iter().flat_map(|item| &item.result) {
-        let description = property.description.to_string();
-        let holds = match &*property.status {
+    let mut answer = Answer { unwound: crate::unwound::largest(text.lines()), ..Answer::default() };
+    let mut names = BTreeMap::new();
+    let mut failed = 0;
+    for (name, description, status) in text.lines().filter_map(property) {
+        let holds = match status {
             "SUCCESS" => true,
             "FAILURE" => false,
             other => return Err(format!("cbmc says {other:?} of `{description}`")),
         };
-        if description.contains("no body for") {
-            return Err(format!("cbmc does not see all the code: {description}"));
-        }
-        if !holds {
-            answer.values.entry(description.clone()).or_insert_with(|| drawn(&property.trace));
-        }
+        failed += usize::from(!holds);
+        names.insert(name, description);
         // The same description at several places: it holds if it holds at all of them.
-        let known = answer.holds.entry(description).or_insert(true);
+        let known = answer.holds.entry(description.to_owned()).or_insert(true);
         *known = *known && holds;
     }
-    if answer.holds.is_empty() { Err("cbmc checked nothing".to_owned()) } else { Ok(answer) }
+    if names.is_empty() {
+        return Err("cbmc checked nothing".to_owned());
+    }
+    let tally = format!("** {failed} of {} failed", names.len());
+    if !text.lines().any(|line| line.starts_with(&tally)) {
+        return Err(format!("cbmc's results are not those that it has counted; they are `{tally}`"));
+    }
+    for trace in text.split("\nTrace for ").skip(1) {
+        let name = trace.lines().next().and_then(|line| line.strip_suffix(':'));
+        let description = name.and_then(|name| names.get(name)).ok_or("cbmc's trace is of no property")?;
+        answer.values.entry((*description).to_owned()).or_insert_with(|| drawn(trace));
+    }
+    Ok(answer)
+}
+
+/// Name, description and status of a property, if the line is one: `[name] line 7 description: STATUS`.
+fn property(line: &str) -> Option<(&str, &str, &str)> {
+    let (name, rest) = line.strip_prefix('[')?.split_once("] ")?;
+    let (description, status) = rest.rsplit_once(": ")?;
+    let place = description.strip_prefix("line ").and_then(|rest| rest.split_once(' '));
+    let placed = place.filter(|(number, _)| number.parse::<usize>().is_ok());
+    Some((name, placed.map_or(description, |(_, description)| description), status))
 }
 
 /// The arbitrary values of a trace, in order. One that is not in it may be any: 0.
-fn drawn(trace: &[Step]) -> Vec<u16> {
-    let drawn = |step: &&Step| step.kind.as_deref() == Some("assignment") && step.lhs.as_deref() == Some("drawn");
-    let number = |step: &Step| u32::from_str_radix(step.value.as_ref()?.binary?, 2).ok();
+fn drawn(trace: &str) -> Vec<u16> {
+    let number = |line: &str| line.strip_prefix("  drawn=")?.split_once('u')?.0.parse::<u32>().ok();
     let mut values = Vec::new();
-    for word in trace.iter().filter(drawn).filter_map(number) {
+    for word in trace.lines().filter_map(number) {
         let (value, place) = (word & 0xFFFF, (word >> 16) as usize);
         // Number 0 is what it was before anything was drawn.
         if let (Some(place), Ok(value)) = (place.checked_sub(1), u16::try_from(value)) {

@@ -1,7 +1,7 @@
 //! From harness to C: rustc → wasm-ld → wasm2c.
 
 use crate::loops::one_way_back;
-use crate::process::{End, Job, Limits, run};
+use crate::process::{End, Job, Limits, errors_of, run};
 use crate::regions::apart;
 use crate::tools::Tools;
 use std::path::{Path, PathBuf};
@@ -269,7 +269,7 @@ fn tool(
     match run(&job)?.0 {
         End::Code(0) => Ok(()),
         end => {
-            let said = std::fs::read_to_string(format!("{}.err", output.display())).unwrap_or_default();
+            let said = std::fs::read_to_string(errors_of(&output)).unwrap_or_default();
             let first: Vec<_> = said.lines().filter(|line| !line.is_empty()).take(6).collect();
             Err(format!("{name}: {end:?}: {}", first.join(" / ")))
         }

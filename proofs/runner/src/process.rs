@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write;
 use std::os::unix::process::CommandExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -134,19 +134,25 @@ kill "$guard" 2>/dev/null
 exit "$status"
 "#;
 
+/// Where the errors of a job go whose output goes to `output`.
+pub fn errors_of(output: &Path) -> PathBuf {
+    beside(output, ".err")
+}
+
+fn beside(output: &Path, ending: &str) -> PathBuf {
+    let mut name = output.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
 /// Runs a program to its end, or to its limits; also the CPU time that it took.
 ///
 /// # Errors
 /// The program cannot be started, or the files cannot be written.
 pub fn run(job: &Job) -> Result<(End, Duration), String> {
     let open = |path: &Path| File::create(path).map_err(|error| format!("{}: {error}", path.display()));
-    let beside = |ending: &str| {
-        let mut name = job.output.as_os_str().to_owned();
-        name.push(ending);
-        name
-    };
-    let times = beside(".times");
-    let (output, errors) = (open(job.output)?, open(Path::new(&beside(".err")))?);
+    let times = beside(job.output, ".times");
+    let (output, errors) = (open(job.output)?, open(&errors_of(job.output))?);
     let mut command = Command::new("sh");
     command
         .args(["-c", GUARD, "sh"])

@@ -4,7 +4,7 @@
 //! on the same values. And a counterexample that is said to reject a mutant must do so when it is run, and must not without the mutant.
 
 use crate::cbmc::{Question, defines};
-use crate::process::{End, Job, Limits, run};
+use crate::process::{End, Job, Limits, errors_of, run};
 use crate::tools::Tools;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub fn build(
     match run(&job)?.0 {
         End::Code(0) => Ok(program),
         end => {
-            let said = std::fs::read_to_string(folder.join("gcc.out.err")).unwrap_or_default();
+            let said = std::fs::read_to_string(errors_of(&output)).unwrap_or_default();
             Err(format!("gcc: {end:?}: {}", said.lines().take(4).collect::<Vec<_>>().join(" / ")))
         }
     }

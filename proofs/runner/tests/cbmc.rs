@@ -2,20 +2,37 @@
 
 use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select, unwound};
 
-const DONE: &str = r#"[{"program":"CBMC"},{"result":[
-  {"property":"w2c_prover_claim.assertion.1","description":"claim 0","status":"SUCCESS"},
-  {"property":"w2c_prover_claim.assertion.2","description":"claim 1","status":"FAILURE","trace":[
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000010000000000000111"}},
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000000000000000000000"}},
-    {"stepType":"assignment","lhs":"other","value":{"binary":"1"}},
-    {"stepType":"assignment","lhs":"drawn","value":{"binary":"00000000000000111111111111111111"}}]}]},
-  {"cProverStatus":"failure"}]"#;
+const DONE: &str = "CBMC version 6.6.0
+Starting Bounded Model Checking
+
+** Results:
+driver.c function w2c_prover_claim
+[w2c_prover_claim.assertion.1] line 212 claim 0: SUCCESS
+[w2c_prover_claim.assertion.2] line 212 claim 1: FAILURE
+
+Trace for w2c_prover_claim.assertion.2:
+
+State 33 file driver.c function w2c_prover_word line 155 thread 0
+----------------------------------------------------
+  drawn=65543u (00000000 00000001 00000000 00000111)
+  drawn=0u (00000000 00000000 00000000 00000000)
+  other=65536u (00000000 00000001 00000000 00000000)
+  drawn=262143u (00000000 00000011 11111111 11111111)
+
+Violated property:
+  file driver.c function w2c_prover_claim line 212 thread 0
+  claim 1
+  holds != 0u
+
+** 1 of 2 failed (2 iterations)
+VERIFICATION FAILED";
 
 #[test]
 fn verdicts_and_counterexamples_are_read() {
     let answer = parse_cbmc(DONE).unwrap();
     assert_eq!((answer.claim(0), answer.claim(1), answer.claim(2)), (Some(true), Some(false), None));
     assert_eq!(answer.values["claim 1"], [7, 0, 65_535]);
+    assert!(!answer.values.contains_key("claim 0"));
     assert_eq!(answer.other_failure(), None);
 }
 
@@ -29,17 +46,30 @@ fn a_killed_prover_is_no_pass() {
 
 #[test]
 fn no_status_unknown_status_and_nothing_checked_are_errors() {
-    let without_status = DONE.replace("cProverStatus", "other");
+    let without_status = DONE.replace("VERIFICATION", "OTHER");
     assert!(parse_cbmc(&without_status).unwrap_err().contains("no status"));
     let unknown = DONE.replace("SUCCESS", "UNKNOWN");
     assert!(parse_cbmc(&unknown).unwrap_err().contains("UNKNOWN"));
-    let empty = r#"[{"result":[]},{"cProverStatus":"success"}]"#;
+    let empty = "** 0 of 0 failed (1 iterations)\nVERIFICATION SUCCESSFUL";
     assert!(parse_cbmc(empty).unwrap_err().contains("nothing"));
 }
 
 #[test]
+fn results_that_are_not_all_there_are_an_error() {
+    let counts = ["** 0 of 2 failed", "** 1 of 3 failed", "** 1 of 22 failed", "** 2 of 2 failed"];
+    for count in counts {
+        let other = DONE.replace("** 1 of 2 failed", count);
+        assert!(parse_cbmc(&other).unwrap_err().contains("counted"), "{count}");
+    }
+    let lost = DONE.replace("[w2c_prover_claim.assertion.1] line 212 claim 0: SUCCESS\n", "");
+    assert!(parse_cbmc(&lost).unwrap_err().contains("counted"));
+    let stranger = DONE.replace("Trace for w2c_prover_claim.assertion.2", "Trace for another");
+    assert!(parse_cbmc(&stranger).unwrap_err().contains("no property"));
+}
+
+#[test]
 fn code_that_the_prover_does_not_see_is_an_error() {
-    let warned = DONE.replace(r#"{"program":"CBMC"}"#, r#"{"messageText":"**** WARNING: no body for function f"}"#);
+    let warned = format!("**** WARNING: no body for function f\n{DONE}");
     assert!(parse_cbmc(&warned).unwrap_err().contains("no body"));
     let property = DONE.replace("claim 0", "no body for callee f");
     assert!(parse_cbmc(&property).unwrap_err().contains("no body"));
@@ -49,9 +79,9 @@ fn code_that_the_prover_does_not_see_is_an_error() {
 fn the_longest_loop_is_read_and_held_against_the_bound_for_kani() {
     let loops = [("w2c_h_sup_3_0.0", 3), ("w2c_h_sup_3_0.1", 64), ("w2c_h_memcpy.2", 300), ("load_bytes.0", 768)];
     let messages = loops.map(|(name, times)| {
-        format!(r#"{{"messageText":"Unwinding loop {name} iteration {times} (67 max) file driver.c line 9 thread 0"}}"#)
+        format!("Unwinding loop {name} iteration {times} (67 max) file driver.c line 9 thread 0\n")
     });
-    let looped = DONE.replace(r#"{"program":"CBMC"}"#, &messages.join(","));
+    let looped = messages.concat() + DONE;
     assert_eq!(parse_cbmc(&looped).unwrap().unwound, 64);
     assert_eq!(parse_cbmc(DONE).unwrap().unwound, 0);
     let harness = select(&["t_ilk_2".to_owned()]).unwrap()[0];

@@ -1,9 +1,11 @@
 //! What is remembered, and for how long: PER-2, PER-5 to PER-9.
 
-use super::{any_cycle, any_heard, any_line, any_parts, any_state, knows_main};
+use super::{any_cycle, any_heard, any_kind, any_line, any_parts, any_state, knows_main};
+use crate::{any_flag, any_u32};
 use atc_kernel::Machine;
+use atc_kernel::distance::Millimetres;
 use atc_kernel::permitted::{
-    Basis, Fixed, Heard, LineKind, Permission, Permitted, PermittedError, Settings, State, Telegrams, step,
+    Basis, Fixed, Heard, LineKind, Permission, Permitted, PermittedError, Settings, State, Target, Telegrams, step,
 };
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Stream;
@@ -100,8 +102,8 @@ harness! {
 }
 
 harness! {
-    /// Telegrams that are missing on a digital line for longer than the life end every permission of a speed above 0. The
-    /// observer counts the cycles since the last main telegram that was used, or since the line became digital.
+    /// A digital line permits no speed above 0 once the last main telegram that was used is older than the life, whatever the train
+    /// was told, and however often. The ghost is the age of that telegram since it can have been sent, without an end.
     t_per_6(e)
     theorem "T-PER-6";
     requirements ["PER-6", "PER-11"];
@@ -110,54 +112,73 @@ harness! {
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
-        Counted: "the kernel counts at least as many cycles as the observer",
-        Exact: "its count is one more each cycle; after a main telegram that is used it is the age of that telegram; where a digital line begins after an analog one, the age of the target, or 0",
-        Ended: "after more than the life there is no fresh target on a digital line, and the kernel has counted more than the life: then no speed above 0 is permitted (T-PER-1)",
-        Together: "when the last pattern has run down, telegrams have been missing for longer than the life: nothing is left, unless a digital line just began",
-        Start: "before anything was heard, the same",
+        Counted: "a target is as old as the ghost, and without one the ghost is over the life",
+        Ended: "once the ghost is over the life telegrams are lost: on a digital line no speed above 0 is permitted (T-PER-1)",
+        Start: "before any telegram was used they are lost",
     }
     covers {
         RanDown: "a pattern has run down",
-        Ended: "a code is heard and not followed",
-        Began: "a digital line begins",
+        Began: "a digital line is told after an analog one, without a target",
+        Again: "the line that the train is on is told again",
         Used: "a main telegram is used after a long time",
     }
     {
         let Some(cycle) = any_cycle(e) else { return };
-        let missing = e.word("cycles without, by the observer", 0..=7);
-        e.assume(missing <= cycle.before.missing.0);
         let life = cycle.line.settings.life.0;
-        // A target is from a telegram that was used: it is no younger than the observer's count.
-        let on_time = |state: &State, missing: u16| {
-            state.line == LineKind::Analog || state.target.is_none_or(|target| target.age.0 >= missing)
+        let ghost = any_u32(e, "age of the last telegram that was used (cycles)", 0..=7);
+        e.assume(ghost < u32::MAX);
+        let counted = |state: &State, ghost: u32| match state.target {
+            Some(target) => u32::from(target.age.0) == ghost,
+            None => ghost > u32::from(life),
         };
-        e.assume(on_time(&cycle.before, missing));
-        let began = cycle.before.line == LineKind::Analog && cycle.heard.line == Some(LineKind::Digital);
-        let now = if began || cycle.used_main.is_some() { 0 } else { missing.saturating_add(1) };
-        let counted = now <= cycle.after.missing.0 || cycle.after.missing.0 == u16::MAX;
-        let analog = cycle.after.line == LineKind::Analog;
-        e.claim(Claim::Counted as u32, counted && (analog || on_time(&cycle.after, now)));
-        let exact = match (cycle.used_main, cycle.after.target) {
-            (Some(_), _) => cycle.before.main_stream.age.0 + 1,
-            (None, Some(target)) if began => target.age.0,
-            (None, None) if began => 0,
-            _ => cycle.before.missing.0.saturating_add(1),
-        };
-        e.claim(Claim::Exact as u32, cycle.after.missing.0 == exact);
-        // T-PER-1 says what is permitted in a state: on a digital line, with no fresh target and telegrams missing for longer
-        // than the life, a speed of 0 or nothing.
+        e.assume(counted(&cycle.before, ghost));
+        let now = if cycle.used_main.is_some() { u32::from(cycle.before.main_stream.age.0) + 1 } else { ghost + 1 };
+        e.claim(Claim::Counted as u32, counted(&cycle.after, now));
+        let lost = |state: &State| matches!(state.telegrams(&cycle.line.permitted), Telegrams::Lost);
+        e.claim(Claim::Ended as u32, now <= u32::from(life) || lost(&cycle.after));
+        e.claim(Claim::Start as u32, lost(&cycle.line.permitted.initial()));
         let digital = cycle.after.line == LineKind::Digital;
-        let fresh = cycle.after.target.is_some_and(|target| target.age.0 <= cycle.line.settings.fresh.0);
-        let ended = !digital || now <= life || (!fresh && cycle.after.missing.0 > life);
-        e.claim(Claim::Ended as u32, ended);
-        let ran_down = cycle.before.target.is_some() && cycle.after.target.is_none();
-        e.claim(Claim::Together as u32, !ran_down || began || cycle.after.missing.0 > life);
-        e.cover(Cover::RanDown as u32, ran_down && digital);
-        let start = cycle.line.permitted.initial();
-        e.claim(Claim::Start as u32, start.missing.0 == u16::MAX && start.target.is_none());
-        e.cover(Cover::Ended as u32, digital && now > life && cycle.heard.analog.is_some());
-        e.cover(Cover::Began as u32, began);
-        e.cover(Cover::Used as u32, cycle.used_main.is_some() && missing > life);
+        e.cover(Cover::RanDown as u32, digital && cycle.before.target.is_some() && cycle.after.target.is_none());
+        let analog = cycle.before.line == LineKind::Analog;
+        e.cover(Cover::Began as u32, analog && digital && cycle.after.target.is_none());
+        e.cover(Cover::Again as u32, cycle.heard.line == Some(cycle.before.line));
+        e.cover(Cover::Used as u32, cycle.used_main.is_some() && ghost > u32::from(life));
+    }
+}
+
+harness! {
+    /// What a train is told of the line is no evidence. Two trains hear the same; one was told anything at any time, the other never
+    /// anything but a digital line. They remember the same but for the kind of line, and after a cycle they do again. So a train that
+    /// was told of a digital line last permits exactly what the other one does.
+    t_per_6_announced(e)
+    theorem "T-PER-6";
+    requirements ["PER-11"];
+    assumptions ["four-speeds"];
+    bound "tables of 4 speeds";
+    cases 1;
+    unwind 33 = 1 + crate::aspect::LONGEST;
+    solver kissat;
+    claims {
+        Same: "after the cycle both remember the same but for the kind of line",
+        Digital: "where the first one was told of a digital line last, they are in the same state",
+    }
+    covers {
+        Told: "the first one is told of another kind of line than before",
+        Analog: "the first one is told of an analog line",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let told = any_state(e, &line);
+        let untold = State { line: LineKind::Digital, ..told };
+        let Some(heard) = any_heard(e) else { return };
+        let news = any_kind(e, "line that is told to the other (odd: digital)");
+        let after = told.listen(&line.permitted, heard);
+        let digital = any_flag(e, "the other is told of a digital line (odd: yes)").then_some(LineKind::Digital);
+        let other = untold.listen(&line.permitted, Heard { line: digital, ..heard });
+        e.claim(Claim::Same as u32, State { line: news, ..after } == State { line: news, ..other });
+        e.claim(Claim::Digital as u32, after.line == LineKind::Analog || after == other);
+        e.cover(Cover::Told as u32, heard.line.is_some() && heard.line != Some(told.line));
+        e.cover(Cover::Analog as u32, heard.line == Some(LineKind::Analog));
     }
 }
 
@@ -202,7 +223,7 @@ harness! {
     /// forgotten after its life. Every valid state leads to a valid one.
     t_per_8(e)
     theorem "T-PER-8";
-    requirements ["PER-8", "PER-11", "PER-12", "GEN-1"];
+    requirements ["PER-8", "PER-12", "PER-15", "GEN-1"];
     assumptions ["four-speeds", "stop-point-life"];
     bound "tables of 4 speeds";
     cases 1;
@@ -211,6 +232,7 @@ harness! {
         Used: "after a main telegram that is used the target is its own: its section, distance beyond the exit and speed, and as old as the telegram before it",
         Older: "otherwise a target is the one of before, one cycle older",
         Forgotten: "and there is none if it was as old as its life",
+        Behind: "the target of the section behind is the target of before where one of another section takes its place, and otherwise the one of before; one cycle older, as far as the train moved, and gone after its life",
         Streams: "the counters of either stream are what T-TEL-6 makes of them and of the cycle's telegram, if its ranks are known: used, refused, or none",
         Valid: "a valid state leads to a valid one",
     }
@@ -218,6 +240,7 @@ harness! {
         Used: "a main telegram is used",
         Refused: "a known main telegram is not used",
         Forgotten: "a target is forgotten",
+        Border: "a target takes the place of one of another section",
     }
     {
         let Some(cycle) = any_cycle(e) else { return };
@@ -237,6 +260,19 @@ harness! {
         };
         e.claim(Claim::Older as u32, cycle.used_main.is_some() || older);
         e.claim(Claim::Forgotten as u32, cycle.used_main.is_some() || !old || after.is_none());
+        let later = |target: Option<Target>| {
+            target.filter(|target| target.age.0 < cycle.line.settings.life.0).map(|target| {
+                let to_stop = Millimetres(target.to_stop.0.saturating_sub(cycle.heard.moved.0));
+                Target { age: Ticks(target.age.0 + 1), to_stop, ..target }
+            })
+        };
+        let (own, behind) = (later(before), later(cycle.before.behind));
+        let border = match (own, cycle.used_main) {
+            (Some(own), Some(main)) => own.section != main.section,
+            _ => false,
+        };
+        e.claim(Claim::Behind as u32, cycle.after.behind == if border { own } else { behind });
+        e.cover(Cover::Border as u32, border);
         e.claim(Claim::Streams as u32, [cycle.after.main_stream, cycle.after.sub_stream] == cycle.streams);
         e.claim(Claim::Valid as u32, cycle.after.is_valid(&cycle.line.permitted));
         e.cover(Cover::Used as u32, cycle.used_main.is_some());
@@ -302,7 +338,7 @@ harness! {
     solver kissat;
     claims {
         Step: "the state after a cycle is what was heard made of the one before",
-        Permission: "the permission rests on the state after, and the code of the cycle: its basis is that of the telegrams there, and it is not above the ground's speed there",
+        Permission: "the permission rests on the state after, and the code of the cycle: its basis is that of the telegrams there, and there is a speed where there is one by them",
         Start: "the initial state knows nothing, is valid, and permits no speed above 0, with a code and without",
         Safe: "the safe output is no permission, and not above any other",
     }
@@ -317,19 +353,15 @@ harness! {
         // What the limits and the speed are is T-PER-5's; here, that the permission is made of the state after.
         let telegrams = match cycle.after.telegrams(&permitted) {
             Telegrams::Fresh(_) => Telegrams::Fresh(KmhTenths(0)),
-            Telegrams::Missing(last) => Telegrams::Missing(last.map(|_| KmhTenths(0))),
+            Telegrams::Missing(_) => Telegrams::Missing(KmhTenths(0)),
             Telegrams::Lost => Telegrams::Lost,
         };
         let same = Permission::new(cycle.after.line, telegrams, cycle.heard.analog);
         let basis = permission.basis == same.basis && permission.speed.is_some() == same.speed.is_some();
-        let below = match cycle.after.target {
-            Some(target) if same.basis == Basis::Both || same.basis == Basis::Pattern => permission.speed <= Some(target.limit),
-            _ => true,
-        };
-        e.claim(Claim::Permission as u32, basis && below && permission.speed >= same.speed);
+        e.claim(Claim::Permission as u32, basis);
         let start = permitted.initial();
         let unheard = start.main_stream == Stream::EMPTY && start.sub_stream == Stream::EMPTY;
-        let knows = start.target.is_some() || start.fixed != [None; 2] || start.fix.is_some() || !unheard;
+        let knows = start.target.is_some() || start.behind.is_some() || start.fixed != [None; 2] || start.fix.is_some() || !unheard;
         let silent = start.permission(&permitted, cycle.heard.analog).speed <= Some(KmhTenths(0));
         e.claim(Claim::Start as u32, start.is_valid(&permitted) && !knows && silent);
         let safe = Permitted::SAFE == Permission { speed: None, basis: Basis::Nothing };

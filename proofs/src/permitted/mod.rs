@@ -19,8 +19,10 @@ use atc_kernel::telegram::{Judgement, Main, SectionId, Stream, Sub};
 use atc_kernel::time::Ticks;
 
 pub use distance::{t_per_4, t_per_4_fix, t_per_4_metres};
-pub use memory::{per_9, per_machine, per_total, t_per_2, t_per_5_evidence, t_per_6, t_per_7, t_per_8};
-pub use permission::{t_per_1, t_per_5, t_per_5_permission, t_per_5_speed};
+pub use memory::{
+    per_9, per_machine, per_total, t_per_2, t_per_5_evidence, t_per_6, t_per_6_announced, t_per_7, t_per_8,
+};
+pub use permission::{t_per_1, t_per_5, t_per_5_behind, t_per_5_border, t_per_5_permission, t_per_5_speed};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]
@@ -31,10 +33,13 @@ pub const ALL: &[Harness] = &[
     t_per_4_fix::HARNESS,
     t_per_4_metres::HARNESS,
     t_per_5::HARNESS,
+    t_per_5_behind::HARNESS,
+    t_per_5_border::HARNESS,
     t_per_5_evidence::HARNESS,
     t_per_5_speed::HARNESS,
     t_per_5_permission::HARNESS,
     t_per_6::HARNESS,
+    t_per_6_announced::HARNESS,
     t_per_7::HARNESS,
     t_per_8::HARNESS,
     per_9::HARNESS,
@@ -134,12 +139,12 @@ fn any_kind<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> LineKind {
 /// An arbitrary state, valid or not.
 fn any_parts<E: Engine + ?Sized>(e: &mut E) -> State {
     let fix = any_distance(e, "fix (1024 mm, mm)");
-    let (target, newest, other) = (any_target(e), any_fixed(e), any_fixed(e));
+    let (target, behind, newest, other) = (any_target(e), any_target(e), any_fixed(e), any_fixed(e));
     State {
         line: any_kind(e, "line (odd: digital)"),
-        missing: Ticks(e.word("telegrams missing (cycles)", 2..=9)),
         fix: any_flag(e, "a fix (odd: yes)").then_some(fix),
         target: any_flag(e, "a target (odd: yes)").then_some(target),
+        behind: any_flag(e, "a target of the section behind (odd: yes)").then_some(behind),
         fixed: [newest, other].map(|fixed| any_flag(e, "fixed data (odd: yes)").then_some(fixed)),
         main_stream: any_bits_of_stream(e),
         sub_stream: any_bits_of_stream(e),

@@ -1,7 +1,7 @@
 //! The counter: TEL-6 and TEL-7.
 
 use super::{any_bits, any_header};
-use crate::{Engine, any_byte, any_flag};
+use crate::{Engine, any_byte, any_flag, any_u32};
 use atc_kernel::Machine;
 use atc_kernel::telegram::{Deframer, Header, Judgement, Reception, Sequence, SequenceError, Stream, Window};
 use atc_kernel::time::Ticks;
@@ -106,41 +106,54 @@ harness! {
 }
 
 harness! {
-    /// A telegram that repeats the last counter, or one that is up to 128 older, is not used, and after it as many advances as
-    /// the run are needed again. So a transmitter that repeats one telegram, or a delayed one, is not listened to.
+    /// The reach of the counter. The ghosts are the whole numbers of the telegrams, without an end. While the stream is remembered, a
+    /// telegram that was sent before the last one, by fewer than 256 less the window, is not used, and after it as many advances
+    /// as the run are needed again. So a transmitter that repeats one telegram, or a delayed one, is not listened to. One that was sent
+    /// earlier is taken for a new one where its number, modulo 256, says so: that is a condition.
     t_tel_6_repeated(e)
     theorem "T-TEL-6";
     requirements ["TEL-6"];
-    assumptions [];
+    assumptions ["counter-reach"];
     bound "";
     cases 1;
     unwind 17 = 1 + size_of::<u128>();
     claims {
-        Repeated: "a telegram with the counter of the last one, or 1 to 128 behind it, is refused",
+        Repeated: "a telegram of the section that was sent 0 to 255 less the window before the last one is refused",
+        Beyond: "one that was sent exactly 256 less any advance within the window before it counts as that advance: no counter of 8 bits tells them apart",
         Again: "no advance counts after it",
         First: "the first telegram of a section, and the first one after a silence as long as the memory, are refused",
     }
     covers {
         Same: "the same counter again",
-        Older: "an older counter",
+        Older: "an older telegram",
+        Recorded: "one that was sent 255 before the last one, and is used",
     }
     {
         let Some(sequence) = any_sequence(e) else { return };
         let before = any_stream(e, sequence);
         let Some(header) = any_heard(e) else { return e.assume(false) };
         let (after, judgement) = sequence.step(before, Some(header));
-        let (mut repeated, mut same, mut first) = (false, false, true);
+        // How many telegrams before the last one this one was sent: 0 is the last one again.
+        let earlier = any_u32(e, "sent so many telegrams before the last one", 0..=300);
+        let window = u32::from(sequence.window());
+        let (mut repeated, mut beyond, mut same, mut first) = (false, false, false, true);
         if let Some(last) = before.last {
             same = header == last;
-            let behind = (i32::from(last.counter.0) - i32::from(header.counter.0)).rem_euclid(256);
-            repeated = header.section == last.section && behind <= 128;
+            e.assume(header.section != last.section || u32::from(last.counter.0) == (u32::from(header.counter.0) + earlier % 256) % 256);
+            repeated = header.section == last.section && earlier < 256 - window;
+            let remembered = u32::from(before.age.0) + 1 < u32::from(sequence.memory().0);
+            beyond = remembered && header.section == last.section && (256 - window..256).contains(&earlier);
             first = header.section != last.section || u32::from(before.age.0) + 1 >= u32::from(sequence.memory().0);
         }
         e.claim(Claim::Repeated as u32, !repeated || judgement == Judgement::Refused);
+        let more = u32::from(before.in_order) + 1;
+        let run = u32::from(sequence.run());
+        e.claim(Claim::Beyond as u32, !beyond || u32::from(after.in_order) == if more < run { more } else { run });
         e.claim(Claim::Again as u32, !(repeated || first) || after.in_order == 0);
         e.claim(Claim::First as u32, !first || judgement == Judgement::Refused);
         e.cover(Cover::Same as u32, same);
         e.cover(Cover::Older as u32, repeated && !same);
+        e.cover(Cover::Recorded as u32, beyond && earlier == 255 && judgement == Judgement::Accepted);
     }
 }
 

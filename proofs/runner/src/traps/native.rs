@@ -5,7 +5,7 @@
 
 use super::Trap;
 use crate::cbmc::{Answer, Silence};
-use crate::process::{End, Job, Limits, run as run_job};
+use crate::process::{End, Job, Limits, errors_of, run as run_job};
 use std::path::Path;
 use std::time::Duration;
 
@@ -42,7 +42,7 @@ fn ended(program: &Path, arguments: &[String], folder: &Path, output: &Path, tim
         End::Code(0) => Ok(()),
         End::Late => Err(Silence::Late),
         end => {
-            let said = std::fs::read_to_string(format!("{}.err", output.display())).unwrap_or_default();
+            let said = std::fs::read_to_string(errors_of(output)).unwrap_or_default();
             Err(Silence::Broken(format!("{}: {end:?}: {said}", program.display())))
         }
     }
