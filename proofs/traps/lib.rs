@@ -22,6 +22,7 @@ mod search;
 mod shifts;
 mod stack;
 mod switch;
+mod turns;
 mod unaligned;
 mod unwinding;
 mod vacuity;

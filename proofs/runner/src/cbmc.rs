@@ -10,8 +10,11 @@ use std::time::Duration;
 /// driver, and the C it writes relies on wrapping.
 /// Memory up to 16 KB, in words, is followed cell by cell: as a whole it would be an array, which costs far more.
 /// The report is text: as JSON it has how every assertion fails, asked for or not, in up to 100 MB.
-pub const CBMC: [&str; 8] = [
+pub const CBMC: [&str; 10] = [
     "--no-standard-checks",
+    // How far each loop is unwound is told from here on.
+    "--verbosity",
+    "8",
     "--object-bits",
     "14",
     "--unwind",

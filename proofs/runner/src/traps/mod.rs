@@ -46,6 +46,8 @@ pub struct Trap {
     /// The cover points that are hit; others are not.
     #[serde(default)]
     pub hit: Vec<usize>,
+    /// How often CBMC must say that it has unwound some loop, at least.
+    pub turns: Option<usize>,
     /// In place of verdicts: an assertion that fails begins so.
     pub failure: Option<String>,
     /// In place of verdicts: there is no answer, and the reason has this word.

@@ -130,7 +130,14 @@ fn outcome(tools: &Tools, trap: &Trap, folder: &Path, way: Way, limit: Duration)
     };
     let question = Question::proof(&trap.name, solver, limit);
     let (proof, reach) = ask_both(tools, folder, &question, hard);
-    trap.judge(&proof.and_then(|(proof, _)| Ok((proof, reach?.0))))
+    let found = proof.and_then(|(proof, _)| Ok((proof, reach?.0)));
+    let unwound = found.as_ref().map_or(0, |(proof, _)| proof.unwound);
+    match (trap.judge(&found), trap.turns) {
+        (Outcome::Right, Some(turns)) if unwound < turns => {
+            Outcome::Wrong(format!("a loop of {turns} turns is told to be unwound {unwound} times"))
+        }
+        (outcome, _) => outcome,
+    }
 }
 
 impl Trap {
