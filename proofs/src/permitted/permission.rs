@@ -175,9 +175,9 @@ harness! {
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
     claims {
-        Own: "the target's own limits are what its section has (t_per_5)",
+        Own: "the target's own limits are those of t_per_5",
         Known: "with fixed data of the target's section nothing else counts",
-        Behind: "without them, and with a target behind, the limits by that count as well: for its point, its ground's speed, and its own section",
+        Behind: "without them, and with a target behind, the limits by that count as well: its point, its ground's speed, and the gradient and the limit of its own section",
     }
     covers {
         Border: "the section behind counts",
@@ -188,21 +188,13 @@ harness! {
         let target = any_target(e);
         let state = State { target: Some(target), ..any_state(e, &line) };
         let Guidance { own, behind } = state.guidance(&line.permitted, &target);
-        let own_is = own.distance == state.limits(&line.permitted, &target).distance && own.ground == target.limit;
-        e.claim(Claim::Own as u32, own_is);
+        e.claim(Claim::Own as u32, own == state.limits(&line.permitted, &target));
         let mut known = false;
         for fixed in state.fixed.iter().flatten() {
             known |= fixed.section == target.section;
         }
         e.claim(Claim::Known as u32, !known || behind.is_none());
-        let right = match (state.behind, behind) {
-            (None, None) => true,
-            (Some(target), Some(behind)) => {
-                let own = state.limits(&line.permitted, &target);
-                behind.distance == own.distance && behind.ground == own.ground && behind.section == own.section
-            }
-            _ => false,
-        };
+        let right = behind == state.behind.map(|target| state.limits(&line.permitted, &target));
         e.claim(Claim::Behind as u32, known || right);
         e.cover(Cover::Border as u32, behind.is_some());
         e.cover(Cover::Known as u32, known && state.behind.is_some());
@@ -210,9 +202,9 @@ harness! {
 }
 
 harness! {
-    /// At a border the speed is never above what either section allows. Where nothing is known of the section ahead it is at most the
-    /// lowest limit, or what the target of the section behind permits; and always at most the ground's speed and the pattern to the
-    /// point of the section ahead. The ghost is the true limit under the train.
+    /// Where nothing is known of the section ahead the speed at a border is at most the lowest limit, or what the target of the section behind
+    /// permits; and always at most the ground's speed and the pattern to the point of the section ahead. The ghost is the true limit under
+    /// the train: that it is not under the limit of the section behind while its target lives is assumed (`limits-reach-over-the-border`).
     t_per_5_border(e)
     theorem "T-PER-5";
     requirements ["PER-15"];
@@ -229,7 +221,7 @@ harness! {
     }
     covers {
         Carried: "the section behind permits more than the lowest limit, and that is permitted",
-        Pattern: "the pattern to the point of the section ahead is below that",
+        Pattern: "the pattern to the point of the section ahead is below that, or the point is 3000 m away and it cannot be",
         Alone: "no section behind",
     }
     {
