@@ -1,6 +1,6 @@
 //! The junction, the crossing and the terminus, with every condition kept.
 
-use super::{BRANCH, IN_AND_OUT, MAIN, OVER, ROUTES, SOUND, UNDER, about, dispatch, sets, turn, turns, yard};
+use super::{BRANCH, IN_AND_OUT, MAIN, OVER, ROUTES, SOUND, UNDER, about, dispatch, turn, turns, yard};
 use super::{Environment, Purpose, Sight};
 use crate::check::Entry;
 use crate::interlocking::environment::{Drives, Obey};
@@ -33,7 +33,7 @@ fn siding_train() -> Environment {
         unheard: 1,
         unheard_in: 1 << rest::THROAT | 1 << rest::FIRST | 1 << rest::SECOND,
         before: vec![turn(0, Travel::Toward)],
-        requests: sets(&[0]),
+        requests: dispatch(&[0]),
         ..Environment::usual(vec![IN_AND_OUT])
     }
 }
@@ -98,17 +98,12 @@ pub(super) fn entries() -> Vec<Entry> {
             about(
                 "interlocking-terminus-telegrams",
                 "The same with trains that keep to their telegrams.",
-                "routes are set and the line turned in any cycle; trains move, stand and turn round in any cycle",
+                "routes are set and withdrawn and the line turned in any cycle; trains move, stand and turn round in any cycle",
                 ROUTES,
                 SOUND,
             ),
             terminus(),
-            Environment {
-                obey: Obey::Telegrams,
-                residual: 1,
-                requests: [sets(&[0, 1, 2, 3]), turns(&[0])].concat(),
-                ..reversing(2)
-            },
+            Environment { obey: Obey::Telegrams, residual: 1, ..reversing(2) },
             Purpose::Finishes(&[Sight::Arrived, Sight::Turned, Sight::Telegram]),
         ),
         yard(
@@ -117,7 +112,7 @@ pub(super) fn entries() -> Vec<Entry> {
                 "A train that keeps to its telegrams runs over three circuits of one route and is lost where it goes from one to the next, for up to two \
                  cycles less than a circuit needs to count as clear: both are still seen together, the route goes on granting what is ahead, and the \
                  train can always arrive.",
-                "the route is set in any cycle; the circuits of the route are not reported with a train, for one cycle in a row",
+                "the route is set and withdrawn in any cycle; the circuits of the route are not reported with a train, for one cycle in a row",
                 &["ATC-1", "TRK-1"],
                 SOUND,
             ),

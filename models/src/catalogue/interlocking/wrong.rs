@@ -45,6 +45,8 @@ fn layouts() -> Vec<Entry> {
     let no_approach = station.forced(|plan| {
         plan.routes.iter_mut().for_each(|route| route.approach = circuits(0));
     });
+    // An overlap would keep what follows from the point until the train has stood.
+    let without_overlaps = passing_loop(Overlaps::None);
     let short_release = station.with(|plan| plan.routes.iter_mut().for_each(|route| route.release = Ticks(1)));
     vec![
         yard(
@@ -68,7 +70,7 @@ fn layouts() -> Vec<Entry> {
                 &["ILK-12", "ILK-13", "ATC-1"],
                 NO_APPROACH,
             ),
-            station.clone(),
+            without_overlaps.clone(),
             Environment { obey: Obey::Telegrams, ..following(2) },
             DERAILMENT(&["approach-covers-braking"]),
         ),
@@ -82,7 +84,7 @@ fn layouts() -> Vec<Entry> {
                 &["ILK-12", "ILK-13", "TRK-1", "ATC-1"],
                 NO_APPROACH,
             ),
-            station.with(|plan| plan.clear = 2),
+            without_overlaps.with(|plan| plan.clear = 2),
             Environment {
                 obey: Obey::Telegrams,
                 unheard: 1,
