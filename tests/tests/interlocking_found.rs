@@ -221,7 +221,7 @@ fn a_code_that_is_not_in_the_table_is_never_sent() {
         stop f  .h.
         speed a 300
         speed b 003
-        speed f 030
+        speed f 020
         ",
     );
 }

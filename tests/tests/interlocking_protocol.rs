@@ -213,7 +213,8 @@ fn wrong_starts() {
 fn plan() -> Value {
     let circuits = ["W", "A", "B", "E"].map(|name| json!({"name": name, "length_m": 600}));
     json!({"plan": {
-        "station": "Fork", "cycle_ms": 1000, "clear_cycles": 2, "turn_cycles": 3,
+        "station": "Fork", "cycle_ms": 1000, "clear_cycles": 2, "turn_cycles": 3, "start_cycles": 0,
+        "settle_cycles": 0, "loss_cycles": 0, "residual_cycles": 0, "standstill_cycles": 0,
         "speeds_km_h": [0, 45], "braking_m": [0, 300],
         "circuits": circuits,
         "points": [{"name": "P", "detectors": ["A"]}],
@@ -223,6 +224,7 @@ fn plan() -> Value {
             "path": [{"circuits": ["A"], "points": {"P": "normal"}}, {"circuits": ["B"], "points": {}}],
             "overlap": {"circuits": ["E"], "points": {}}, "beyond": ["E"], "continuing": [], "conflicts": [],
             "from": [], "to": [], "drive_cycles": 8, "release_cycles": 60, "stay_cycles": 30, "speed_code": 1,
+            "cab_signalled": false,
         }],
     }})
 }
@@ -437,7 +439,7 @@ fn the_chart_of_the_example() {
         "provisional: 11000 to 16000 ms",
         "set: 16000 to 40000 ms",
         "in-use: 40000 to 100000 ms",
-        "overlap of W-1: 11000 to 65000 ms",
+        "overlap of W-1: 11000 to 71000 ms",
         "to normal: 10000 to 15000 ms",
         "occupied: 46000 to 100000 ms",
         "to 1T at 75 km/h: 27000 to 40000 ms",

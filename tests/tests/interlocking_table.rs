@@ -156,7 +156,7 @@ fn a_damaged_table_stops_every_train() {
     assert_eq!(Table::from_parts(epoch, check, contents), table);
     let mut tables: Vec<_> =
         damaged(contents).into_iter().map(|contents| Table::from_parts(epoch, check, contents)).collect();
-    assert_eq!(tables.len(), 64 * 8 + 8 * (2 + 2 + MAX_CIRCUITS) + 2, "every bit once");
+    assert_eq!(tables.len(), 64 * (3 + MAX_CODES + 2 * 4) + 8 * (2 + 2) + 2, "every bit once");
     tables.extend((0..64).map(|bit| Table::from_parts(epoch, check ^ 1 << bit, contents)));
     for table in &tables {
         assert_eq!(table.read(state.epoch), None, "{table:?}");
