@@ -18,7 +18,7 @@ pub const CBMC: [&str; 10] = [
     "--object-bits",
     "14",
     "--unwind",
-    "66",
+    crate::unwound::MOST,
     "--slice-formula",
     "--max-field-sensitivity-array-size",
     "4096",

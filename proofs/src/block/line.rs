@@ -161,7 +161,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases SIZES.len();
-    unwind 19 = 1 + LENGTHS;
+    unwind 20 = 2 + LENGTHS;
     apart [0 1 2 3 4];
     claims {
         LetGo: "the block behind lets a train go only for a check-in ahead that has risen and let no other go",
@@ -212,7 +212,7 @@ harness! {
     assumptions [];
     bound BOUND;
     cases SIZES.len();
-    unwind 19 = 1 + LENGTHS;
+    unwind 20 = 2 + LENGTHS;
     apart [0 1 2 3 4];
     claims {
         Ahead: "the block ahead reports what it would alone, with what is asked from beyond the exit",
@@ -245,7 +245,7 @@ harness! {
     assumptions [];
     bound "";
     cases 1;
-    unwind 19 = 1 + LENGTHS;
+    unwind 20 = 2 + LENGTHS;
     claims {
         Mirror: "a section is in the set if and only if its mirror image is in the reversed one, and nothing else is",
     }
@@ -272,7 +272,7 @@ harness! {
     assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
     bound BOUND;
     cases SIZES.len();
-    unwind 19 = 1 + LENGTHS;
+    unwind 20 = 2 + LENGTHS;
     apart [0 1 2 3 4];
     claims {
         Behind: "a section of the block behind that is at most k behind a head in the block ahead is occupied",
@@ -319,7 +319,7 @@ harness! {
     assumptions [];
     bound "blocks of 2, 1 and 2 sections";
     cases 1;
-    unwind 19 = 1 + LENGTHS;
+    unwind 20 = 2 + LENGTHS;
     claims {
         Report: "each block reports what it would alone, with what the next one asks and takes over, and its state is that of its step",
         Account: "each border's account moves by its own edges, trains let go and resets",

@@ -413,7 +413,7 @@ harness! {
         contents.standing.limits = limits(far, its, 7);
         let mut plan = *line.plan();
         // One circuit is enough to stop from every code.
-        plan.lengths = [Metres(MAX_CODES as u16); MAX_CIRCUITS];
+        plan.lengths = [Metres(8); MAX_CIRCUITS];
         plan.braking = [0, 1, 2, 3, 4, 5, 6, 7].map(Metres);
         let Ok(line) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
         let train = contents.standing.train(&line, occupied, front.alone());
