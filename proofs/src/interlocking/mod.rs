@@ -108,7 +108,7 @@ fn any_circuits<E: Engine + ?Sized>(
 fn any_positions<E: Engine + ?Sized>(e: &mut E) -> Positions {
     Positions {
         normal: PointSet::from_bits(u32::from(e.word("points in normal position (bits)", 0..=1))),
-        reverse: PointSet::from_bits(u32::from(e.word("points in reverse position (bits)", 0..=2) & !1)),
+        reverse: PointSet::from_bits(u32::from(e.word("points in reverse position (bits)", 0..=2))),
     }
 }
 
