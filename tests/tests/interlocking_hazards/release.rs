@@ -11,7 +11,7 @@ fn let_in(lines: &str) -> Session {
     let mut session = Session::new(lines);
     session.wait(9, &[]);
     let toward = session.turn("West", Travel::Toward);
-    assert_eq!(session.ask(toward, &["W1"]), Ok(()));
+    assert_eq!(session.ask(toward, &[]), Ok(()));
     let set = session.set("W-1");
     assert_eq!(session.ask(set, &["W1"]), Ok(()));
     assert!(session.proceed("W-1"));

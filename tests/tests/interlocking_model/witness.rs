@@ -187,8 +187,13 @@ impl Witness {
             if reasons.is_empty() {
                 match ask {
                     Ask::Set(route) => {
-                        let idle = Held::idle(&sketch.routes[route]);
-                        self.routes[route] = Held { stage: Stage::Provisional(0), overlap: true, ..idle };
+                        let held = &mut self.routes[route];
+                        if let Stage::Releasing(time) = held.stage {
+                            held.stage = Stage::InUse(time);
+                        } else {
+                            let idle = Held::idle(&sketch.routes[route]);
+                            *held = Held { stage: Stage::Provisional(0), overlap: true, ..idle };
+                        }
                     }
                     Ask::Withdraw(route) => self.routes[route].withdraw(&sketch.routes[route], &occupied),
                     Ask::Drive(point, position) => alone = Some((point, position)),

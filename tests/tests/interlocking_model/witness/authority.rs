@@ -21,7 +21,11 @@ impl Witness {
         (0..64)
             .map(|circuit| {
                 let stop = Telegram { stop: circuit, open: false, speed: 0, hold: Set::new() };
-                if occupied.contains(&circuit) { self.linked(sketch, circuit, &leaves).unwrap_or(stop) } else { stop }
+                if occupied.contains(&circuit) {
+                    self.linked(sketch, circuit, occupied, &leaves).unwrap_or(stop)
+                } else {
+                    stop
+                }
             })
             .collect()
     }
@@ -69,7 +73,7 @@ impl Witness {
     }
 
     /// The telegram of a train in `circuit`, if it may leave it.
-    fn linked(&self, sketch: &Sketch, circuit: usize, leaves: &[Leave]) -> Option<Telegram> {
+    fn linked(&self, sketch: &Sketch, circuit: usize, occupied: &Set, leaves: &[Leave]) -> Option<Telegram> {
         let (mut here, mut speed, mut granted) = (circuit, 7, Vec::new());
         for _ in 0..LINKS {
             let mut mine = leaves.iter().filter(|leave| leave.train == here);
@@ -86,10 +90,51 @@ impl Witness {
         if hold.is_empty() {
             return None;
         }
-        let limit = hold.iter().chain([&circuit]).map(|it| self.limits[*it]).min().unwrap_or(0);
+        let train = self.train(sketch, circuit, occupied);
+        let limit = hold.iter().chain(&train).map(|it| self.limit(sketch, *it)).min().unwrap_or(0);
         let distance: u32 = hold.iter().map(|it| u32::from(sketch.lengths[*it])).sum();
         let stops = sketch.braking.iter().rposition(|it| *it != u16::MAX && u32::from(*it) <= distance).unwrap_or(0);
         let speed = speed.min(limit).min(u8::try_from(stops).unwrap_or(0));
         Some(Telegram { stop: here, open: true, speed, hold })
+    }
+
+    /// The limit of a circuit: that of staff, and that of the route that holds it or, if none does, the lowest of all over it.
+    fn limit(&self, sketch: &Sketch, circuit: usize) -> u8 {
+        let routes = || self.routes.iter().zip(&sketch.routes);
+        let holding = routes().filter(|(held, way)| held.path(way).contains(&circuit)).map(|(_, way)| way.speed).min();
+        let over = sketch.routes.iter().filter(|way| way.circuits().contains(&circuit)).map(|way| way.speed).min();
+        holding.or(over).into_iter().chain([self.limits[circuit]]).min().unwrap_or(7)
+    }
+
+    /// Where the train may stand whose front is in a circuit: on all that it may reach from there over what trains stand on together.
+    fn train(&self, sketch: &Sketch, front: usize, occupied: &Set) -> Set {
+        let mut together: Vec<Set> = Vec::new();
+        let mut known = Set::new();
+        for (held, way) in self.routes.iter().zip(&sketch.routes) {
+            let path = held.path(way);
+            known.extend(&path);
+            let mut body: Set = path.iter().filter(|it| occupied.contains(it)).copied().collect();
+            let whole = held.places.iter().all(|place| *place != Place::Released);
+            if whole && !body.is_empty() && occupied.contains(&way.entry) {
+                body.insert(way.entry);
+            }
+            together.push(body);
+        }
+        for line in &sketch.segments {
+            known.extend(&line.circuits);
+            let order: Vec<_> = line.throat.iter().chain(&line.circuits).copied().collect();
+            let runs = order.split(|it| !occupied.contains(it)).map(|run| run.iter().copied().collect());
+            together.extend(runs);
+        }
+        let mut train = Set::from([front]);
+        for longest in [false, false, false, false, false, true] {
+            let mut more = train.clone();
+            more.extend(together.iter().filter(|part| !part.is_disjoint(&train)).flatten());
+            if longest && more != train || train.iter().any(|it| occupied.contains(it) && !known.contains(it)) {
+                return occupied.clone();
+            }
+            train = more;
+        }
+        train
     }
 }

@@ -56,6 +56,11 @@ impl Held {
         self.stage != Stage::Idle
     }
 
+    /// Whether it was withdrawn when its train was in it already: then it may be asked for once more.
+    pub(super) fn may_go_on(&self) -> bool {
+        matches!(self.stage, Stage::Releasing(_)) && self.places.first().is_some_and(|place| *place != Place::Ahead)
+    }
+
     /// The places of the path that are still held.
     pub(super) fn kept<'a>(&'a self, way: &'a Way) -> impl Iterator<Item = &'a (usize, Vec<Need>)> {
         let kept = way.path.iter().zip(&self.places).filter(|(_, place)| self.is_held() && **place != Place::Released);

@@ -34,10 +34,15 @@ impl Witness {
     }
 
     fn refuse_set(&self, sketch: &Sketch, asked: usize, occupied: &Set, seen: &[Need]) -> Vec<Refusal> {
-        if self.routes[asked].is_held() {
+        let way = &sketch.routes[asked];
+        let mine = &self.routes[asked];
+        if mine.may_go_on() {
+            let closed = way.to.is_some_and(|segment| self.closed(sketch, segment));
+            return listed(&[(closed || meets(&mine.path(way), &self.blocked), Refusal::Blocked)]);
+        }
+        if mine.is_held() {
             return vec![Refusal::AlreadyHeld];
         }
-        let way = &sketch.routes[asked];
         let (path, overlap, needs) = (way.circuits(), &way.overlap.0, way.needs());
         let mut reasons = Vec::new();
         for (number, (held, other)) in self.routes.iter().zip(&sketch.routes).enumerate().filter(|it| it.1.0.is_held())
