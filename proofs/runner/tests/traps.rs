@@ -94,7 +94,7 @@ struct Wrong {
 
 const ONCE: Way = Way::Once(Solver::Auto);
 
-const WRONG: [Wrong; 30] = [
+const WRONG: [Wrong; 31] = [
     Wrong {
         what: "jumps back as wasm2c writes them",
         tool: "cbmc",
@@ -285,6 +285,13 @@ const WRONG: [Wrong; 30] = [
         script: "real \"$@\" | sed 's/: FAILURE$/: SUCCESS/;s/^[*][*] [0-9]* of/** 0 of/;s/FAILED$/SUCCESSFUL/'",
         way: ONCE,
         into: &["verdicts", "overflow", "search", "loops_last", "rounds"],
+    },
+    Wrong {
+        what: "nothing is said of how far loops are unwound",
+        tool: "cbmc",
+        script: "said=$(real \"$@\"); status=$?; printf '%s\\n' \"$said\" | grep -v '^Unwinding loop'; exit $status",
+        way: ONCE,
+        into: &["turns"],
     },
     Wrong {
         what: "every answer is no",
