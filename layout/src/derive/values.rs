@@ -64,9 +64,11 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     // Where the file says nothing it is derived from the routes.
     let start_ms = times.start_ms.clone().unwrap_or_else(|| At::derived(0));
     let start = at_most("start_ms", &start_ms, cycle, problems);
-    let settle = at_most("settle_ms", &times.settle_ms, cycle, problems);
-    let settle = u8::try_from(settle.0).unwrap_or_else(|_| {
-        let what = format!("settle_ms is {} cycles", settle.0);
+    let settle = at_most("settle_ms", &times.settle_ms, cycle, problems).0;
+    // A command goes out after the cycle's detections came in: the first detection that may show its stroke is a cycle later.
+    let settle = if settle > 0 { settle.saturating_add(1) } else { 0 };
+    let settle = u8::try_from(settle).unwrap_or_else(|_| {
+        let what = format!("settle_ms is {settle} cycles with the one of the command");
         problems.push(Problem::new(Rule::Range, &times.settle_ms.span, what, "0 to 255 cycles are possible"));
         u8::MAX
     });
