@@ -85,6 +85,10 @@ pub(crate) mod cbmc {
         #[inline(always)]
         fn assume(&mut self, holds: bool) {
             import::assume(u32::from(holds));
+            // Nothing is behind an assumption that does not hold. The optimiser learns it here; if it were wrong, this would be a trap.
+            if !holds {
+                core::arch::wasm32::unreachable()
+            }
         }
 
         #[inline(always)]

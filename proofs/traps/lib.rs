@@ -4,6 +4,7 @@
 #![no_std]
 #![allow(missing_docs)]
 
+mod assumed;
 mod bounds;
 mod bytes;
 mod calls;

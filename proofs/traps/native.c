@@ -44,7 +44,8 @@ unsigned nondet_u32(void) { return next < count ? given[next++] : draw(); }
 static void once(void) {
   next = 0;
 #ifdef MEMORY
-  memset(words, 0, sizeof words);
+  static const u32 at_start[MEMORY / 4] = DATA;
+  memcpy(words, at_start, sizeof words);
 #endif
   if (setjmp(over) == 0) trap_main();
 }

@@ -28,15 +28,12 @@ pub const CBMC: [&str; 10] = [
 pub const PROOF: &str = "--unwinding-assertions";
 
 /// How long [`Solver::Auto`] waits for the first solver.
-pub const FIRST: Duration = Duration::from_secs(20);
-
-/// Bytes of constant data that a harness may have: a loop loads them, and is unwound as far.
-const DATA: u32 = 768;
+pub const FIRST: Duration = Duration::from_secs(45);
 
 /// Which solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Solver {
-    /// MiniSat, and where that has no answer in 20 s, Kissat: each is fast where the other is slow.
+    /// MiniSat, and where that has no answer in 45 s, Kissat: each is fast where the other is slow.
     Auto,
     /// MiniSat, in CBMC.
     Minisat,
@@ -275,8 +272,6 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
         folder.display().to_string(),
         "-I".to_owned(),
         tools.include.display().to_string(),
-        "--unwindset".to_owned(),
-        format!("load_bytes.0:{}", DATA + 1),
     ]);
     let (more, name): (&[&str], _) = match question.ask {
         Ask::Proof => (&[PROOF], ""),

@@ -4,12 +4,13 @@ use crate::loops::one_way_back;
 use crate::process::{End, Job, Limits, errors_of, run};
 use crate::regions::apart;
 use crate::tools::Tools;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The options of every compilation. Optimised, because that is what is proven; with overflow checks, because an
 /// overflow must be a trap; one unit with everything inlined, because CBMC likes locals better than memory.
-pub const RUSTC: [&str; 8] = [
+pub const RUSTC: [&str; 9] = [
     "--edition=2024",
     "--target=wasm32-unknown-unknown",
     "-Copt-level=3",
@@ -18,6 +19,7 @@ pub const RUSTC: [&str; 8] = [
     "-Ccodegen-units=1",
     "-Cllvm-args=-inline-threshold=1000000",
     "-Cllvm-args=-unroll-threshold=1000000",
+    "-Cllvm-args=-jump-threading-threshold=0",
 ];
 
 /// The kernel and its arithmetic are only linked into the harnesses, which are optimised as a whole: machine code of its own would be thrown away.
@@ -158,8 +160,9 @@ impl Compiled {
         let memory = memory(&text)?;
         let header = folder.join("harness.h");
         let declared = std::fs::read_to_string(&header).map_err(|error| format!("{}: {error}", header.display()))?;
-        write(&header, &with_memory(declared, memory))?;
-        let original = one_way_back(&without_accessors(&text)?)?;
+        let (code, data) = data_apart(&without_accessors(&text)?, memory)?;
+        write(&header, &with_memory(declared, memory, &data))?;
+        let original = one_way_back(&code)?;
         write(&folder.join("original.c"), &original)?;
         write(&folder.join("harness.c"), &apart(&original)?)?;
         write(&folder.join("driver.c"), DRIVER)?;
@@ -202,14 +205,56 @@ fn memory(text: &str) -> Result<u32, String> {
     end.map(|end| end.next_multiple_of(4)).ok_or_else(|| "the C does not say where its data end".to_owned())
 }
 
-fn with_memory(header: String, bytes: u32) -> String {
-    header + &format!("\n#define MEMORY {bytes}\n")
+/// The header with the size of linear memory in bytes, and the words that are in it at the start: the first ones, and 0 from there on.
+fn with_memory(header: String, bytes: u32, data: &[u32]) -> String {
+    let words: Vec<String> = data.iter().map(|word| format!("{word}u")).collect();
+    header + &format!("\n#define MEMORY {bytes}\n#define DATA {{{}}}\n", words.join(","))
+}
+
+/// The C without its constant data, and the words of linear memory with them in their places. Loaded when the program begins, byte by byte, they
+/// took CBMC half of its time.
+///
+/// # Errors
+/// Text that wasm2c 1.0.36 does not write.
+fn data_apart(text: &str, memory: u32) -> Result<(String, Vec<u32>), String> {
+    const LOADS: &str = "LOAD_DATA(instance->w2c_memory, ";
+    let strange = |line: &str| format!("data that wasm2c 1.0.36 does not write: `{}`", line.trim());
+    let (mut code, mut bytes) = (String::with_capacity(text.len()), vec![0_u8; memory as usize]);
+    let mut segments: BTreeMap<&str, Vec<u8>> = BTreeMap::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if let Some(rest) = line.strip_prefix("static const u8 data_segment_data_") {
+            let name = rest.strip_suffix("[] = {").ok_or_else(|| strange(line))?;
+            let mut segment = Vec::new();
+            for line in lines.by_ref().take_while(|line| *line != "};") {
+                for byte in line.split(',').map(str::trim).filter(|byte| !byte.is_empty()) {
+                    let byte = byte.strip_prefix("0x").and_then(|byte| u8::from_str_radix(byte, 16).ok());
+                    segment.push(byte.ok_or_else(|| strange(line))?);
+                }
+            }
+            segments.insert(name, segment);
+        } else if let Some(rest) = line.trim().strip_prefix(LOADS) {
+            let mut parts = rest.split(", ");
+            let mut next = || parts.next().ok_or_else(|| strange(line));
+            let to = next()?.strip_suffix('u').and_then(|to| to.parse::<usize>().ok());
+            let segment = next()?.strip_prefix("data_segment_data_").and_then(|name| segments.get(name));
+            let size = next()?.strip_suffix(");").and_then(|size| size.parse::<usize>().ok());
+            let (Some(to), Some(segment), Some(size)) = (to, segment, size) else { return Err(strange(line)) };
+            let place = bytes.get_mut(to..to.saturating_add(size)).filter(|_| segment.len() == size);
+            place.ok_or_else(|| strange(line))?.copy_from_slice(segment);
+        } else {
+            code.push_str(line);
+            code.push('\n');
+        }
+    }
+    let words = bytes.chunks(4).map(|word| word.iter().rev().fold(0, |sum, byte| sum << 8 | u32::from(*byte)));
+    Ok((code, words.collect()))
 }
 
 /// Puts C that was written by hand where that of a harness would be, with so many bytes of memory.
 pub(crate) fn write_c(folder: &Path, header: &str, memory: u32) -> Result<(), String> {
     fresh(folder)?;
-    write(&folder.join("harness.h"), &with_memory(header.to_owned(), memory))?;
+    write(&folder.join("harness.h"), &with_memory(header.to_owned(), memory, &[0]))?;
     write(&folder.join("harness.c"), "")?;
     write(&folder.join("driver.c"), DRIVER)
 }
@@ -273,5 +318,37 @@ fn tool(
             let first: Vec<_> = said.lines().filter(|line| !line.is_empty()).take(6).collect();
             Err(format!("{name}: {end:?}: {}", first.join(" / ")))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::data_apart;
+
+    const ROWS: &str = "static const u8 data_segment_data_w2c_h_d0[] = {\n  0x01, 0x02, 0x03, \n  0xFF, 0x05, \n};\n";
+
+    fn loads(of: &str) -> String {
+        format!("void load(void) {{\n  LOAD_DATA(instance->w2c_memory, {of});\n}}\n")
+    }
+
+    #[test]
+    fn data_are_where_they_were() {
+        let text = ROWS.to_owned() + &loads("6u, data_segment_data_w2c_h_d0, 5");
+        let wanted = vec![0, 0x0201_0000, 0x0005_FF03];
+        assert_eq!(data_apart(&text, 12), Ok(("void load(void) {\n}\n".to_owned(), wanted)));
+        assert_eq!(data_apart("void f(void) {\n}\n", 4), Ok(("void f(void) {\n}\n".to_owned(), vec![0])));
+    }
+
+    #[test]
+    fn data_of_another_kind_are_an_error() {
+        for (of, memory) in [
+            ("6u, data_segment_data_w2c_h_d0, 5", 8),
+            ("6u, data_segment_data_w2c_h_d0, 4", 12),
+            ("6u, data_segment_data_w2c_h_d1, 5", 12),
+            ("var_i0, data_segment_data_w2c_h_d0, 5", 12),
+        ] {
+            assert!(data_apart(&(ROWS.to_owned() + &loads(of)), memory).is_err(), "{of}");
+        }
+        assert!(data_apart(&ROWS.replace("0xFF", "-1"), 12).is_err());
     }
 }

@@ -24,7 +24,8 @@
 //! The variables of the function are then the file's. Nothing here calls itself, so that there is one of each at a time; and each that the
 //! function sets to 0 when it begins is set there still.
 //!
-//! A place that only panics, to which many jump, would make one region of all that is between: such a jump panics where it is.
+//! A place that only panics, to which many jump, would make one region of all that is between: such a jump panics where it is. A panic and the
+//! way round it complete nothing either, since one of the two ways ends. So they are a function, too, of however few jumps.
 //!
 //! The self-test has programs of this kind, and the rewritten C is run as a program on drawn values (`traps/native.rs`).
 
@@ -34,6 +35,9 @@ use std::fmt::Write;
 
 /// Jumps of its own that a region has at least: the two ways round a single one complete each other.
 const JUMPS: usize = 2;
+
+/// What a panic ends with.
+const PANICS: &str = "UNREACHABLE;";
 
 /// Lines of a panic that are copied to where the jump is.
 const PANIC: usize = 12;
@@ -215,7 +219,7 @@ fn panics_where_they_are(body: &[String]) -> Result<Vec<String>, String> {
             }
             copied.push_str(line.trim());
             copied.push(' ');
-            if line.contains("UNREACHABLE;") {
+            if line.contains(PANICS) {
                 return Some(copied);
             }
         }
@@ -293,22 +297,39 @@ impl Writer<'_> {
     fn lines(&mut self, region: &Region) -> (Vec<String>, usize) {
         let (mut lines, mut next) = (Vec::new(), region.span.0);
         for inner in &region.inner {
-            lines.extend_from_slice(&self.body[next..inner.span.0]);
+            self.straight(next..inner.span.0, &mut lines);
             let (within, own) = self.lines(inner);
             let whole = |line: &String| line.contains("return") || line.contains("FUNC_");
-            if own < JUMPS || within.iter().any(whole) {
+            // A panic is an end, so that the ways round it complete nothing.
+            let ends = within.iter().any(|line| line.contains(PANICS));
+            if own < JUMPS && !ends || within.iter().any(whole) {
                 lines.extend(within);
             } else {
-                let function = format!("{}_r{}", self.name, self.functions.len() + 1);
-                lines.push(format!("  {function}(instance);"));
-                let head = format!("static void {function}(w2c_h* instance) {{");
-                self.functions.push([vec![head], within, vec!["}".to_owned()]].concat());
+                lines.push(self.function(within));
             }
             next = inner.span.1 + 1;
         }
-        lines.extend_from_slice(&self.body[next.min(self.body.len())..(region.span.1 + 1).min(self.body.len())]);
+        let end = self.body.len();
+        self.straight(next.min(end)..(region.span.1 + 1).min(end), &mut lines);
         let jumps = lines.iter().filter(|line| jump(line).is_some()).count();
         (lines, jumps)
+    }
+
+    /// Lines that are in no inner region. Where one of them may panic, that is a function, too.
+    fn straight(&mut self, lines: std::ops::Range<usize>, written: &mut Vec<String>) {
+        let body = self.body;
+        for line in &body[lines] {
+            let may_panic = line.trim().starts_with("if (") && line.contains(PANICS);
+            written.push(if may_panic { self.function(vec![line.clone()]) } else { line.clone() });
+        }
+    }
+
+    /// The call of a new function of these lines.
+    fn function(&mut self, lines: Vec<String>) -> String {
+        let function = format!("{}_r{}", self.name, self.functions.len() + 1);
+        let head = format!("static void {function}(w2c_h* instance) {{");
+        self.functions.push([vec![head], lines, vec!["}".to_owned()]].concat());
+        format!("  {function}(instance);")
     }
 }
 
@@ -369,6 +390,28 @@ mod tests {
         let written = apart(&text).unwrap_or_default();
         assert_eq!(written.matches("{var_i0 = 7u; panic(var_i0); UNREACHABLE; }").count(), 2, "{written}");
         assert_eq!(written.matches("goto var_B9;").count(), 0, "{written}");
+    }
+
+    #[test]
+    fn a_panic_and_the_way_round_it_are_a_function() {
+        let text = function(&[
+            "  if (a) {goto var_B9;}",
+            "  if (b) {goto var_B1;}",
+            "  panic(var_i0);",
+            "  UNREACHABLE;",
+            "  var_B1:;",
+            "  goto var_B2;",
+            "  var_B9:;",
+            "  UNREACHABLE;",
+            "  var_B2:;",
+        ]);
+        let written = apart(&text).unwrap_or_default();
+        for function in [
+            "f_r1(w2c_h* instance) {\n  if (a) {UNREACHABLE; }\n}",
+            "f_r2(w2c_h* instance) {\n  if (b) {goto var_B1;}\n  panic(var_i0);\n  UNREACHABLE;\n  var_B1:;\n}",
+        ] {
+            assert!(written.contains(function), "{written}");
+        }
     }
 
     #[test]

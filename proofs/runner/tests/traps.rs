@@ -175,7 +175,7 @@ const WRONG: [Wrong; 31] = [
     Wrong {
         what: "data segments are not loaded",
         tool: "cbmc",
-        script: "edit driver.c 's/^#define LOAD_DATA.*/#define LOAD_DATA(m, o, i, s)/'; real \"$@\"",
+        script: "edit harness.h 's/^#define DATA .*/#define DATA {0}/'; real \"$@\"",
         way: ONCE,
         into: &["constants"],
     },
@@ -270,7 +270,7 @@ const WRONG: [Wrong; 31] = [
         tool: "cbmc",
         script: "edit driver.c 's/__CPROVER_assume(holds != 0);//'; real \"$@\"",
         way: ONCE,
-        into: &["vacuity", "constants"],
+        into: &["vacuity", "constants", "assumed"],
     },
     Wrong {
         what: "nothing is said of a missing body",
