@@ -103,6 +103,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, 
     }
     let nodes = argument::build(&plan.data.argument, &evidence, &conditions, &engines);
     let hazards = hazard::log(&plan.data.hazards, &nodes, &evidence, &conditions, &cut_sets);
+    let accidents = hazard::accidents(&plan.data.accidents, &evidence, &conditions);
     let mut case = Case {
         schema: SCHEMA,
         title: "Train control kernel: aspect acceptance, speed supervision, two channels, block counting, telegrams and codes, \
@@ -131,6 +132,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, 
         engines,
         conditions,
         hazards,
+        accidents,
         models,
         cut_sets,
         failure_modes: faults::failure_modes(&results.outcomes),

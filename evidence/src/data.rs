@@ -14,6 +14,8 @@ pub struct Data {
     pub assumptions: Vec<Assumption>,
     /// The hazard log.
     pub hazards: Vec<Hazard>,
+    /// The accidents that were found with legal input, and what is against each.
+    pub accidents: Vec<Accident>,
     /// The argument.
     pub argument: Argument,
     /// Techniques and tools.
@@ -64,6 +66,25 @@ pub struct Hazard {
     pub goals: Vec<String>,
     /// What remains, in words.
     pub remains: String,
+}
+
+/// An accident that was found with legal input, and what excludes it now.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Accident {
+    /// The session in which it was found.
+    pub name: String,
+    /// The hazards that it was: ids.
+    pub hazards: Vec<String>,
+    /// What happened.
+    pub happened: String,
+    /// The rules against it: requirement ids.
+    pub rules: Vec<String>,
+    /// Evidence ids: theorems, models and tests.
+    pub evidence: Vec<String>,
+    /// The assumptions that it rests on besides.
+    #[serde(default)]
+    pub conditions: Vec<String>,
 }
 
 /// The argument.
@@ -221,6 +242,8 @@ struct Assumptions {
 #[serde(deny_unknown_fields)]
 struct Hazards {
     hazard: Vec<Hazard>,
+    #[serde(default)]
+    accident: Vec<Accident>,
 }
 
 impl Data {
@@ -229,9 +252,11 @@ impl Data {
     /// # Errors
     /// A file is missing or has an unknown or missing field; with the file and the line.
     pub fn read(root: &Path) -> Result<Self, Fault> {
+        let Hazards { hazard, accident } = file(root, "spec/hazards.toml")?;
         Ok(Self {
             assumptions: file::<Assumptions>(root, "spec/assumptions.toml")?.assumption,
-            hazards: file::<Hazards>(root, "spec/hazards.toml")?.hazard,
+            hazards: hazard,
+            accidents: accident,
             argument: file(root, "spec/argument.toml")?,
             techniques: file(root, "spec/techniques.toml")?,
             ratchet: file(root, "evidence/ratchet.toml")?,

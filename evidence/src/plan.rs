@@ -129,6 +129,8 @@ impl Plan {
             .collect();
         take(argument::check(&data.argument, &known, &required));
         take(hazard::check(&data.hazards, &data.argument));
+        let rules: Vec<_> = self.requirements.iter().map(|one| one.id.clone()).collect();
+        take(hazard::check_accidents(data, &rules, &known));
         let dangling = |at: &str, text: String| Err(vec![Fault::new(&at, text)]);
         for technique in &data.techniques.techniques {
             for reference in &technique.evidence {

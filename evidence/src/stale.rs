@@ -56,6 +56,9 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     for hazard in &mut case.hazards {
         hazard.verdict = worst(&hazard.mitigated_by).unwrap_or(Verdict::NotRun);
     }
+    for accident in &mut case.accidents {
+        accident.verdict = worst(&accident.excluded_by).unwrap_or(Verdict::NotRun);
+    }
     for requirement in &mut case.requirements {
         requirement.verdict = worst(&requirement.harnesses).unwrap_or(Verdict::NotRun);
     }

@@ -61,6 +61,7 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
         ]
     });
     let mut files = faults(case)?;
+    files.push(accidents(case)?);
     files.push((
         "measurements.csv".to_owned(),
         table(["group", "figure", "value", "unit", "theory", "at most", "of", "evidence"], measurements)?,
@@ -100,6 +101,23 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, String> {
         ),
     ]);
     Ok(files)
+}
+
+/// The accidents that were found with legal input.
+fn accidents(case: &Case) -> Result<(String, String), String> {
+    let rows = case.accidents.iter().map(|one| {
+        [
+            one.name.clone(),
+            one.hazards.join(" "),
+            one.happened.clone(),
+            one.rules.join(" "),
+            one.excluded_by.join(" "),
+            one.verdict.to_string(),
+            one.conditions.join(" "),
+        ]
+    });
+    let head = ["session", "hazards", "what happened", "rules", "excluded by", "verdict", "conditions"];
+    Ok(("accidents.csv".to_owned(), table(head, rows)?))
 }
 
 /// Cut sets and failure modes.

@@ -46,7 +46,16 @@ fn a_case_without_results_says_so_and_fits_its_schema() {
     assert!(not_run);
     let page = std::fs::read_to_string(out.join("index.html")).expect("written");
     assert!(page.contains("has not been run") && !page.contains("is proved for all"));
-    for file in ["gsn.yaml", "junit.xml", "case.sarif", "hazards.csv", "srac.csv", "traceability.csv", "SHA256SUMS"] {
+    for file in [
+        "gsn.yaml",
+        "junit.xml",
+        "case.sarif",
+        "hazards.csv",
+        "accidents.csv",
+        "srac.csv",
+        "traceability.csv",
+        "SHA256SUMS",
+    ] {
         assert!(out.join(file).exists(), "{file}");
     }
     // The same, but proofs are required.

@@ -183,6 +183,8 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
         *place = Segment {
             length: u8::try_from(segment.circuits.len()).unwrap_or(u8::MAX),
             throat: circuits(segment.throat),
+            outward: segment.outward,
+            shared: u8::try_from(segment.shared).unwrap_or(u8::MAX),
             ..Segment::NONE
         };
         for (circuit, number) in place.circuits.iter_mut().zip(&segment.circuits) {
@@ -206,6 +208,7 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
 
 fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
     let mut made = Route {
+        heading: route.heading,
         entry: CircuitSet::nth(route.entry),
         approach: circuits(route.approach.iter().copied()),
         length: u8::try_from(route.path.len()).unwrap_or(u8::MAX),

@@ -11,6 +11,8 @@ pub enum Reason {
     Point,
     /// The overlap of one has a circuit of the other's path or overlap, and the other does not continue it.
     Overlap,
+    /// They start from one circuit in opposite directions.
+    Start,
     /// The file declares it.
     Declared,
     /// They need opposite directions of a segment.
@@ -24,6 +26,7 @@ impl Reason {
             Self::Circuit => "circuit",
             Self::Point => "point",
             Self::Overlap => "overlap",
+            Self::Start => "start",
             Self::Declared => "declared",
             Self::Direction => "direction",
         }
@@ -35,6 +38,7 @@ impl Reason {
             Self::Circuit => 'c',
             Self::Point => 'p',
             Self::Overlap => 'o',
+            Self::Start => 'b',
             Self::Declared => 'd',
             Self::Direction => 's',
         }
@@ -56,12 +60,14 @@ pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
     let overlaps = a.overlap.iter().any(|circuit| b.overlap.contains(circuit));
     let opposed =
         a.positions().any(|(point, position)| b.positions().any(|(same, needed)| same == point && needed != position));
+    let starts = a.opposes_the_start_of(b);
     let opposite = |a: &Route, b: &Route| a.from.is_some() && a.from == b.to;
     let all = [
         (meets(a, b), Reason::Circuit),
         (opposed, Reason::Point),
         (overlaps || under(a, other, b) || under(b, one, a), Reason::Overlap),
-        (a.conflicts.contains(&other) || b.conflicts.contains(&one), Reason::Declared),
+        (starts, Reason::Start),
+        (!starts && (a.conflicts.contains(&other) || b.conflicts.contains(&one)), Reason::Declared),
         (opposite(a, b) || opposite(b, a), Reason::Direction),
     ];
     all.into_iter().filter_map(|(holds, reason)| holds.then_some(reason)).collect()

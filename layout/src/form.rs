@@ -159,6 +159,12 @@ pub struct Segment {
     /// The last circuit of every route that goes out to it [default: what those routes have in common].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub throat: Option<At<String>>,
+    /// The name of the line, which the neighbour's file gives it too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<At<String>>,
+    /// Its outermost circuits, in the same order, that the neighbour's device sees too, under the same names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shared: Vec<At<String>>,
     /// The highest speed on it, in km/h: at most that of the line [default: that].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_kmh: Option<At<u16>>,

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
+use atc_kernel::interlocking::{Heading, MAX_CODES, SpeedCode};
 use atc_kernel::time::Ticks;
 
 use crate::At;
@@ -76,12 +76,18 @@ pub struct Point {
 }
 
 /// A segment of plain line.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Segment {
     /// Its name.
     pub name: String,
     /// Its circuits, outward from the station.
     pub circuits: Vec<usize>,
+    /// The direction of travel away from the station.
+    pub outward: Heading,
+    /// The name of the line, which the neighbour gives it too.
+    pub line: Option<String>,
+    /// How many of the circuits, the outermost ones, the neighbour's device sees too.
+    pub shared: usize,
     /// The last circuit of the routes out to it.
     pub throat: Option<usize>,
     /// The speed code.
@@ -132,12 +138,14 @@ pub struct Place {
 }
 
 /// A route.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Route {
     /// Its name.
     pub name: String,
     /// Its signal.
     pub signal: String,
+    /// The direction of travel.
+    pub heading: Heading,
     /// The entry circuit.
     pub entry: usize,
     /// The joint of its signal.
@@ -156,6 +164,8 @@ pub struct Route {
     pub short_overlap: Option<String>,
     /// The approach.
     pub approach: Circuits,
+    /// The highest speed at which a train comes up to the signal, in km/h.
+    pub approach_kmh: u16,
     /// How far the approach must reach back from the signal, in metres.
     pub approach_m: u32,
     /// The circuits beyond the end.
@@ -182,10 +192,47 @@ pub struct Route {
     pub span: Range<usize>,
 }
 
+impl Default for Route {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            signal: String::new(),
+            heading: Heading::Right,
+            entry: 0,
+            start: 0,
+            path: Vec::new(),
+            exit: 0,
+            overlap: Vec::new(),
+            overlap_positions: Positions::new(),
+            overlap_passed: Vec::new(),
+            short_overlap: None,
+            approach: Circuits::new(),
+            approach_kmh: 0,
+            approach_m: 0,
+            beyond: Circuits::new(),
+            continuing: BTreeSet::new(),
+            conflicts: BTreeSet::new(),
+            from: None,
+            to: None,
+            drive: Ticks(0),
+            release: Ticks(0),
+            stay: Ticks(0),
+            speed: SpeedCode::STOP,
+            flanks: Vec::new(),
+            span: 0..0,
+        }
+    }
+}
+
 impl Route {
     /// Whether its path is one that a train can run.
     pub fn is_sound(&self) -> bool {
         !self.path.is_empty()
+    }
+
+    /// Whether it starts from the circuit of `other` in the opposite direction of travel.
+    pub fn opposes_the_start_of(&self, other: &Self) -> bool {
+        self.entry == other.entry && self.heading != other.heading
     }
 
     /// The circuits of its path, in order of travel.
@@ -232,6 +279,10 @@ pub struct Values {
     pub cab_signalled: bool,
     /// The time for which a permission must have been withdrawn before a segment turns.
     pub turn: Ticks,
+    /// The same in ms, as the file gives it or as it is derived.
+    pub turn_ms: At<u32>,
+    /// The least that it can be where there is plain line, in ms; 0 where there is none.
+    pub least_turn_ms: u32,
     /// The age of a telegram, in ms.
     pub telegram_age_ms: u32,
     /// The speed of each code, in km/h; 0 where there is no such code, and for code 0.
@@ -242,6 +293,13 @@ pub struct Values {
     pub least_overlap: Metres,
     /// The length of the longest train, if the file gives it.
     pub longest_train: Option<Metres>,
+}
+
+impl Values {
+    /// A time in ms. No cycle is longer than a minute, so that it fits.
+    pub fn ms(&self, ticks: Ticks) -> u32 {
+        u32::from(ticks.0).saturating_mul(self.cycle_ms)
+    }
 }
 
 impl Default for Values {
@@ -259,6 +317,8 @@ impl Default for Values {
             standstill: Ticks(0),
             cab_signalled: false,
             turn: Ticks(0),
+            turn_ms: At::derived(0),
+            least_turn_ms: 0,
             telegram_age_ms: 0,
             speeds_kmh: [0; MAX_CODES],
             braking: [Metres(u16::MAX); MAX_CODES],

@@ -21,6 +21,14 @@ pub enum Rule {
     NoWay,
     /// The way through a path is the only one.
     ManyWays,
+    /// No track can be run in one direction of travel and come back to in the other.
+    TurningLoop,
+    /// What is left in one circuit is left in all.
+    SidesDiffer,
+    /// What the neighbour's device sees too of a segment are its outermost circuits.
+    SharedWithin,
+    /// Two stations see a line so that no stretch of it is seen by neither. Held where both layouts are at hand.
+    ViewsApart,
     /// The overlap goes on from the end of the path.
     OverlapNotAhead,
     /// A position that the file gives is the one that the path runs over.
@@ -45,6 +53,8 @@ pub enum Rule {
     ClearUnderShunt,
     /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
     TurnUnderTelegram,
+    /// Plain line turns, and a block on it is confirmed, only when a train that was sent before has come in and is seen, or stands.
+    TurnUnderRun,
     /// After a start nothing moves until every release time and the turn time have passed, or the file says why not.
     StartTooShort,
     /// The residual running covers the age of a telegram and the braking from the highest speed.
@@ -53,6 +63,10 @@ pub enum Rule {
     TelegramLives,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
+    /// The entry of a route is plain track: no point lies in it, and no other track crosses it.
+    EntryNotPlain,
+    /// A route comes from the segment whose first circuit is its entry, and goes out to the one whose first circuit follows its end.
+    SegmentElsewhere,
     /// Circuits beyond the end of a route adjoin it.
     BeyondApart,
     /// The layout fits the interlocking.
@@ -81,6 +95,12 @@ impl Rule {
                 "circuits that follow each other in a path adjoin, and a train can run through them in that order"
             }
             Self::ManyWays => "the way through a path is the only one",
+            Self::TurningLoop => "no train comes back to a track facing the other way without having turned back",
+            Self::SidesDiffer => "what is left in one circuit is left in all that hang together with it",
+            Self::SharedWithin => "what the neighbour's device sees too are the outermost circuits of a segment",
+            Self::ViewsApart => {
+                "two stations see a line so that no stretch of it is seen by neither, and with the same left"
+            }
             Self::OverlapNotAhead => "the overlap goes on from the end of the path",
             Self::PositionContradicts => "a position that the file gives is the one that the path runs over",
             Self::DetectorsIncomplete => {
@@ -97,6 +117,7 @@ impl Rule {
             Self::FoulingUndeclared => "routes over circuits that foul each other exclude each other",
             Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
+            Self::TurnUnderRun => "plain line turns only after a train that was sent before has run out",
             Self::StartTooShort => {
                 "after a start nothing moves until release and turn times have passed, or the file says why not"
             }
@@ -105,6 +126,10 @@ impl Rule {
             }
             Self::TelegramLives => "the ground counts on telegrams for as long as trains act on them",
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
+            Self::EntryNotPlain => "no point and no crossing lies in the entry of a route",
+            Self::SegmentElsewhere => {
+                "a route comes from the segment that it enters from, and goes out to the one that follows its end"
+            }
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
             Self::TooMany => "the layout fits the interlocking",
             Self::Plan(kernel) => of_plan(kernel),
@@ -123,9 +148,14 @@ const fn of_plan(rule: Kernel) -> &'static str {
         Kernel::PointBothWays => "a route needs no point both ways, over path, flank and overlap together",
         Kernel::PointNotPositioned => "a point whose detector is among the circuits of a place is positioned there",
         Kernel::ConflictOneWay => "declared conflicts go both ways",
+        Kernel::OpposingStarts => "routes that start from one circuit in opposite directions exclude each other",
+        Kernel::TurnsBack => {
+            "a route goes on in the direction of travel of the route that it continues, and of its segments"
+        }
         Kernel::ContinuesElsewhere => "a route that continues another one enters at its last circuit",
         Kernel::ThroatsDiffer => "all routes out to a segment end at the segment's throat",
         Kernel::SegmentShared => "a segment shares no circuit with a path, an overlap or another segment",
+        Kernel::PointInSegment => "no circuit of a segment is a detector of a point",
         Kernel::NotOneCircuit => "each place of a path or a segment is one circuit",
         Kernel::CircuitTwice => "no circuit comes twice in a path or a segment",
         Kernel::OverlapUnderOwnPath => "an overlap has no circuit of its own path",
@@ -165,10 +195,14 @@ pub const fn remedy(rule: Kernel) -> &'static str {
             "run the overlap over the leg that the flank or the path leaves, or give a reason instead of the flank"
         }
         Kernel::PointNotPositioned => "give the position of the point at that circuit",
-        Kernel::ConflictOneWay => "name each route among the conflicts of the other",
+        Kernel::ConflictOneWay | Kernel::OpposingStarts => "name each route among the conflicts of the other",
+        Kernel::TurnsBack => {
+            "let a route come in from its segment, go out to it, and be continued by routes ahead of it"
+        }
         Kernel::ContinuesElsewhere => "name only routes whose entry is the last circuit",
         Kernel::ThroatsDiffer => "let all routes out to the segment end at one circuit next to it",
         Kernel::SegmentShared => "end routes and overlaps where the segment begins",
+        Kernel::PointInSegment => "end the segment before the point, and let routes run over it",
         Kernel::NotOneCircuit | Kernel::CircuitTwice => "name every circuit once, in order",
         Kernel::OverlapUnderOwnPath => "let the overlap begin behind the path",
         Kernel::EntryNotInApproach => "add the entry to the approach",

@@ -37,8 +37,10 @@ pub struct Times {
     pub stay_ms: At<u32>,
     /// The longest time in which a train comes to a stand once it is wholly on the last circuit of its route.
     pub standstill_ms: At<u32>,
-    /// For how long the neighbour's permission must have been withdrawn before plain line turns: longer than `telegram_age_ms`.
-    pub turn_ms: At<u32>,
+    /// For how long the neighbour's permission must have been withdrawn before plain line turns, or a block on it is confirmed [default: the
+    /// least that can be: `telegram_age_ms`, `residual_ms` and `shunt_loss_ms`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_ms: Option<At<u32>>,
     /// The age up to which a train acts on a telegram.
     pub telegram_age_ms: At<u32>,
 }
@@ -58,7 +60,7 @@ impl Default for Times {
             residual_ms: None,
             stay_ms: At::derived(30_000),
             standstill_ms: At::derived(15_000),
-            turn_ms: At::derived(5_000),
+            turn_ms: None,
             telegram_age_ms: At::derived(1_000),
         }
     }

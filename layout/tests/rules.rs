@@ -92,6 +92,24 @@ fn no_way() {
 }
 
 #[test]
+fn turning_loop() {
+    let end = "[[end]]\njoint = \"j\"\nkind = \"line\"\n";
+    assert!(LOOP.contains(end));
+    let round = "
+        [[circuit]]\nname = \"X\"\nlength_m = 60
+        [[circuit]]\nname = \"round\"\nlength_m = 900\nleft = \"x\"\nright = \"y\"
+        [[point]]\nname = \"PX\"\ncircuit = \"X\"\ntoe = \"j\"\nnormal = \"x\"\nreverse = \"y\"
+        normal_unprotected = \"no route\"\nreverse_unprotected = \"no route\"\n";
+    breaks(&LOOP.replace(end, round), Rule::TurningLoop, "left and right change places");
+}
+
+#[test]
+fn sides_differ() {
+    let turned = LOOP.replace("left = \"d\"\nright = \"f\"", "left = \"f\"\nright = \"d\"");
+    breaks(&turned, Rule::SidesDiffer, "left and right of circuit 1T are the other way round");
+}
+
+#[test]
 fn many_ways() {
     let wide = change(TERMINUS, "name = \"A-1\"", ", \"1T\"", "");
     breaks(&wide, Rule::ManyWays, "there are 2 ways through the path");
@@ -202,6 +220,126 @@ fn clear_under_shunt() {
 #[test]
 fn turn_under_telegram() {
     breaks(&format!("{LOOP}\n[times]\nturn_ms = 1000\n"), Rule::TurnUnderTelegram, "turn_ms must be more than 1000");
+}
+
+/// A train that the neighbour has sent may run in for a telegram's life, the residual running and the loss of its shunt: nobody counts on the line before.
+#[test]
+fn turn_under_run() {
+    let text = format!("{LOOP}\n[times]\nturn_ms = 34000\n");
+    breaks(&text, Rule::TurnUnderRun, "a train that was sent may run in for 34250 ms: a telegram lives for 1000 ms");
+    breaks(
+        &text,
+        Rule::TurnUnderRun,
+        "the train runs on for 32250 ms, and may be lost for 1000 ms; turn_ms must be at least 34250",
+    );
+    let turn = |times: &str| {
+        let text = format!("{LOOP}\n[times]\n{times}\n");
+        Description::from_toml("loop", &text).unwrap().compile().unwrap().plan.turn.0
+    };
+    assert_eq!((turn("turn_ms = 34250"), turn("")), (343, 343), "in cycles of 100 ms, up");
+    assert_eq!(turn("residual_ms = 40000\nshunt_loss_ms = 1500"), 425, "40 s, 1 s and 1.5 s");
+}
+
+/// A cycle or a time of 50 days is refused, and nothing overflows on the way to that.
+#[test]
+fn times_that_are_too_long() {
+    let most = u32::MAX;
+    let cycle = format!("{LOOP}\n[times]\ncycle_ms = {most}\n");
+    breaks(&cycle, Rule::Range, "a cycle has 4294967295 ms; cycle_ms is 1 to 60000");
+    breaks(&format!("{LOOP}\n[times]\ncycle_ms = 60001\n"), Rule::Range, "a cycle has 60001 ms");
+    let names =
+        ["clear", "shunt_loss", "drive", "throw", "start", "settle", "release", "residual", "stay", "standstill"];
+    for name in names.into_iter().chain(["turn", "telegram_age"]) {
+        for cycle in [1, 100, 60_000] {
+            let text = format!("{LOOP}\n[times]\ncycle_ms = {cycle}\n{name}_ms = {most}\n");
+            let made = Description::from_toml("loop", &text).and_then(|description| description.compile());
+            assert!(made.is_err(), "{name} with cycles of {cycle} ms");
+        }
+    }
+}
+
+/// A point in plain line: no route holds it, and it would be driven in front of a train.
+#[test]
+fn point_in_segment() {
+    let point = "[[point]]\nname = \"P9\"\ncircuit = \"W2\"\ntoe = \"b\"\nnormal = \"a\"\nreverse = \"y\"
+        normal_unprotected = \"no route\"\nreverse_unprotected = \"no route\"
+        [[end]]\njoint = \"y\"\nkind = \"buffer\"\n";
+    let text = change(LOOP, "name = \"W2\"", "left = \"a\"\nright = \"b\"\n", "");
+    let rule = Rule::Plan(Kernel::PointInSegment);
+    breaks(
+        &format!("{text}\n{point}"),
+        rule,
+        "point P9 breaks a rule: no circuit of a segment is a detector of a point",
+    );
+    // One that lies elsewhere and is fouled from the line.
+    breaks(&change(LOOP, "name = \"P1\"", "toe", "fouled_in = [\"W1\"]\ntoe"), rule, "point P1 breaks a rule");
+}
+
+/// Who waits at the signal may stand on the other leg of the point, or on the other track.
+#[test]
+fn entry_not_plain() {
+    let route = "[[route]]\nname = \"P-1\"\nentry = \"P1T\"\npath = [\"1T\"]\noverlap = [\"P2T\"]\n";
+    let says = "route P-1: point P1 lies in the entry P1T: a train there may stand on the other leg";
+    breaks(&format!("{LOOP}\n{route}"), Rule::EntryNotPlain, says);
+    let ends = "[[end]]\njoint = \"k\"\nkind = \"line\"\n[[end]]\njoint = \"l\"\nkind = \"line\"\n";
+    let text = change(LOOP, "name = \"W1\"", "left", "crossing = [{ left = \"k\", right = \"l\" }]\nleft");
+    let says = "route W-2: tracks cross in the entry W1: a train there may stand on the other one";
+    breaks(&format!("{text}\n{ends}"), Rule::EntryNotPlain, says);
+}
+
+/// The segments that a file names are those that the tracks lead to, in the positions that the path holds.
+#[test]
+fn segment_elsewhere() {
+    breaks(
+        &change(LOOP, "name = \"1-W\"", "entry", "to = \"East\"\nentry"),
+        Rule::SegmentElsewhere,
+        "route 1-W goes out to segment East, which begins with E1, but by its tracks and positions ends before W1; \
+         leave out `to`, or name West",
+    );
+    breaks(
+        &change(LOOP, "name = \"W-1\"", "entry", "from = \"East\"\nentry"),
+        Rule::SegmentElsewhere,
+        "route W-1 comes from segment East, which begins with E1, but by its tracks and positions is entered from W1",
+    );
+    breaks(
+        &change(LOOP, "name = \"1-E\"", "entry", "from = \"West\"\nentry"),
+        Rule::SegmentElsewhere,
+        "is entered from 1T; leave out `from`: no segment begins there",
+    );
+    let normal = "\"P3T\", { circuit = \"P2T\", points = { P2 = \"normal\" } }]";
+    breaks(
+        &change(JUNCTION, "name = \"A-C\"", "\"P3T\", \"P2T\"]", normal),
+        Rule::SegmentElsewhere,
+        "route A-C goes out to segment C, which begins with C1, but by its tracks and positions ends before BD1",
+    );
+    let throat = change(TERMINUS, "name = \"Departures\"", "circuits", "throat = \"P2T\"\ncircuits");
+    let wrong = change(&throat, "name = \"A-3\"", "entry", "to = \"Departures\"\nentry");
+    breaks(&wrong, Rule::SegmentElsewhere, "ends before the end of the tracks");
+}
+
+/// A route that leads up to a signal may be faster than the line.
+#[test]
+fn approach_of_a_fast_route() {
+    let slow = |text: &str| {
+        let text = text.replace("line_kmh = 75", "line_kmh = 45\nroute_kmh = 75");
+        change(&change(&text, "name = \"1T\"", "400", "150"), "name = \"2T\"", "400", "150")
+    };
+    let compiled = Description::from_toml("loop", &slow(LOOP)).unwrap().compile().unwrap();
+    let route = |name: &str| compiled.model.routes.iter().find(|route| route.name == name).expect("a route");
+    // 75 km/h and 800 mm/s²: 272 m, and 21 m in a telegram's life. 45 km/h: 98 m and 13 m.
+    assert_eq!((route("1-E").approach_m, route("W-1").approach_m), (293, 111));
+    let named = |name: &str| compiled.names.circuits.iter().position(|circuit| circuit == name).expect("a circuit");
+    assert_eq!(route("1-E").approach, ["1T", "P1T", "W1"].map(named).into());
+    // Over the reverse leg none is faster than the line.
+    assert_eq!(route("2-E").approach_m, 111);
+    let near = change(&slow(LOOP), "name = \"1-E\"", "entry", "approach = [\"1T\"]\nentry");
+    breaks(
+        &near,
+        Rule::ApproachTooShort,
+        "route 1-E: the approach reaches 150 m back from the signal, where P1T is not in it; 293 m",
+    );
+    let said = change(&slow(LOOP), "name = \"1-E\"", "entry", "approach_kmh = 45\nentry");
+    breaks(&said, Rule::Range, "route 1-E: trains come up at 45 km/h, and route W-1 leads there at 75");
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn the_row_of_a_route() {
     assert!(rows.iter().take(7).all(|row| row.split(',').count() >= table::COLUMNS.len()), "{csv}");
     let row = rows.iter().find(|row| row.starts_with("1-D,")).unwrap();
     let says = [
-        "1-D,1,1T,P5T P4T P3T P2T,P2 P5,P3 P4,P1,,",
+        "1-D,1,left,1T,P5T P4T P3T P2T,P2 P5,P3 P4,P1,,",
         "out to Departures",
         "P5T: clear after P4T entered; P4T: clear after P3T entered; P3T: clear after P2T entered; P2T: clear with D1 occupied",
         "drive 10 s, release 60 s, stay 30 s",

@@ -211,4 +211,9 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         text: "The turn time is longer than the telegrams between the stations live.",
         without: "An old permission is read after it was withdrawn, and both stations send.",
     },
+    Assumption {
+        id: "views-of-a-line-meet",
+        text: "What two stations see of the line between them overlaps, or meets at one joint.",
+        without: "A train stands on a stretch that neither sees, and the other station sends against it.",
+    },
 ];

@@ -102,7 +102,8 @@ impl Device for Wrong {
                     if held.phase == Phase::Releasing && held.head == 0 {
                         let circuits = held.path(route).circuits;
                         let (train, last) = (route.entry, route.last());
-                        *grant = Grant { train, circuits, last, complete: true, speed: route.speed };
+                        *grant =
+                            Grant { train, circuits, last, complete: true, heading: route.heading, speed: route.speed };
                     }
                 }
             }),

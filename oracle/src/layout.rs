@@ -45,6 +45,13 @@ pub enum LayoutCommand {
         #[arg(short, long, value_name = "FILE.svg")]
         output: Option<PathBuf>,
     },
+    /// Holds the views that two stations have of the line between them against each other
+    Border {
+        /// The layout of one station
+        one: PathBuf,
+        /// The layout of its neighbour
+        other: PathBuf,
+    },
     /// Prints the JSON Schema of the layout form
     Schema,
 }
@@ -98,6 +105,7 @@ pub fn run(command: LayoutCommand) -> Result<Done, Errors> {
             let Imported { description, .. } = open(&layout)?;
             (draw::svg(&description.station, &description.tracks()?), output, String::new())
         }
+        LayoutCommand::Border { one, other } => (border(&one, &other)?, None, String::new()),
         LayoutCommand::Schema => (atc_layout::schema(), None, String::new()),
     };
     Ok(Done { text, output, remarks })
@@ -136,6 +144,15 @@ fn check(layout: &LayoutFile, derived: bool) -> Result<String, Errors> {
         }
     }
     Ok(text)
+}
+
+/// The lines between two stations, each with what they see of it.
+fn border(one: &Path, other: &Path) -> Result<String, Errors> {
+    let (one, other) = (read_any(one)?.description, read_any(other)?.description);
+    let (model, other_model) = (one.model()?, other.model()?);
+    let borders = atc_layout::border::compare((&one, &model), (&other, &other_model))?;
+    let told: Vec<String> = borders.iter().map(ToString::to_string).collect();
+    Ok(told.join("\n") + "\n")
 }
 
 /// The rules that an imported layout still breaks: a remark, for the import itself was done.

@@ -44,6 +44,7 @@ fn way(row: usize, entry: usize, rightward: bool) -> Way {
         if place == far { (Vec::new(), Vec::new()) } else { (vec![circuit(row, beyond)], element(row, beyond).1) };
     let (near_line, far_line) = if rightward { (2 * row, 2 * row + 1) } else { (2 * row + 1, 2 * row) };
     Way {
+        leftward: !rightward,
         entry: circuit(row, entry),
         approach: vec![circuit(row, entry)],
         path: places.iter().map(|place| element(row, *place)).collect(),
@@ -77,15 +78,17 @@ pub fn station() -> Box<Station> {
         }
         sketch.routes.extend((0..INNER - 1).map(|entry| way(row, entry, true)));
         sketch.routes.extend([INNER + 1, INNER - 3, INNER - 7].map(|entry| way(row, entry, false)));
-        sketch.segments.push(Line { circuits: vec![circuit(row, 0)], throat: Some(circuit(row, 1)) });
-        sketch.segments.push(Line { circuits: vec![circuit(row, INNER + 1)], throat: Some(circuit(row, INNER)) });
+        for (outer, throat) in [(0, 1), (INNER + 1, INNER)] {
+            let circuits = vec![circuit(row, outer)];
+            sketch.segments.push(Line { circuits, throat: Some(circuit(row, throat)), leftward: outer == 0 });
+        }
     }
     for one in 0..sketch.routes.len() {
-        let last = sketch.routes[one].last();
-        let follows = |other: &usize| sketch.routes[*other].entry == last;
+        let (last, leftward) = (sketch.routes[one].last(), sketch.routes[one].leftward);
+        let follows = |other: &usize| sketch.routes[*other].entry == last && sketch.routes[*other].leftward == leftward;
         sketch.routes[one].continuing = (0..sketch.routes.len()).filter(follows).collect();
     }
-    Box::new(Station::new(sketch.plan()).expect("the plan keeps the rules"))
+    Box::new(Station::new(sketch.apart().plan()).expect("the plan keeps the rules"))
 }
 
 /// The inputs that put the station in service: everything clear and unblocked, trains come from the left.
@@ -156,7 +159,7 @@ pub fn run(inputs: &[Input], count: u64) -> (Movement, u64) {
     for input in service().iter().chain(steps) {
         let (next, output) = station.cycle(state, *input);
         state = next;
-        last = station.telegrams(&output.table, state.epoch)[0];
+        last = station.telegrams(&output.table, state.epoch)[0].unwrap_or(last);
         set += u64::from(matches!((input.request, output.answer), (Some(Request::Set(_)), Some(Ok(())))));
     }
     (last, set)

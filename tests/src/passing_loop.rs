@@ -65,16 +65,21 @@ pub fn loop_station() -> Sketch {
             2 | 3 => way.to = Some(1),
             _ => way.to = Some(0),
         }
+        way.leftward = number > 3;
         way.speed = if number % 2 == 0 { 3 } else { 2 };
     }
     Sketch {
         lengths: vec![200; 8],
         points: vec![vec![c], vec![f]],
         routes,
-        segments: vec![Line { circuits: vec![1, 0], throat: Some(c) }, Line { circuits: vec![6, 7], throat: Some(f) }],
+        segments: vec![
+            Line { circuits: vec![1, 0], throat: Some(c), leftward: true },
+            Line { circuits: vec![6, 7], throat: Some(f), leftward: false },
+        ],
         braking: vec![0, 100, 300, 700],
         clear: 1,
         turn: 3,
         ..Sketch::default()
     }
+    .apart()
 }

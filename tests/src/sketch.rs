@@ -3,8 +3,8 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Element, MAX_CIRCUITS, MAX_CODES, Plan, Point, PointId, Position, Positions, Route, RouteSet, Segment,
-    SegmentSet, SpeedCode,
+    CircuitSet, Element, Heading, MAX_CIRCUITS, MAX_CODES, Plan, Point, PointId, Position, Positions, Route, RouteSet,
+    Segment, SegmentSet, SpeedCode,
 };
 use atc_kernel::time::Ticks;
 
@@ -37,6 +37,8 @@ pub struct Sketch {
 /// A route.
 #[derive(Clone, Debug, Default)]
 pub struct Way {
+    /// Whether it leads to the left.
+    pub leftward: bool,
     /// The circuit that it is entered from.
     pub entry: usize,
     /// The circuits of the approach, the entry among them.
@@ -74,6 +76,8 @@ pub struct Line {
     pub circuits: Vec<usize>,
     /// The last circuit of the routes that go out to it.
     pub throat: Option<usize>,
+    /// Whether trains go out to it to the left.
+    pub leftward: bool,
 }
 
 impl Way {
@@ -121,6 +125,21 @@ fn place(circuits_of: &[usize], needs: &[Need]) -> Element {
 }
 
 impl Sketch {
+    /// The same with routes in conflict that start from one circuit in opposite directions.
+    #[must_use]
+    pub fn apart(mut self) -> Self {
+        for one in 0..self.routes.len() {
+            for other in 0..self.routes.len() {
+                let (way, against) = (&self.routes[one], &self.routes[other]);
+                let opposed = way.entry == against.entry && way.leftward != against.leftward;
+                if opposed && !way.conflicts.contains(&other) {
+                    self.routes[one].conflicts.push(other);
+                }
+            }
+        }
+        self
+    }
+
     /// The same in the kernel's form.
     ///
     /// # Panics
@@ -153,7 +172,12 @@ fn segment<const P: usize>(line: &Line) -> Segment<P> {
         segment.circuits[place] = CircuitSet::nth(*circuit);
     }
     let length = u8::try_from(line.circuits.len()).expect("a short segment");
-    Segment { length, throat: line.throat.map_or(CircuitSet::EMPTY, CircuitSet::nth), ..segment }
+    let outward = heading(line.leftward);
+    Segment { length, outward, throat: line.throat.map_or(CircuitSet::EMPTY, CircuitSet::nth), ..segment }
+}
+
+const fn heading(leftward: bool) -> Heading {
+    if leftward { Heading::Left } else { Heading::Right }
 }
 
 fn route<const P: usize>(way: &Way) -> Route<P> {
@@ -163,6 +187,7 @@ fn route<const P: usize>(way: &Way) -> Route<P> {
     }
     let one = |segment: Option<usize>| segment.map_or(SegmentSet::EMPTY, SegmentSet::nth);
     Route {
+        heading: heading(way.leftward),
         entry: CircuitSet::nth(way.entry),
         approach: circuits(&way.approach),
         path,

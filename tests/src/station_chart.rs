@@ -131,7 +131,7 @@ impl<'a> Chart<'a> {
 fn sign(layout: &Small, state: &State<8, 2>, output: &Output<8>, kind: &str, name: &str) -> char {
     let it = if name.is_empty() { 0 } else { number(name) };
     let on = |is: bool| if is { '#' } else { '.' };
-    let movement = || layout.telegrams(&output.table, state.epoch)[it];
+    let movement = || layout.telegrams(&output.table, state.epoch)[it].expect("a circuit that no neighbour sees");
     match kind {
         "answer" => match output.answer {
             None => '.',
@@ -175,7 +175,7 @@ fn sign(layout: &Small, state: &State<8, 2>, output: &Output<8>, kind: &str, nam
         }
         "stop" => {
             let movement = movement();
-            if movement.open { letter(movement.stop.number().into()) } else { '.' }
+            if movement.is_open() { letter(movement.stop.number().into()) } else { '.' }
         }
         "speed" => char::from(b'0' + movement().speed.0),
         "permits" => on(output.permits.meets(SegmentSet::nth(it))),

@@ -8,6 +8,7 @@ use atc_kernel::interlocking::{
     Travel,
 };
 use atc_tests::passing_loop::{EASTWARD, INWARD, loop_station};
+use atc_tests::sketch::Way;
 use atc_tests::station_chart::{Small, check};
 
 // ---- Routes and their trains -----------------------------------------------------------------------------------------------
@@ -110,7 +111,7 @@ fn a_block_on_a_line_waits_for_a_train_that_goes_out() {
         occ f       ##....
         occ g       .###..
         block h     #.....
-        stop f      g.....
+        stop f      ......
         stop g      ......
         confirmed h ....##
         ",
@@ -177,7 +178,7 @@ fn a_line_is_not_taken_from_the_train_in_its_throat() {
         turn E    .t.t.t..
         answer    .d.d.+..
         permits E .....###
-        stop f    hh......
+        stop f    ........
         ",
     );
 }
@@ -214,14 +215,14 @@ fn a_code_that_is_not_in_the_table_is_never_sent() {
         "
         occ a   #..
         occ b   ..#
-        occ f   .#.
+        occ g   .#.
         set 0   ..#
         stop a  b..
         stop b  ..d
-        stop f  .h.
+        stop g  .h.
         speed a 300
         speed b 003
-        speed f 020
+        speed g 030
         ",
     );
 }
@@ -231,7 +232,7 @@ fn a_code_that_is_not_in_the_table_is_never_sent() {
 fn what_is_not_there_is_unknown() {
     let mut station = loop_station();
     // The one route from d to b, the point that it needs, the one segment that it leads to.
-    station.routes = vec![station.routes[6].clone()];
+    station.routes = vec![Way { conflicts: vec![], ..station.routes[6].clone() }];
     station.points.truncate(1);
     station.segments.truncate(1);
     let layout = Small::new(station.plan()).expect("a station");

@@ -25,7 +25,7 @@ fn layout() -> Value {
     json!({
         "name": "Fork",
         "times": {
-            "cycle_ms": 1000, "clear_ms": 2000, "drive_ms": 8000, "turn_ms": 3000, "settle_ms": 0,
+            "cycle_ms": 1000, "clear_ms": 2000, "drive_ms": 8000, "settle_ms": 0,
             "start_ms": 0, "start_protected": "no train has run before",
         },
         "speed": {"line_kmh": 45},
@@ -93,10 +93,11 @@ fn a_session() {
     let none = r#""drives":{},"telegrams":{},"permits":["West"],"confirmed":[]"#;
     let open = |speed: u16| {
         format!(
-            r#""drives":{{}},"telegrams":{{"W":{{"stop":"B","speed_km_h":{speed},"open":true}}}},"permits":["West"]"#
+            r#""drives":{{}},"telegrams":{{"W":{{"stop":"B","speed_km_h":{speed},"open":true,"heading":"right"}}}},"permits":["West"]"#
         )
     };
-    let stop = |circuit: &str| format!(r#""{circuit}":{{"stop":"{circuit}","speed_km_h":0,"open":false}}"#);
+    let stop =
+        |circuit: &str| format!(r#""{circuit}":{{"stop":"{circuit}","speed_km_h":0,"open":false,"heading":null}}"#);
     let stops = ["A", "B", "C", "E", "L", "W"].map(stop).join(",");
     let expected = [
         format!(r#"{{"output":{{"routes":{{}},"proceed":[],{none},"answer":"accepted"}}}}"#),
@@ -160,13 +161,17 @@ fn refusals_and_what_is_in_the_way() {
 fn what_is_in_the_way_on_plain_line() {
     let turn = |to: &str| quiet(&format!(r#""request":{{"turn":"West","to":"{to}"}},"consent":["West"]"#));
     let block = quiet(r#""orders":{"block":["L","W"]}"#);
-    let outward = [turn("toward"), turn("away"), quiet(""), quiet(""), turn("away")];
+    // The turn time of this layout is 35 cycles: a telegram's life, the time to a stand, and the loss of a shunt.
+    let mut outward = vec![turn("toward"), turn("away")];
+    outward.extend(vec![quiet(""); 34]);
+    outward.push(turn("away"));
     let ask = |before: &[String], asked: &str| {
         let steps: Vec<String> = before.iter().cloned().chain([asked.to_owned()]).collect();
         output(in_service(&steps).last().expect("an answer"))["answer"].clone()
     };
     let refused = |reason: &str, because: &[&str]| json!({"refused": reason, "because": because});
-    assert_eq!(ask(&outward[..4], &outward[4]), "accepted");
+    assert_eq!(ask(&outward[..36], &outward[36]), "accepted");
+    assert_eq!(ask(&outward[..35], &outward[36]), refused("waiting", &["West"]));
     let blocked = [outward.as_slice(), std::slice::from_ref(&block)].concat();
     assert_eq!(ask(&blocked, &quiet(r#""request":{"set":"out"}"#)), refused("blocked", &["L", "W"]));
     assert_eq!(ask(&blocked, &turn("toward")), refused("blocked", &["L", "W"]));
@@ -220,7 +225,7 @@ fn plan() -> Value {
         "points": [{"name": "P", "detectors": ["A"]}],
         "segments": [],
         "routes": [{
-            "name": "in", "entry": ["W"], "approach": ["W"],
+            "name": "in", "heading": "right", "entry": ["W"], "approach": ["W"],
             "path": [{"circuits": ["A"], "points": {"P": "normal"}}, {"circuits": ["B"], "points": {}}],
             "overlap": {"circuits": ["E"], "points": {}}, "beyond": ["E"], "continuing": [], "conflicts": [],
             "from": [], "to": [], "drive_cycles": 8, "release_cycles": 60, "stay_cycles": 30, "speed_code": 1,
@@ -250,7 +255,7 @@ fn a_plan_in_the_kernels_own_terms_is_run_as_it_stands() {
     let said = converse(&[&begin, &serve, &quiet(""), &waits, &set]);
     let last = output(&said[4]);
     assert_eq!(last["proceed"], json!(["in"]));
-    assert_eq!(last["telegrams"], json!({"W": {"stop": "B", "speed_km_h": 45, "open": true}}));
+    assert_eq!(last["telegrams"], json!({"W": {"stop": "B", "speed_km_h": 45, "open": true, "heading": "right"}}));
     // Engineering asks for an approach that covers braking, the theorems do not: this is for the traces of accidents.
     assert!(on_plan(&|it| it["routes"][0]["approach"] = json!([]))["started"].is_object());
     let config: Config = serde_json::from_value(plan()).expect("a plan");
@@ -270,7 +275,7 @@ fn wrong_plans() {
         ),
         (&|it| it["cycle_ms"] = json!(0), "cycle_ms is 0"),
         (
-            &|it| it["segments"] = json!([{"name": "S", "circuits": [], "throat": []}]),
+            &|it| it["segments"] = json!([{"name": "S", "circuits": [], "throat": [], "outward": "left"}]),
             "segment S: circuits has 0 circuits",
         ),
         (&|it| it["clear_cycles"] = json!(0), "the layout breaks a rule: "),
@@ -442,8 +447,8 @@ fn the_chart_of_the_example() {
         "overlap of W-1: 11000 to 71000 ms",
         "to normal: 10000 to 15000 ms",
         "occupied: 46000 to 100000 ms",
-        "to 1T at 75 km/h: 27000 to 40000 ms",
-        "to E2 at 25 km/h: 77000 to 95000 ms",
+        "▶ to 1T at 75 km/h: 27000 to 40000 ms",
+        "▶ to E2 at 25 km/h: 77000 to 95000 ms",
         "away: 61000 to 132000 ms",
     ] {
         assert!(bars.contains(&bar.to_owned()), "{bar} is not among {bars:#?}");

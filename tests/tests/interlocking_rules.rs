@@ -3,7 +3,7 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    Broken, CircuitSet, Layout, Place, Plan, Point, PointSet, Position, Positions, RouteSet, Rule, SegmentSet,
+    Broken, CircuitSet, Heading, Layout, Place, Plan, Point, PointSet, Position, Positions, RouteSet, Rule, SegmentSet,
     SpeedCode,
 };
 use atc_kernel::time::Ticks;
@@ -48,7 +48,10 @@ fn station() -> Small {
         lengths: vec![100; 6],
         points: vec![vec![1], vec![4]],
         routes: vec![into(2), out(2), into(3), out(3)],
-        segments: vec![Line { circuits: vec![0], throat: None }, Line { circuits: vec![5], throat: Some(4) }],
+        segments: vec![
+            Line { circuits: vec![0], throat: None, leftward: true },
+            Line { circuits: vec![5], throat: Some(4), leftward: false },
+        ],
         braking: vec![0, 50, 150],
         clear: 2,
         turn: 3,
@@ -142,6 +145,12 @@ fn points_of_a_route() {
 #[test]
 fn routes_that_belong_together() {
     breaks(Rule::ConflictOneWay, &[Place::Routes(0, 3)], |plan| plan.routes[0].conflicts = RouteSet::nth(3));
+    let opposed = [Place::Routes(0, 2), Place::Routes(2, 0)];
+    breaks(Rule::OpposingStarts, &opposed, |plan| {
+        plan.routes[2].heading = Heading::Left;
+        (plan.routes[2].from, plan.routes[2].continuing) = (SegmentSet::EMPTY, RouteSet::EMPTY);
+    });
+    breaks(Rule::TurnsBack, &[Place::Route(0), Place::Route(2)], |plan| plan.segments[0].outward = Heading::Right);
     breaks(Rule::ContinuesElsewhere, &[Place::Routes(0, 3)], |plan| {
         plan.routes[0].continuing = plan.routes[0].continuing.or(RouteSet::nth(3));
     });
@@ -160,14 +169,17 @@ fn segments() {
         plan.segments[0].circuits[1] = circuit(5);
         plan.segments[0].length = 2;
     });
+    breaks(Rule::PointInSegment, &[Place::Point(1)], |plan| {
+        plan.points[1].detectors = plan.points[1].detectors.or(plan.segments[1].circuits[0]);
+    });
     breaks(Rule::CircuitTwice, &[Place::Segment(1)], |plan| {
         plan.segments[1].circuits[1] = circuit(5);
         plan.segments[1].length = 2;
     });
     breaks(Rule::NotOneCircuit, &[Place::Segment(1)], |plan| plan.segments[1].length = 2);
-    breaks(Rule::ManySegments, &[Place::Route(0)], |plan| {
-        plan.routes[0].from = SegmentSet::nth(0).or(SegmentSet::nth(1));
-    });
+    // A route cannot come in from either side.
+    let both = broken(|plan| plan.routes[0].from = SegmentSet::nth(0).or(SegmentSet::nth(1)));
+    assert_eq!(both, [Rule::ManySegments, Rule::TurnsBack].map(|rule| Broken { rule, place: Place::Route(0) }));
     breaks(Rule::NotThere, &[Place::Route(0), Place::Route(2)], |plan| plan.segments[0].length = 0);
 }
 

@@ -211,7 +211,8 @@ fn a_train_follows_another() {
     );
 }
 
-/// On plain line a train learns the circuits that are free ahead of it, from the throat on, up to the next train or block.
+/// On plain line a train learns the circuits that are free ahead of it, up to the next train or block. A train in the throat that no route
+/// out has brought there learns nothing.
 #[test]
 fn trains_on_plain_line() {
     check(
@@ -224,7 +225,7 @@ fn trains_on_plain_line() {
         occ a     ....####
         block b   .....#..
         unblock b ......#.
-        stop f    g.......
+        stop f    ........
         stop g    ..h...hh
         stop h    ........
         stop a    ....b.bb
@@ -232,9 +233,9 @@ fn trains_on_plain_line() {
     );
 }
 
-/// Two routes from one circuit to either side, both with proceed: whose train is meant nobody knows, and none is told anything.
+/// Two routes from one circuit to either side: whose train is meant nobody would know, and the second is refused.
 #[test]
-fn two_grants_at_one_circuit_are_none() {
+fn opposing_starts_are_refused() {
     check(
         &loop_station(),
         Lines { west: Travel::Away, east: Travel::Away },
@@ -242,9 +243,9 @@ fn two_grants_at_one_circuit_are_none() {
         occ d     #######
         set 2     .#.....
         set 6     ...#...
+        answer    .+.c...
         signal 2  .######
-        signal 6  ...####
-        stop d    .hh....
+        stop d    .hhhhhh
         ",
     );
 }

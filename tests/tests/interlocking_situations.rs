@@ -66,8 +66,8 @@ fn routes_that_are_in_the_way() {
 #[test]
 fn a_declared_conflict() {
     let mut station = loop_station();
-    station.routes[2].conflicts = vec![0];
-    station.routes[0].conflicts = vec![2];
+    station.routes[2].conflicts.push(0);
+    station.routes[0].conflicts.push(2);
     check(
         &station,
         EASTWARD,
@@ -107,6 +107,7 @@ fn two_overlaps_over_one_circuit() {
     let mut station = loop_station();
     // A route to e alone, from the other side, with the overlap that route 0 has too.
     station.routes[3] = Way {
+        leftward: true,
         entry: 6,
         approach: vec![6],
         path: vec![(4, vec![])],
@@ -140,7 +141,7 @@ fn a_point_that_another_route_holds_otherwise() {
         "
         point P   rrr
         set 2     #..
-        set 6     .#.
+        set 0     .#.
         drive P   ..n
         answer    +ll
         ",

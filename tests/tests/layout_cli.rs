@@ -178,7 +178,7 @@ fn tables_and_drawings_go_to_a_file_or_to_standard_output() {
     let folder = folder();
     for (command, begins) in [
         (&["table", "terminus.toml"][..], "<!doctype html>"),
-        (&["table", "terminus.toml", "--form", "csv"], "route,signal,entry,path,"),
+        (&["table", "terminus.toml", "--form", "csv"], "route,signal,heading,entry,path,"),
         (&["draw", "terminus.toml"], "<svg "),
     ] {
         let (printed, remarks) = said(folder.path(), command);

@@ -17,7 +17,7 @@ pub use evidence::{Claim, Cover, EngineResult, Evidence, Kind};
 pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
 pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
 pub use measured::{Figure, Measurements, Plot};
-pub use register::{Condition, Hazard, Requirement, Technique, Tool};
+pub use register::{Accident, Condition, Hazard, Requirement, Technique, Tool};
 pub use run::{Phase, Run};
 pub use station::{Asked, Check, Confirm, DataCheck, Finding, NeededRule, Origin, Station, StationCondition};
 
@@ -52,6 +52,8 @@ pub struct Case {
     pub conditions: Vec<Condition>,
     /// The hazard log.
     pub hazards: Vec<Hazard>,
+    /// The accidents that were found with legal input, and what excludes each.
+    pub accidents: Vec<Accident>,
     /// The requirements, and what each one is connected with.
     pub requirements: Vec<Requirement>,
     /// The models' parameters, properties and traces.

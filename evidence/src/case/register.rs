@@ -54,6 +54,26 @@ pub struct Hazard {
     pub remains: String,
 }
 
+/// An accident that was found with legal input, and what excludes it now.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Accident {
+    /// The session in which it was found.
+    pub name: String,
+    /// The hazards that it was: ids.
+    pub hazards: Vec<String>,
+    /// What happened.
+    pub happened: String,
+    /// The rules against it: requirement ids.
+    pub rules: Vec<String>,
+    /// Evidence ids: theorems, models and tests.
+    pub excluded_by: Vec<String>,
+    /// The worst verdict of these.
+    pub verdict: Verdict,
+    /// The conditions that it rests on besides: SRAC numbers.
+    pub conditions: Vec<String>,
+}
+
 /// A requirement and what it is connected with.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 pub fn render(case: &Case) -> Markup {
     html! {
         (hazards(case))
+        (accidents(case))
         (super::faults::render(case))
         (conditions(case))
         (traceability(case))
@@ -38,6 +39,26 @@ fn hazards(case: &Case) -> Markup {
                             p.small { "Minimal cut sets: " @for number in &hazard.cut_sets { a href={ "#" (number) } { (number) } " " } }
                         }
                     }
+                }
+            }
+        }
+    }
+}
+
+fn accidents(case: &Case) -> Markup {
+    html! {
+        h3 #accidents { "4.7.1 Accidents that were found with legal input" }
+        p { "Somebody who looked at trains, and not at the formulas, brought them about with an earlier kernel. Each has a rule now; the verdict is the \
+             worst of what excludes it. Where conditions are named it rests on them too." }
+        table.fixed {
+            thead { tr { th style="width:20%" { "Session" } th style="width:30%" { "What happened" } th style="width:12%" { "Rules" } th style="width:25%" { "Excluded by" } th style="width:13%" { "Verdict" } } }
+            @for one in &case.accidents {
+                tr {
+                    td { strong { (one.name) } p.small { @for id in &one.hazards { a href={ "#" (id) } { (id) } " " } } }
+                    td { (one.happened) }
+                    td.small { @for id in &one.rules { a href={ "#requirement-" (id) } { (id) } " " } }
+                    td.small { (links(&one.excluded_by)) p { @for number in &one.conditions { a href={ "#" (number) } { (number) } " " } } }
+                    td { (badge(one.verdict)) }
                 }
             }
         }

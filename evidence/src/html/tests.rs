@@ -32,6 +32,7 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
         argument: vec![],
         conditions: vec![],
         hazards: vec![],
+        accidents: vec![],
         requirements: vec![],
         models: vec![],
         cut_sets: vec![],

@@ -1,7 +1,7 @@
 //! What the conditions on the ground mean at one station, in figures.
 
 use atc_layout::form;
-use atc_layout::model::{Guard, Model, Route};
+use atc_layout::model::{Guard, Model, Route, Segment};
 use std::collections::BTreeSet;
 
 /// Each assumption that has figures of the station, with them. The list of conditions itself is not here.
@@ -9,7 +9,7 @@ pub fn figures(station: &form::Station, model: &Model) -> Vec<(&'static str, Str
     let times = &station.times;
     let cycle = model.values.cycle_ms;
     let clear = u32::from(model.values.clear) * cycle;
-    let turn = u32::from(model.values.turn.0) * cycle;
+    let turn = model.values.ms(model.values.turn);
     vec![
         (
             "loss-of-shunt-within-clear",
@@ -46,6 +46,8 @@ pub fn figures(station: &form::Station, model: &Model) -> Vec<(&'static str, Str
         ("points-detect-truly", points(model)),
         ("points-leave-while-driven", format!("Commands live for one cycle: {cycle} ms.")),
         ("neighbour-turns-alike", segments(model)),
+        ("trains-know-facing", format!("Left and right are those of the file of {}.", station.name)),
+        ("views-of-a-line-meet", views(model)),
         (
             "turn-outlasts-telegrams",
             format!(
@@ -134,6 +136,20 @@ fn points(model: &Model) -> String {
         return "There are no points.".to_owned();
     }
     format!("{}: {}.", number(names.len(), "point to be tested", "points to be tested"), names.join(", "))
+}
+
+/// What each neighbour sees of the line, as the file says.
+fn views(model: &Model) -> String {
+    let view = |segment: &Segment| {
+        let own = segment.circuits.len().saturating_sub(segment.shared);
+        let shared: Vec<&str> =
+            segment.circuits[own..].iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect();
+        let line = segment.line.as_deref().map_or("a line without a name".to_owned(), |line| format!("line {line}"));
+        let shared = if shared.is_empty() { "no circuit".to_owned() } else { shared.join(", ") };
+        format!("{}: {line}, the neighbour sees {shared} too", segment.name)
+    };
+    let views: Vec<String> = model.segments.iter().map(view).collect();
+    if views.is_empty() { "There is no plain line.".to_owned() } else { format!("{}.", views.join("; ")) }
 }
 
 fn segments(model: &Model) -> String {

@@ -40,7 +40,7 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         kept("Residual running", &model.values.residual_ms, model.values.residual.0.into(), "up"),
         of_routes("Stay time", &times.stay_ms, |route| route.stay.0, "up"),
         kept("Time to a stand", &times.standstill_ms, model.values.standstill.0.into(), "up"),
-        kept("Turn time of plain line", &times.turn_ms, model.values.turn.0.into(), "up"),
+        kept("Turn time of plain line", &model.values.turn_ms, model.values.turn.0.into(), "up"),
         row("Oldest telegram", format!("{} ms", times.telegram_age_ms), "", &times.telegram_age_ms.span),
         row(
             "Brake on the level",
@@ -128,13 +128,13 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
         ("times.release_ms", &times.release_ms),
         ("times.stay_ms", &times.stay_ms),
         ("times.standstill_ms", &times.standstill_ms),
-        ("times.turn_ms", &times.turn_ms),
         ("times.telegram_age_ms", &times.telegram_age_ms),
     ]
     .map(|(name, time)| (name, &time.span, format!("{time} ms")))
     .into();
     if let Some(values) = model.map(|model| &model.values) {
         all.push(("times.start_ms", &values.start_ms.span, format!("{} ms", values.start_ms)));
+        all.push(("times.turn_ms", &values.turn_ms.span, format!("{} ms", values.turn_ms)));
         all.push(("times.residual_ms", &values.residual_ms.span, format!("{} ms", values.residual_ms)));
     }
     let braking = &station.braking;

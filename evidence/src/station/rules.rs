@@ -51,7 +51,7 @@ macro_rules! rules {
     };
 }
 
-rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | Rule::TelegramLives];
+rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | Rule::TelegramLives | Rule::ViewsApart];
     Form => (Asked::Form, Stage::Form, Scope::File);
     NameTwice => (Asked::Form, Stage::Tracks, Scope::File);
     NoSuchName => (Asked::Form, Stage::Tracks, Scope::File);
@@ -60,6 +60,9 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     Range => (Asked::Form, Stage::Model, Scope::File);
     NoWay => (Asked::Engineering, Stage::Model, Scope::Routes);
     ManyWays => (Asked::Form, Stage::Model, Scope::Routes);
+    TurningLoop => (Asked::Form, Stage::Model, Scope::File);
+    SidesDiffer => (Asked::Form, Stage::Model, Scope::File);
+    SharedWithin => (Asked::Form, Stage::Model, Scope::Segments);
     PositionContradicts => (Asked::Engineering, Stage::Model, Scope::Routes);
     DetectorsIncomplete => (Asked::Engineering, Stage::Model, Scope::Points);
     ApproachTooShort => (Asked::Engineering, Stage::Model, Scope::Routes);
@@ -69,10 +72,13 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     NoFlank => (Asked::Engineering, Stage::Model, Scope::Routes);
     OverlapNotAhead => (Asked::Engineering, Stage::Model, Scope::Routes);
     OverlapTooShort => (Asked::Engineering, Stage::Model, Scope::Routes);
+    EntryNotPlain => (Asked::Engineering, Stage::Model, Scope::Routes);
+    SegmentElsewhere => (Asked::Engineering, Stage::Model, Scope::Routes);
     BeyondApart => (Asked::Engineering, Stage::Model, Scope::Routes);
     FoulingUndeclared => (Asked::Engineering, Stage::Model, Scope::Pairs);
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);
+    TurnUnderRun => (Asked::Engineering, Stage::Model, Scope::File);
     StartTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     ResidualTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     SegmentOrder => (Asked::Engineering, Stage::Model, Scope::Segments);
@@ -88,9 +94,12 @@ rules! { PLAN, plan_is_complete, Kernel, (Asked, Scope), [];
     PointBothWays => (Asked::Theorems, Scope::Routes);
     PointNotPositioned => (Asked::Theorems, Scope::Places);
     ConflictOneWay => (Asked::Theorems, Scope::Pairs);
+    OpposingStarts => (Asked::Theorems, Scope::Pairs);
     ContinuesElsewhere => (Asked::Theorems, Scope::Pairs);
+    TurnsBack => (Asked::Engineering, Scope::Routes);
     ThroatsDiffer => (Asked::Engineering, Scope::Routes);
     SegmentShared => (Asked::Theorems, Scope::Segments);
+    PointInSegment => (Asked::Engineering, Scope::Points);
     NotOneCircuit => (Asked::Theorems, Scope::Places);
     CircuitTwice => (Asked::Theorems, Scope::Places);
     OverlapUnderOwnPath => (Asked::Engineering, Scope::Routes);

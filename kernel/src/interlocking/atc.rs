@@ -1,6 +1,6 @@
 //! ATC: from the shared table to the stop circuit, the speed code and the telegram of each circuit.
 
-use super::layout::{Layout, SpeedCode};
+use super::layout::{Heading, Layout, SpeedCode};
 use super::set::{CircuitId, CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::table::Contents;
@@ -14,8 +14,8 @@ pub const MAX_LINKS: usize = 4;
 pub struct Movement {
     /// The last circuit that the train may enter; its own if it must stay there.
     pub stop: CircuitId,
-    /// Whether it may leave its circuit at all.
-    pub open: bool,
+    /// The direction of travel in which it may leave its circuit; none if it must stay there. A train that faces the other way must stop.
+    pub heading: Option<Heading>,
     /// The highest speed code.
     pub speed: SpeedCode,
     /// The circuits that the train may enter. Their transmitters are held on for it.
@@ -25,35 +25,52 @@ pub struct Movement {
 impl Movement {
     /// The telegram that stops a train in `circuit`.
     pub const fn stop_in(circuit: CircuitId) -> Self {
-        Self { stop: circuit, open: false, speed: SpeedCode::STOP, hold: CircuitSet::EMPTY }
+        Self { stop: circuit, heading: None, speed: SpeedCode::STOP, hold: CircuitSet::EMPTY }
+    }
+
+    /// Whether a train may leave the circuit at all.
+    pub const fn is_open(&self) -> bool {
+        self.heading.is_some()
+    }
+
+    /// What a train in `circuit` may make of this telegram if it faces `faces`; `None` is a train that does not know.
+    #[must_use]
+    pub fn facing(self, circuit: CircuitId, faces: Option<Heading>) -> Self {
+        //= spec/interlocking.md#atc-11-facing
+        //# A train MUST take a telegram for another direction of travel than the one it faces, and any telegram while it does not know which way it faces, as a stop telegram.
+        if self.heading.is_some() && self.heading == faces { self } else { Self::stop_in(circuit) }
     }
 }
 
-/// What a train whose front is, or will be, in `here` may run over next: by one route, or on plain line. `Grant::NONE` if that is nothing,
-/// or if two trains could think that it is meant for them.
+/// What a train whose front is, or will be, in `here` may run over next, by one route or on plain line, and the segments to which that leads;
+/// `to` are those to which the route leads that ends in `here`. `Grant::NONE` if that is nothing, or if two trains could think that it is
+/// meant for them.
 #[inline]
 pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
     contents: &Contents<R>,
-    here: CircuitSet,
-) -> Grant {
+    (here, to): (CircuitSet, SegmentSet),
+) -> (Grant, SegmentSet) {
     //= spec/interlocking.md#atc-2-one-train
     //# Where more than one grant begins at a circuit, none of them MUST be used.
     let mut found = 0_u8;
-    let mut link = Grant::NONE;
-    let mut take = |grant: Grant| {
+    let mut link = (Grant::NONE, SegmentSet::EMPTY);
+    let mut take = |grant: Grant, leads: SegmentSet| {
         if grant.train == here && !here.is_empty() {
             found = found.saturating_add(1);
-            link = grant;
+            link = (grant, leads);
         }
     };
-    for grant in &contents.grants {
-        take(*grant);
+    for (route, grant) in layout.plan().routes.iter().zip(&contents.grants) {
+        // Behind a route out there is the line, and no other route.
+        if to.is_empty() {
+            take(*grant, route.to.only_if(grant.complete));
+        }
     }
     for number in 0..S {
-        take(on_line(layout, contents, number, here));
+        take(on_line(layout, contents, number, (here, to)), SegmentSet::EMPTY);
     }
-    if found == 1 { link } else { Grant::NONE }
+    if found == 1 { link } else { (Grant::NONE, SegmentSet::EMPTY) }
 }
 
 /// The circuits where a grant may begin. A train anywhere else is told to stop, without a look at every grant.
@@ -67,31 +84,36 @@ pub fn begins<const R: usize, const P: usize, const N: usize, const S: usize>(
         begins = begins.or(grant.train);
     }
     for segment in &layout.plan().segments {
-        begins = begins.or(segment.all()).or(segment.throat);
+        begins = begins.or(segment.all());
     }
     begins.and(contents.occupied)
 }
 
-/// What a train in `here` may run over in segment `number`: the free circuits ahead of it, in the segment's direction.
+/// What a train in `here` may run over in segment `number`: the free circuits ahead of it, in the segment's direction. From the throat that
+/// is a train which a route to the segment has brought there.
 #[inline]
 fn on_line<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
     contents: &Contents<R>,
     number: usize,
-    here: CircuitSet,
+    (here, to): (CircuitSet, SegmentSet),
 ) -> Grant {
     //= spec/interlocking.md#atc-3-plain-line
     //# On plain line a train MUST be granted only the free and unblocked circuits ahead of it in the direction that the segment has, up to the next that is not.
     let segment = &layout.plan().segments[number];
     let (toward, away) = (contents.toward.meets(SegmentSet::nth(number)), contents.away.meets(SegmentSet::nth(number)));
-    let begins = segment.all().or(segment.throat.only_if(away)).contains(here) && !here.is_empty();
+    //= spec/interlocking.md#atc-13-out-to-the-line
+    //# From the throat, plain line MUST be granted only behind a route to that line: one whose grant reaches the throat, or one that the train in the throat has entered in order and whose points there are sound.
+    let throat = segment.throat.only_if(away && to.meets(SegmentSet::nth(number)));
+    let begins = segment.all().or(throat).contains(here) && !here.is_empty();
     if !begins || !(toward || away) {
         return Grant::NONE;
     }
     let closed = contents.occupied.or(contents.blocked);
-    let mut ahead = Grant { speed: SpeedCode::MOST, ..Grant::NONE };
+    let heading = if away { segment.outward } else { segment.outward.opposite() };
+    let mut ahead = Grant { heading, speed: SpeedCode::MOST, ..Grant::NONE };
     // Outwards, a train comes from the throat or from a circuit of the segment.
-    let mut open = away && segment.throat == here && !here.is_empty();
+    let mut open = !throat.is_empty() && throat == here;
     ahead.complete = open;
     for (place, circuit) in (0_u8..).zip(&segment.circuits) {
         if away && place < segment.length {
@@ -143,11 +165,18 @@ pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
     let mut hold = CircuitSet::EMPTY;
     let mut speed = SpeedCode::MOST;
     let mut more = contents.occupied.has(circuit);
+    let mut heading = None;
+    let mut to = SegmentSet::EMPTY;
     for _ in 0..MAX_LINKS {
         if more {
-            let link = connect(layout, contents, here);
-            more = link.complete;
-            if !link.circuits.is_empty() {
+            //= spec/interlocking.md#atc-10-direction-of-travel
+            //# A telegram MUST say for which direction of travel it is, and tell a train of no grant for the other one.
+            let (link, leads) = connect(layout, contents, (here, to));
+            let same = heading.is_none() || heading == Some(link.heading);
+            more = link.complete && same;
+            to = leads;
+            if !link.train.is_empty() && same {
+                heading = Some(link.heading);
                 hold = hold.or(link.circuits);
                 speed = speed.or_lower(link.speed);
                 here = link.last;
@@ -163,7 +192,7 @@ pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
     let train = contents.standing.train(layout, contents.occupied, circuit.alone());
     let limit = contents.standing.limits.over(train.or(hold));
     let speed = speed.or_lower(limit).or_lower(stopping_within(layout, hold));
-    Movement { stop, open: true, speed, hold }
+    Movement { stop, heading, speed, hold }
 }
 
 /// The telegram of one circuit from what was read of the table, if it could be read; `begins` is what [`begins()`] says of it.
@@ -180,6 +209,26 @@ pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize>(
         Some(contents) if begins.has(circuit) => movement(layout, contents, circuit),
         _ => Movement::stop_in(circuit),
     }
+}
+
+/// The circuits in which this device sends nothing, because the neighbour's device speaks there; `contents` is what was read of the table.
+#[inline]
+pub fn silent<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    contents: Option<&Contents<R>>,
+) -> CircuitSet {
+    //= spec/interlocking.md#atc-12-border
+    //# In a circuit of plain line that the neighbour's device sees too, a device MUST send telegrams only while the direction is towards its own station.
+    let toward = match contents {
+        Some(contents) => contents.toward,
+        None => SegmentSet::EMPTY,
+    };
+    let mut silent = CircuitSet::EMPTY;
+    for (number, segment) in layout.plan().segments.iter().enumerate() {
+        let sent = toward.meets(SegmentSet::nth(number));
+        silent = silent.or(segment.shared_circuits().only_if(!sent));
+    }
+    silent
 }
 
 /// The highest code from which a train stops within the lengths of `circuits`.

@@ -55,12 +55,18 @@ pub enum Rule {
     PointNotPositioned,
     /// Needed: declared conflicts go both ways.
     ConflictOneWay,
+    /// Needed: routes that start from one circuit in opposite directions of travel conflict.
+    OpposingStarts,
     /// Needed: a route that continues another one enters at the other's last circuit.
     ContinuesElsewhere,
+    /// Engineering: a route goes on in the direction of travel of the route that it continues, and of its segments.
+    TurnsBack,
     /// Engineering: all routes out to a segment end at the segment's throat.
     ThroatsDiffer,
     /// Needed: a segment shares no circuit with a path, an overlap, a throat or another segment.
     SegmentShared,
+    /// Engineering: no circuit of a segment is a detector of a point: nothing holds the point for a train on the line.
+    PointInSegment,
     /// Needed: each place of a path, and of a segment, is exactly one circuit.
     NotOneCircuit,
     /// Needed: no circuit comes twice in a path.
@@ -172,6 +178,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
             let it = RouteSet::nth(usize::from(number_of_other));
             let both = !route.conflicts.meets(it) || other.conflicts.meets(myself);
             require(report, both, Rule::ConflictOneWay, pair);
+            let together = !route.entry.meets(other.entry) || route.conflicts.meets(it) || !other.exists();
+            require(report, together || route.heading == other.heading, Rule::OpposingStarts, pair);
             let goes_on = !route.continuing.meets(it) || other.entry == last;
             require(report, goes_on, Rule::ContinuesElsewhere, pair);
         }
@@ -217,8 +225,13 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
                 used = used.or(route.held_from(0).circuits);
             }
         }
+        let mut line = CircuitSet::EMPTY;
         for segment in &self.segments {
-            used = used.or(segment.all());
+            line = line.or(segment.all());
+        }
+        used = used.or(line);
+        for (number, point) in (0_u8..).zip(&self.points) {
+            require(report, !point.detectors.meets(line), Rule::PointInSegment, Place::Point(number));
         }
         for (number, length) in (0_u8..).zip(&self.lengths) {
             let unused = !used.meets(CircuitSet::nth(usize::from(number)));
@@ -251,8 +264,17 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         require(report, single(route.from) && single(route.to), Rule::ManySegments, place);
         self.check_points_of(path.positions.or(route.overlap.positions), place, report);
         for (number_of_segment, segment) in self.segments.iter().enumerate() {
-            let ends = !route.to.meets(SegmentSet::nth(number_of_segment)) || segment.throat == route.last();
+            let it = SegmentSet::nth(number_of_segment);
+            let ends = !route.to.meets(it) || segment.throat == route.last();
             require(report, ends, Rule::ThroatsDiffer, place);
+            let outward = !route.to.meets(it) || route.heading == segment.outward;
+            let inward = !route.from.meets(it) || route.heading == segment.outward.opposite();
+            require(report, outward && inward, Rule::TurnsBack, place);
+        }
+        for (number_of_other, other) in (0_u8..).zip(&self.routes) {
+            let follows = route.continuing.meets(RouteSet::nth(usize::from(number_of_other)));
+            let goes_on = !follows || route.heading == other.heading;
+            require(report, goes_on, Rule::TurnsBack, Place::Routes(number, number_of_other));
         }
         let mut in_table = false;
         for (code, distance) in (0_u8..).zip(&self.braking) {

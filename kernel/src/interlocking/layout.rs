@@ -32,6 +32,26 @@ impl SpeedCode {
     }
 }
 
+/// A direction of travel: towards the ends of circuits that the layout calls left, or right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Heading {
+    /// Towards the left.
+    Left,
+    /// Towards the right.
+    Right,
+}
+
+impl Heading {
+    /// The other direction.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+}
+
 /// One place of a route's path, or its overlap: what is held there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Element {
@@ -44,6 +64,8 @@ pub struct Element {
 /// A route: from the signal at the exit of `entry` over `path` to the end of its last circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Route<const P: usize> {
+    /// The direction of travel.
+    pub heading: Heading,
     /// The circuit in rear of the route's signal, where its train waits.
     pub entry: CircuitSet,
     /// The circuits on which a train may be that counts on the signal: `entry` among them.
@@ -79,6 +101,7 @@ pub struct Route<const P: usize> {
 impl<const P: usize> Route<P> {
     /// No route: what fills the places of a layout that are not used.
     pub const NONE: Self = Self {
+        heading: Heading::Right,
         entry: CircuitSet::EMPTY,
         approach: CircuitSet::EMPTY,
         path: [Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE }; P],
@@ -147,11 +170,21 @@ pub struct Segment<const P: usize> {
     pub length: u8,
     /// The last circuit of every route that goes out to the segment; none if no route does.
     pub throat: CircuitSet,
+    /// The direction of travel away from the station.
+    pub outward: Heading,
+    /// How many of its circuits, the outermost ones, the neighbour's device sees too.
+    pub shared: u8,
 }
 
 impl<const P: usize> Segment<P> {
     /// No segment: what fills the places of a layout that are not used.
-    pub const NONE: Self = Self { circuits: [CircuitSet::EMPTY; P], length: 0, throat: CircuitSet::EMPTY };
+    pub const NONE: Self = Self {
+        circuits: [CircuitSet::EMPTY; P],
+        length: 0,
+        throat: CircuitSet::EMPTY,
+        outward: Heading::Right,
+        shared: 0,
+    };
 
     /// All its circuits.
     #[inline]
@@ -161,6 +194,17 @@ impl<const P: usize> Segment<P> {
             all = all.or(circuit.only_if(place < self.length));
         }
         all
+    }
+
+    /// The circuits that the neighbour's device sees too.
+    #[inline]
+    pub fn shared_circuits(&self) -> CircuitSet {
+        let own = self.length.saturating_sub(self.shared);
+        let mut shared = CircuitSet::EMPTY;
+        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+            shared = shared.or(circuit.only_if(place >= own && place < self.length));
+        }
+        shared
     }
 
     /// The occupied circuits of the segment, and its throat, that follow a circuit of `train` without a gap, on either side.

@@ -25,11 +25,11 @@ mod table;
 mod track;
 mod works;
 
-pub use atc::{MAX_LINKS, Movement, begins, connect, movement, telegram};
+pub use atc::{MAX_LINKS, Movement, begins, connect, movement, silent, telegram};
 pub use check::{Broken, Place, Rule};
 pub use direction::{Directions, Needs, Travel};
 pub use layout::{
-    Element, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station,
+    Element, Heading, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station,
 };
 pub use limits::SpeedLimits;
 pub use point::Settling;
@@ -218,14 +218,15 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     }
 
     /// The telegram of each circuit, from the shared table and the number of this cycle: all stop telegrams if the table is not
-    /// of this cycle, or damaged.
+    /// of this cycle, or damaged. `None`: this device sends nothing there; the neighbour's is the one that speaks.
     #[must_use]
-    pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Movement; MAX_CIRCUITS] {
+    pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Option<Movement>; MAX_CIRCUITS] {
         let contents = table.read(epoch);
+        let silent = silent(self, contents.as_ref());
         let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(self, contents));
         core::array::from_fn(|number| {
             let circuit = CircuitSet::nth(number).first().unwrap_or(CircuitId::ZERO);
-            telegram(self, contents.as_ref(), begins, circuit)
+            (!silent.has(circuit)).then(|| telegram(self, contents.as_ref(), begins, circuit))
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Signals and grants: which routes show proceed, and which circuits each route grants to which train.
 
-use super::layout::{Layout, Route, SpeedCode};
+use super::layout::{Heading, Layout, Route, SpeedCode};
 use super::route::{Phase, RouteState};
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
 
@@ -18,16 +18,19 @@ pub struct View {
 }
 
 /// The circuits of a route that one train may run over.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Grant {
     /// The circuit of the train's front, or the one from which the route is entered. None: nothing is granted.
     pub train: CircuitSet,
-    /// The circuits that are granted, in the path's order.
+    /// The circuits that are granted, in the path's order. None of them, to a train whose front is in the last circuit of a route out: it may
+    /// go on to the line that the route leads to, as far as that is free.
     pub circuits: CircuitSet,
-    /// The last of them.
+    /// The last of them; without any, the train's.
     pub last: CircuitSet,
     /// Whether the last one is the end of the route.
     pub complete: bool,
+    /// The direction of travel that it is for.
+    pub heading: Heading,
     /// The highest speed code on the route.
     pub speed: SpeedCode,
 }
@@ -39,6 +42,7 @@ impl Grant {
         circuits: CircuitSet::EMPTY,
         last: CircuitSet::EMPTY,
         complete: false,
+        heading: Heading::Right,
         speed: SpeedCode::STOP,
     };
 }
@@ -90,10 +94,12 @@ pub fn grant<const P: usize>(route: &Route<P>, state: RouteState, view: View) ->
             }
         }
     }
+    let granted = Grant { train, circuits, last, complete: open, heading: route.heading, speed: route.speed };
     if circuits.is_empty() {
-        return Grant::NONE;
+        // The front is in the last circuit, or may go no farther in the path.
+        return if open && !route.to.is_empty() { Grant { last: train, ..granted } } else { Grant::NONE };
     }
-    Grant { train, circuits, last, complete: open, speed: route.speed }
+    granted
 }
 
 /// What all routes show and grant.

@@ -1,5 +1,6 @@
 //! The table that interlocking and ATC share: written once a cycle by the one, read by the other.
 
+use super::layout::Heading;
 use super::set::{CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::standing::Standing;
@@ -92,7 +93,8 @@ fn fold<const R: usize>(epoch: Epoch, contents: &Contents<R>) -> u64 {
         check = check.rotate_left(5) ^ grant.train.bits();
         check = check.rotate_left(5) ^ grant.circuits.bits();
         check = check.rotate_left(5) ^ grant.last.bits();
-        check = check.rotate_left(5) ^ (u64::from(grant.complete) | u64::from(grant.speed.0) << 8);
+        let right = u64::from(grant.heading == Heading::Right);
+        check = check.rotate_left(5) ^ (u64::from(grant.complete) | right << 1 | u64::from(grant.speed.0) << 8);
     }
     for limited in contents.standing.limits.parts() {
         check = check.rotate_left(5) ^ limited.bits();

@@ -3,15 +3,65 @@
 use crate::derive::{Shortfall, back};
 use crate::form;
 use crate::form::EndKind;
+use crate::graph::Kind;
 use crate::model::{Circuits, Model, Route};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
 /// The rules of the route's approach, overlap and end.
 pub fn check(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    entry(given, model, route, problems);
+    segments(given, model, route, problems);
     approach(given, model, route, problems);
     overlap(given, model, route, problems);
     beyond(given, model, route, problems);
+}
+
+fn entry(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    let within = || model.graph.tracks.iter().filter(|track| track.circuit == route.entry);
+    let point = within().find_map(|track| match track.kind {
+        Kind::Point(point) => Some(&model.points[point].name),
+        Kind::Plain => None,
+    });
+    let (name, entry) = (&route.name, &given.entry);
+    let what = if let Some(point) = point {
+        format!("route {name}: point {point} lies in the entry {entry}: a train there may stand on the other leg")
+    } else if within().count() > 1 {
+        format!("route {name}: tracks cross in the entry {entry}: a train there may stand on the other one")
+    } else {
+        return;
+    };
+    let right = "begin the route in a circuit of plain track, and end those that it continues there";
+    problems.push(Problem::new(Rule::EntryNotPlain, &entry.span, what, right));
+}
+
+/// What the file names as segments, held against the tracks.
+fn segments(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    let ahead = route.last().and_then(|last| model.graph.across(route.exit, last));
+    let checks = [
+        (&given.from, route.from, Some(route.entry), "comes from", "is entered from", "from"),
+        (&given.to, route.to, ahead, "goes out to", "ends before", "to"),
+    ];
+    for (named, segment, circuit, leads, tracks, field) in checks {
+        let (Some(named), Some(segment)) = (named, segment) else { continue };
+        let first = model.segments[segment].circuits.first();
+        if circuit.is_some() && first == circuit.as_ref() {
+            continue;
+        }
+        let name = |circuit: usize| model.circuits[circuit].name.as_str();
+        let there = circuit.map_or("the end of the tracks", name);
+        let begins = first.map_or("nowhere", |first| name(*first));
+        let what = format!(
+            "route {} {leads} segment {named}, which begins with {begins}, but by its tracks and positions {tracks} {there}",
+            route.name
+        );
+        let right = model.segments.iter().find(|other| circuit.is_some() && other.circuits.first() == circuit.as_ref());
+        let right = right.map_or_else(
+            || format!("leave out `{field}`: no segment begins there"),
+            |right| format!("leave out `{field}`, or name {}", right.name),
+        );
+        problems.push(Problem::new(Rule::SegmentElsewhere, &named.span, what, right));
+    }
 }
 
 fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {

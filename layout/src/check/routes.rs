@@ -1,5 +1,7 @@
 //! Rules of one route: times, flank protection, positions.
 
+use atc_kernel::time::Ticks;
+
 use crate::derive::positions::{opposite, word};
 use crate::form;
 use crate::model::{Guard, Model, Route};
@@ -16,10 +18,9 @@ pub fn check(given: &form::Route, model: &Model, route: &Route, problems: &mut V
 fn strokes(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
     let slowest = route.positions().map(|(point, _)| &model.points[point]).max_by_key(|point| point.throw_ms);
     let Some(slowest) = slowest else { return };
-    let in_ms = |ticks: u16| u32::from(ticks) * model.values.cycle_ms;
     let (name, throw) = (&slowest.name, slowest.throw_ms);
-    let drive = in_ms(route.drive.0);
-    let settle = u32::from(model.values.settle) * model.values.cycle_ms;
+    let drive = model.values.ms(route.drive);
+    let settle = model.values.ms(Ticks(model.values.settle.into()));
     let needed = throw.saturating_add(settle);
     if drive < needed {
         let span = given.drive_ms.as_ref().map_or(&route.span, |time| &time.span);
@@ -29,7 +30,7 @@ fn strokes(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec
         );
         problems.push(Problem::new(Rule::DriveUnderThrow, span, what, format!("drive_ms must be at least {needed}")));
     }
-    let release = in_ms(route.release.0);
+    let release = model.values.ms(route.release);
     if release <= throw {
         let span = given.release_ms.as_ref().map_or(&route.span, |time| &time.span);
         let what = format!(

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use atc_kernel::time::Ticks;
+
 use crate::form::Station;
 use crate::model::{Model, Route};
 use crate::problem::Problem;
@@ -10,8 +12,8 @@ use crate::rule::Rule;
 /// The rules that no single route breaks.
 pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     let times = &station.times;
-    let cycle = model.values.cycle_ms;
-    let clear = u32::from(model.values.clear) * cycle;
+    let values = &model.values;
+    let clear = values.ms(Ticks(values.clear.into()));
     if clear <= times.shunt_loss_ms.value {
         let what = format!(
             "a circuit counts as clear after {clear} ms, but a shunt may be lost for {} ms",
@@ -20,16 +22,24 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         let right = format!("clear_ms must be more than {}", times.shunt_loss_ms);
         problems.push(Problem::new(Rule::ClearUnderShunt, &times.clear_ms.span, what, right));
     }
-    let turn = u32::from(model.values.turn.0) * cycle;
+    let (turn, least) = (values.ms(values.turn), values.least_turn_ms);
     if turn <= times.telegram_age_ms.value {
         let what =
             format!("plain line turns after {turn} ms, but trains act on telegrams of {} ms", times.telegram_age_ms);
         let right = format!("turn_ms must be more than {}", times.telegram_age_ms);
-        problems.push(Problem::new(Rule::TurnUnderTelegram, &times.turn_ms.span, what, right));
+        problems.push(Problem::new(Rule::TurnUnderTelegram, &values.turn_ms.span, what, right));
+    } else if turn < least {
+        let what = format!(
+            "plain line turns and blocks on it are confirmed after {turn} ms, but a train that was sent may run in for {least} ms: a telegram \
+             lives for {} ms, the train runs on for {} ms, and may be lost for {} ms",
+            times.telegram_age_ms, values.residual_ms, times.shunt_loss_ms
+        );
+        let right = format!("turn_ms must be at least {least}, or be left out");
+        problems.push(Problem::new(Rule::TurnUnderRun, &values.turn_ms.span, what, right));
     }
     let longest = model.longest_authority();
     if model.values.start < longest && times.start_protected.is_none() {
-        let (start, longest) = (u32::from(model.values.start.0) * cycle, u32::from(longest.0) * cycle);
+        let (start, longest) = (values.ms(values.start), values.ms(longest));
         let what =
             format!("after a start nothing moves for {start} ms, but a train may count on a route for {longest} ms");
         let right = format!("start_ms must be at least {longest}, or start_protected say why every train stands");

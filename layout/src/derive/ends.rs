@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::all;
+use super::{all, values};
 use crate::form::Station;
 use crate::model::{Circuits, Model, Note, Route};
 use crate::names::Names;
@@ -78,6 +78,39 @@ pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut 
         (route.from, route.to) = (from, to);
     }
     throats(model);
+    speeds(station, model, problems);
+}
+
+/// How fast trains come up to each signal: as fast as the line, and as the routes that end there; and how far back the approach must reach for that.
+fn speeds(station: &Station, model: &mut Model, problems: &mut Vec<Problem>) {
+    for number in 0..model.routes.len() {
+        let route = &model.routes[number];
+        let leads = |other: &&Route| {
+            let there = other.exit == route.start || other.continuing.contains(&number);
+            route.is_sound() && other.is_sound() && there && other.last() == Some(route.entry)
+        };
+        let kmh = |other: &Route| model.values.speeds_kmh[usize::from(other.speed.0)];
+        let mut speed = route.approach_kmh;
+        if let Some(fastest) = model.routes.iter().filter(leads).max_by_key(|other| kmh(other))
+            && kmh(fastest) > speed
+        {
+            let (name, fast) = (&route.name, kmh(fastest));
+            if let Some(approach) = &station.routes[number].approach_kmh {
+                let what = format!(
+                    "route {name}: trains come up at {approach} km/h, and route {} leads there at {fast}",
+                    fastest.name
+                );
+                let right = format!("give at least {fast} km/h, or route {} a lower speed_kmh", fastest.name);
+                problems.push(Problem::new(Rule::Range, &approach.span, what, right));
+            } else {
+                let text = format!("trains come up at {fast} km/h: so fast route {} leads there", fastest.name);
+                model.notes.push(Note { about: format!("route {name}"), text });
+            }
+            speed = fast;
+        }
+        model.routes[number].approach_kmh = speed;
+        model.routes[number].approach_m = values::approach_m(&model.values, speed);
+    }
 }
 
 /// The circuit ahead of the end, and the one in rear of the last circuit if trains leave it that way too.

@@ -3,6 +3,7 @@
 mod approach;
 mod ends;
 mod flank;
+pub mod heading;
 pub mod positions;
 mod route;
 pub mod values;
@@ -19,12 +20,14 @@ use crate::problem::Problem;
 use crate::rule::Rule;
 
 use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::Heading;
 
 /// The model of `station` as far as it can be made; what cannot is a problem.
 pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
     let names = Names::of(station, problems);
     let graph = Graph::of(station, &names, problems);
     let (values, cycle) = values::values(station, problems);
+    let turned = heading::turned(&graph, station, problems);
     let mut model = Model { graph, values, ..Model::default() };
     model.circuits = circuits(station, problems);
     model.points = points(station, &names, &mut model.notes, problems);
@@ -39,14 +42,18 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
         all(&platform.circuits, &names, problems);
     }
     for given in &station.routes {
-        let route = route::route(station, given, &names, &model, cycle, problems);
+        let mut route = route::route(station, given, &names, &model, cycle, problems);
+        if let Some(first) = route.path.first() {
+            route.heading = heading::into(&model.graph, &turned, first.circuit, route.start);
+        }
         model.routes.push(route);
     }
     if station.times.start_ms.is_none() {
         model.values.start = model.longest_authority();
-        model.values.start_ms = At::derived(u32::from(model.values.start.0) * model.values.cycle_ms);
+        model.values.start_ms = At::derived(model.values.ms(model.values.start));
     }
     ends::ends(station, &names, &mut model, problems);
+    heading::segments_and_starts(&mut model, &turned);
     positions::positions(&mut model);
     approaches(station, &names, &mut model, problems);
     model
@@ -124,9 +131,32 @@ fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Ve
             let right = format!("give at most {line} km/h, or raise line_kmh in [speed]");
             problems.push(Problem::new(Rule::Range, &faster.span, what, right));
         }
+        let own = given.circuits.len().saturating_sub(given.shared.len());
+        let outermost = given.circuits.iter().skip(own).map(|name| &name.value);
+        if let Some(first) = given.shared.first()
+            && !given.shared.iter().map(|name| &name.value).eq(outermost)
+        {
+            let what = format!("segment {}: the shared circuits are not its outermost ones, in its order", given.name);
+            let right = "name the last of its circuits, as far as the neighbour's device sees them too";
+            problems.push(Problem::new(Rule::SharedWithin, &first.span, what, right));
+        }
+        if let Some(line) = &given.line
+            && segments.iter().any(|other: &Segment| other.line.as_ref() == Some(&line.value))
+        {
+            let what = format!("two segments are of the line {line}");
+            problems.push(Problem::new(
+                Rule::NameTwice,
+                &line.span,
+                what,
+                "give each line to a neighbour its own name",
+            ));
+        }
         segments.push(Segment {
             name: given.name.value.clone(),
             circuits: given.circuits.iter().filter_map(|name| names.circuit(name, problems)).collect(),
+            line: given.line.as_ref().map(|name| name.value.clone()),
+            shared: given.shared.len(),
+            outward: Heading::Right,
             throat: given.throat.as_ref().and_then(|name| names.circuit(name, problems)),
             speed: values::code(values, given.speed_kmh.as_ref().unwrap_or(&line), problems),
             span: given.name.span.clone(),

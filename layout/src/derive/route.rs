@@ -190,5 +190,5 @@ fn route_speed(station: &Station, given: &form::Route, model: &Model, route: &mu
         let right = format!("give at most {highest} km/h, or add a speed to [braking]");
         problems.push(Problem::new(Rule::Range, &approach.span, what, right));
     }
-    route.approach_m = values::approach_m(&model.values, approach.value);
+    route.approach_kmh = approach.value;
 }

@@ -45,11 +45,17 @@ fn at_most(what: &str, time: &At<u32>, cycle: Cycle, problems: &mut Vec<Problem>
     if time.value == 0 { Ticks(0) } else { ticks(what, time, Rounding::Permits, cycle, problems) }
 }
 
+/// The longest cycle: a minute. A longer one is a slip, and the longest time, of 60 000 of them, would be no number of ms any more.
+const LONGEST_CYCLE_MS: u32 = 60_000;
+
 /// The values for the whole station.
 pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle) {
     let times = &station.times;
-    let cycle = Cycle::new(Millis(times.cycle_ms.value)).unwrap_or_else(|| {
-        problems.push(Problem::new(Rule::Range, &times.cycle_ms.span, "a cycle has 0 ms", "give it 1 ms or more"));
+    let given = (1..=LONGEST_CYCLE_MS).contains(&times.cycle_ms.value).then_some(Millis(times.cycle_ms.value));
+    let cycle = given.and_then(Cycle::new).unwrap_or_else(|| {
+        let what = format!("a cycle has {} ms", times.cycle_ms);
+        let right = format!("cycle_ms is 1 to {LONGEST_CYCLE_MS}");
+        problems.push(Problem::new(Rule::Range, &times.cycle_ms.span, what, right));
         // Any other length will do to find what else is wrong.
         const { Cycle::new(Millis(100)).expect("100 ms is a cycle") }
     });
@@ -59,7 +65,6 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         problems.push(Problem::new(Rule::Range, &times.clear_ms.span, what, "1 to 255 cycles are possible"));
         u8::MAX
     });
-    let turn = ticks("turn_ms", &times.turn_ms, Rounding::Permits, cycle, problems);
     let loss = at_most("shunt_loss_ms", &times.shunt_loss_ms, cycle, problems);
     // Where the file says nothing it is derived from the routes.
     let start_ms = times.start_ms.clone().unwrap_or_else(|| At::derived(0));
@@ -77,6 +82,10 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     let least_residual_ms = times.telegram_age_ms.value.saturating_add(stopping_ms(station, speeds_kmh));
     let residual_ms = times.residual_ms.clone().unwrap_or_else(|| At::derived(least_residual_ms));
     let residual = at_most("residual_ms", &residual_ms, cycle, problems);
+    let run_ms = run_ms(times.telegram_age_ms.value, residual_ms.value, times.shunt_loss_ms.value);
+    let least_turn_ms = if station.segments.is_empty() { 0 } else { run_ms };
+    let turn_ms = times.turn_ms.clone().unwrap_or_else(|| At::derived(run_ms));
+    let turn = ticks("turn_ms", &turn_ms, Rounding::Permits, cycle, problems);
     let values = Values {
         cycle_ms: cycle.length().0,
         clear,
@@ -91,6 +100,8 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         standstill,
         cab_signalled: station.cab_signalled,
         turn,
+        turn_ms,
+        least_turn_ms,
         telegram_age_ms: times.telegram_age_ms.value,
         speeds_kmh,
         braking,
@@ -98,6 +109,12 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         longest_train: station.longest_train_m.as_ref().map(|length| Metres(length.value)),
     };
     (values, cycle)
+}
+
+/// For how long after a permission was withdrawn a train may still come that was sent on it, unseen at the last: the withdrawal is heard when the
+/// telegram before it is too old, the train runs on, and its shunt may be lost.
+pub fn run_ms(telegram_ms: u32, residual_ms: u32, loss_ms: u32) -> u32 {
+    telegram_ms.saturating_add(residual_ms).saturating_add(loss_ms)
 }
 
 /// The steepest fall, in ‰: a train may come either way.

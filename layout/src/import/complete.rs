@@ -12,6 +12,7 @@ use crate::names::Names;
 
 /// Fills in segments of plain line, missing flank protection and missing overlaps.
 pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
+    derive::heading::align(station);
     segments(station, report);
     let model = derive::model(station, &mut Vec::new());
     let mut open = BTreeSet::new();

@@ -9,9 +9,10 @@ use crate::model::Model;
 use row::Row;
 
 /// The heads of the columns of [`csv`].
-pub const COLUMNS: [&str; 19] = [
+pub const COLUMNS: [&str; 20] = [
     "route",
     "signal",
+    "heading",
     "entry",
     "path",
     "normal",

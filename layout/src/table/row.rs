@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use atc_kernel::interlocking::Heading;
+
 use crate::conflict::reasons;
 use crate::form::Position;
 use crate::model::{Model, Positions, Route};
@@ -41,6 +43,7 @@ impl<'a> Row<'a> {
         vec![
             route.name.clone(),
             route.signal.clone(),
+            heading(route.heading).to_owned(),
             model.circuits[route.entry].name.clone(),
             self.circuits(route.circuits()),
             points(&run_over, Position::Normal),
@@ -118,5 +121,13 @@ impl<'a> Row<'a> {
             }
         }
         parts.join("; ")
+    }
+}
+
+/// The word for a direction of travel.
+const fn heading(heading: Heading) -> &'static str {
+    match heading {
+        Heading::Left => "left",
+        Heading::Right => "right",
     }
 }

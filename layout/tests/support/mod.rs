@@ -86,6 +86,7 @@ fn line(made: &mut Station, side: &str, joints: &[&str; 3], name: &str) {
         circuits: vec![at(format!("{side}1")), at(format!("{side}2"))],
         throat: None,
         speed_kmh: None,
+        ..Segment::default()
     });
 }
 

@@ -25,7 +25,7 @@ pub(super) fn entries() -> Vec<Entry> {
 }
 
 /// What all models assume that do not lift it.
-const ALL: [&str; 12] = [
+const ALL: [&str; 13] = [
     "loss-of-shunt-within-clear",
     "approach-covers-braking",
     "release-covers-residual-running",
@@ -38,6 +38,7 @@ const ALL: [&str; 12] = [
     "trains-obey-signals",
     "neighbour-turns-alike",
     "turn-outlasts-telegrams",
+    "views-of-a-line-meet",
 ];
 
 /// All but the one at `place`.

@@ -100,12 +100,15 @@ impl<D: Device> Yard<D> {
         let mut granted = 0;
         for (train, telegram) in after.trains.iter().zip(telegrams) {
             let (Some(front), Some(telegram)) = (train.front(), telegram) else { continue };
-            if !telegram.open {
+            if !telegram.is_open() {
                 continue;
             }
             let hold = mask(telegram.hold);
             let stop = telegram.stop.number();
-            let reaches = |heading| self.reaches((front, stop), hold, heading, after);
+            // The direction of travel that it says is the one in which the train finds these circuits.
+            let reaches = |heading: Heading| {
+                telegram.heading == Some(heading.of_layout()) && self.reaches((front, stop), hold, heading, after)
+            };
             if granted & hold != 0 || !reaches(Heading::Up) && !reaches(Heading::Down) {
                 return Harm::Authority;
             }

@@ -4,7 +4,7 @@
 //! sets of them are masks, a bit each.
 
 use super::stations::{POINTS, Small};
-use atc_kernel::interlocking::Position;
+use atc_kernel::interlocking::{self as kernel, Position};
 
 /// The way that a train goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,6 +22,15 @@ impl Heading {
         match self {
             Self::Up => Self::Down,
             Self::Down => Self::Up,
+        }
+    }
+
+    /// The direction of travel in the words of a layout.
+    #[must_use]
+    pub const fn of_layout(self) -> kernel::Heading {
+        match self {
+            Self::Up => kernel::Heading::Right,
+            Self::Down => kernel::Heading::Left,
         }
     }
 }

@@ -11,8 +11,8 @@ use crate::outcome::Trace;
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route, Segment,
-    SegmentId, SegmentSet, SpeedCode, State as Kernel, Track, Travel,
+    CircuitSet, Directions, Element, Heading, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route,
+    Segment, SegmentId, SegmentSet, SpeedCode, State as Kernel, Track, Travel,
 };
 use atc_kernel::time::Ticks;
 use serde_json::json;
@@ -30,6 +30,57 @@ pub enum Neighbour {
     Alike,
     /// It permits the other one to send whatever its own direction is.
     PermitsAlways,
+}
+
+/// What each station sees of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// Both see all of it.
+    Whole,
+    /// Each sees the part next to it, and both the middle.
+    Overlapping,
+    /// Each sees the half next to it, up to one joint.
+    Adjoining,
+    /// Each sees the part next to it, and nobody the middle.
+    Apart,
+}
+
+impl View {
+    /// The places of the line that each station sees, a bit each; and how many places there are.
+    const fn seen(self) -> ([u8; 2], u8) {
+        match self {
+            Self::Whole => ([0b1, 0b1], 1),
+            Self::Overlapping => ([0b011, 0b110], 3),
+            Self::Adjoining => ([0b01, 0b10], 2),
+            Self::Apart => ([0b001, 0b100], 3),
+        }
+    }
+}
+
+/// A train on the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Train {
+    /// The station that sent it: 0 or 1.
+    pub sender: u8,
+    /// The places of the line that it stands on, from the first station's end: one, or two that follow each other.
+    pub on: u8,
+}
+
+impl Train {
+    /// Where it may be a cycle later: there, on the next place too, wholly on the next; or gone.
+    fn moves(self, places: u8) -> Vec<Option<Self>> {
+        let all = (1_u8 << places) - 1;
+        let ahead = |on: u8| if self.sender == 0 { on << 1 } else { on >> 1 };
+        let next = if self.on.is_power_of_two() { self.on | ahead(self.on) & all } else { self.on & ahead(self.on) };
+        let leaves = self.on.is_power_of_two() && ahead(self.on) & all == 0;
+        let mut moves = vec![Some(self)];
+        if leaves {
+            moves.push(None);
+        } else {
+            moves.push(Some(Self { on: next, ..self }));
+        }
+        moves
+    }
 }
 
 /// What a model is there to show.
@@ -50,6 +101,8 @@ pub struct Pair {
     pub life: u8,
     /// What the second station does.
     pub neighbour: Neighbour,
+    /// What each sees of the line.
+    pub view: View,
     /// What the model is there to show.
     pub purpose: Purpose,
 }
@@ -61,9 +114,9 @@ pub struct State {
     pub directions: [Directions<1>; 2],
     /// For each station the permissions that it has sent, the newest first: a bit for each cycle.
     pub sent: [u8; 2],
-    /// Whether a train is on the line.
-    pub train: bool,
-    /// A train is on the line, and both stations send, or the other one did when it was sent.
+    /// The train on the line.
+    pub train: Option<Train>,
+    /// Both stations send, or one sends while a train is on the line that the other has sent.
     pub against: bool,
 }
 
@@ -74,8 +127,8 @@ pub struct Cycle {
     pub commands: [Option<Travel>; 2],
     /// Whether each station reads the other's permission.
     pub consent: [bool; 2],
-    /// Whether a train is on the line after it.
-    pub train: bool,
+    /// The train on the line after it.
+    pub train: Option<Train>,
 }
 
 impl Pair {
@@ -83,6 +136,7 @@ impl Pair {
         let mut plan = Plan::EMPTY;
         // The way in: a line that leads nowhere is not turned towards the station.
         plan.routes = [Route {
+            heading: Heading::Left,
             entry: circuits(1),
             approach: circuits(1),
             path: [Element { circuits: circuits(1 << 1), positions: Positions::NONE }],
@@ -95,7 +149,7 @@ impl Pair {
             speed: SpeedCode(1),
             ..Route::NONE
         }];
-        plan.segments = [Segment { circuits: [circuits(1)], length: 1, throat: CircuitSet::EMPTY }];
+        plan.segments = [Segment { circuits: [circuits(1)], length: 1, ..Segment::NONE }];
         plan.lengths[..2].fill(Metres(100));
         plan.braking[..2].copy_from_slice(&[Metres(0), Metres(100)]);
         plan.clear = 1;
@@ -103,10 +157,10 @@ impl Pair {
         Layout::new(plan).expect("a layout that keeps every rule")
     }
 
-    fn input(cycle: Cycle, station: usize) -> Input {
+    fn input(&self, cycle: Cycle, station: usize) -> Input {
         let turn = |travel| Request::Turn(SegmentId::ZERO, travel);
         Input {
-            occupied: circuits(u8::from(cycle.train)),
+            occupied: circuits(u8::from(cycle.train.is_some_and(|train| train.on & self.view.seen().0[station] != 0))),
             detected: Positions::NONE,
             request: cycle.commands[station].map(turn),
             orders: Orders::default(),
@@ -151,7 +205,7 @@ impl Subject for Pair {
 
     fn initial(&self) -> Vec<State> {
         let directions = Self::begin(&self.layout()).directions;
-        vec![State { directions: [directions; 2], sent: [0; 2], train: false, against: false }]
+        vec![State { directions: [directions; 2], sent: [0; 2], train: None, against: false }]
     }
 
     fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
@@ -161,9 +215,13 @@ impl Subject for Pair {
         let commands = [None, Some(Travel::Toward), Some(Travel::Away)];
         let read =
             |sender: usize| -> &'static [bool] { if state.sent[sender] == 0 { &[false] } else { &[false, true] } };
-        let trains: &[bool] = match (state.train, state.directions.into_iter().any(Self::sends)) {
-            (false, false) => &[false],
-            _ => &[false, true],
+        let places = self.view.seen().1;
+        let trains = if let Some(train) = state.train {
+            train.moves(places)
+        } else {
+            let sent = |sender: u8| Some(Train { sender, on: if sender == 0 { 1 } else { 1 << (places - 1) } });
+            let senders = (0..2).filter(|sender| Self::sends(state.directions[usize::from(*sender)]));
+            [None].into_iter().chain(senders.map(sent)).collect()
         };
         for first in commands {
             for second in commands {
@@ -186,13 +244,14 @@ impl Subject for Pair {
         let living = u8::MAX >> (7 - self.life);
         for station in 0..2 {
             let before = Self::kernel(&layout, state.directions[station]);
-            let (next, output) = layout.cycle(before, Self::input(*cycle, station));
+            let (next, output) = layout.cycle(before, self.input(*cycle, station));
             after.directions[station] = next.directions;
             let always = station == 1 && self.neighbour == Neighbour::PermitsAlways;
             let permits = always || !output.permits.is_empty();
             after.sent[station] = (state.sent[station] << 1 | u8::from(permits)) & living;
         }
-        after.against = after.directions.into_iter().all(Self::sends);
+        let met = after.train.is_some_and(|train| Self::sends(after.directions[usize::from(1 - train.sender)]));
+        after.against = met || after.directions.into_iter().all(Self::sends);
         Some(after)
     }
 
@@ -202,13 +261,13 @@ impl Subject for Pair {
                 s.directions.iter().all(|directions| directions.is_valid(Ticks(m.turn)))
             }),
             Claim::<Self>::sometimes("first-sends", "the first station sends", |_, s| Self::sends(s.directions[0])),
-            Claim::<Self>::sometimes("train", "a train is on the line", |_, s| s.train),
+            Claim::<Self>::sometimes("train", "a train is on the line", |_, s| s.train.is_some()),
         ];
         match self.purpose {
             Purpose::Safe => {
                 claims.push(Claim::<Self>::always(
                     "never-both-away",
-                    "never do both stations send into the line",
+                    "never do both stations send into the line, nor one while a train of the other is on it",
                     |_, s| !s.against,
                 ));
                 claims.push(Claim::<Self>::sometimes("second-sends", "the second station sends", |_, s| {
@@ -217,7 +276,7 @@ impl Subject for Pair {
             }
             Purpose::Hazard(excluded_by) => claims.push(Claim::<Self>::hazard(
                 "both-away",
-                "both stations send into the line",
+                "both stations send into the line, or one while a train of the other is on it",
                 excluded_by,
                 |_, s| s.against,
             )),
@@ -227,8 +286,15 @@ impl Subject for Pair {
 
     fn parameters(&self) -> String {
         format!(
-            "two stations, one line of one circuit; turn time {} cycles, telegrams live for {} cycles",
-            self.turn, self.life
+            "two stations, one line, {}; turn time {} cycles, telegrams live for {} cycles",
+            match self.view {
+                View::Whole => "which both see",
+                View::Overlapping => "of which each sees the part next to it and both the middle",
+                View::Adjoining => "of which each sees the half next to it",
+                View::Apart => "of which each sees the part next to it and nobody the middle",
+            },
+            self.turn,
+            self.life
         )
     }
 
@@ -259,7 +325,7 @@ impl Subject for Pair {
                 ("neighbour_direction".to_owned(), json!(word(after.directions[1]))),
                 ("hazard".to_owned(), json!(after.against)),
             ]);
-            run.step(&Self::input(*cycle, 0), words);
+            run.step(&self.input(*cycle, 0), words);
         }
         run.trace()
     }

@@ -129,7 +129,34 @@ fn alone(segment: usize) -> SegmentSet {
 /// # Panics
 /// If it does not; a test builds every station.
 fn checked(name: &'static str, ground: Ground, plan: &SmallPlan) -> Station {
-    Station { name, ground, layout: Layout::new(*plan).expect("a layout that keeps every rule") }
+    let plan = directed(&ground, *plan);
+    Station { name, ground, layout: Layout::new(plan).expect("a layout that keeps every rule") }
+}
+
+/// The plan with the directions of travel as the tracks lie, and without opposing starts from one circuit.
+fn directed(ground: &Ground, mut plan: SmallPlan) -> SmallPlan {
+    let leads = |from: CircuitSet, to: CircuitSet| {
+        let leads = |edge: &&Edge| from.meets(circuits(1 << edge.from)) && to.meets(circuits(1 << edge.to));
+        ground.edges.iter().find(leads).map(|edge| edge.heading.of_layout())
+    };
+    for route in &mut plan.routes {
+        route.heading = leads(route.entry, route.path[0].circuits).unwrap_or(route.heading);
+    }
+    let all = plan.routes;
+    for (number, segment) in plan.segments.iter_mut().enumerate() {
+        let out = all.iter().find(|route| route.to.meets(alone(number))).map(|route| route.heading);
+        let within = all.iter().find(|route| route.from.meets(alone(number))).map(|route| route.heading.opposite());
+        segment.outward = out.or(within).unwrap_or(segment.outward);
+    }
+    for (number, route) in plan.routes.iter_mut().enumerate() {
+        for (number_of_other, other) in all.iter().enumerate() {
+            let both = all[number].exists() && other.exists() && other.entry == route.entry;
+            if both && other.heading != route.heading {
+                route.conflicts = route.conflicts.or(RouteSet::nth(number_of_other));
+            }
+        }
+    }
+    plan
 }
 
 impl Station {

@@ -7,8 +7,8 @@ use super::yard::{Cycle, Harm, State, Yard};
 use crate::outcome::{Step, Trace};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Input, Layout, MAX_CODES, Output, Phase, PointSet, Position, Positions, Refusal, Request,
-    RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
+    self as kernel, CircuitSet, Element, Input, Layout, MAX_CODES, Output, Phase, PointSet, Position, Positions,
+    Refusal, Request, RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -114,10 +114,14 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
         let held = (0..).zip(&self.state.routes).filter(|(_, route)| route.is_held());
         let phases: BTreeMap<_, _> = held.map(|(number, route)| (route_name(number), phase(route.phase))).collect();
         let telegrams = self.layout.telegrams(&output.table, self.state.epoch);
-        let telegrams = self.circuits.iter().zip(&telegrams).filter(|(_, telegram)| telegram.open);
-        let told = telegrams.map(|(name, telegram)| {
+        let told = self.circuits.iter().zip(&telegrams).filter_map(|(name, telegram)| {
+            let telegram = telegram.filter(kernel::Movement::is_open)?;
             let stop = self.circuits[usize::from(telegram.stop.number())];
-            (*name, json!({"stop": stop, "speed_km_h": speed_km_h(telegram.speed), "open": telegram.open}))
+            let heading = telegram.heading.map(heading_word);
+            Some((
+                *name,
+                json!({"stop": stop, "speed_km_h": speed_km_h(telegram.speed), "open": true, "heading": heading}),
+            ))
         });
         json!({
             "routes": phases,
@@ -157,6 +161,7 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                     "stay_cycles": route.stay.0,
                     "speed_code": route.speed.0,
                     "cab_signalled": route.cab_signalled,
+                    "heading": heading_word(route.heading),
                 })
             })
             .collect();
@@ -169,6 +174,8 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                     "name": segment_name(number),
                     "circuits": circuits.iter().flat_map(|circuit| self.circuits(*circuit)).collect::<Vec<_>>(),
                     "throat": self.circuits(segment.throat),
+                    "outward": heading_word(segment.outward),
+                    "shared": segment.shared,
                 })
             })
             .collect();
@@ -241,6 +248,13 @@ fn request(request: Request) -> Value {
             let to = if travel == Travel::Toward { "toward" } else { "away" };
             json!({"turn": format!("S{}", segment.number()), "to": to})
         }
+    }
+}
+
+const fn heading_word(heading: kernel::Heading) -> &'static str {
+    match heading {
+        kernel::Heading::Left => "left",
+        kernel::Heading::Right => "right",
     }
 }
 

@@ -360,7 +360,9 @@ impl<D: Device> Subject for Yard<D> {
         let proceed = output.proceed.bits().to_le_bytes()[0];
         let mut trains = cycle.trains;
         for (train, telegram) in trains.iter_mut().zip(&telegrams) {
-            let granted = telegram.as_ref().filter(|telegram| telegram.open).map_or(0, |telegram| mask(telegram.hold));
+            // A telegram for the other direction of travel is one to stop.
+            let meant = telegram.filter(|telegram| telegram.heading == Some(train.heading.of_layout()));
+            let granted = meant.map_or(0, |telegram| mask(telegram.hold));
             *train = train.informed(&self.station.ground, &self.environment, proceed, granted);
         }
         let late = self.environment.drives == Drives::AfterTheDrive;

@@ -251,8 +251,9 @@ fn telegrams(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
         let told = moments.iter().map(|now| now.output.telegrams.get(name).filter(|telegram| telegram.open).cloned());
         let marks = bars(standing(None, told), |told| {
             let told = told?;
-            let full = format!("to {} at {} km/h", told.stop, told.speed_km_h);
-            Some((Tone::Code, vec![full, format!("to {}", told.stop)]))
+            let way = told.heading.map_or("", |heading| if heading.0 == kernel::Heading::Left { "◀ " } else { "▶ " });
+            let full = format!("{way}to {} at {} km/h", told.stop, told.speed_km_h);
+            Some((Tone::Code, vec![full, format!("{way}to {}", told.stop)]))
         });
         (format!("train in {name}"), 24, marks)
     });

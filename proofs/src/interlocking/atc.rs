@@ -3,7 +3,7 @@
 //! What a route grants is proven elsewhere (T-ATC-1, ATC-1.1) and assumed here: circuits of its path that follow each other and are free
 //! and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
 
-use super::{any_circuits, bit};
+use super::{any_circuits, any_heading, bit};
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
@@ -12,16 +12,16 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 
-const ROUTES: usize = 2;
+pub(super) const ROUTES: usize = 2;
 /// 2 for a wrong kernel: what a short path rejects, a long one does. And 2 for Kani, which has no answer for 4 in its time.
-const PATH: usize = if cfg!(any(small, kani)) { 2 } else { 4 };
-const SEGMENTS: usize = 2;
+pub(super) const PATH: usize = if cfg!(any(small, kani)) { 2 } else { 4 };
+pub(super) const SEGMENTS: usize = 2;
 
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 2 segments of up to 4 circuits";
 
-const UNDER_KANI: &str = "2 routes of up to 2 circuits, 32 circuits, 2 segments of up to 2 circuits";
+pub(super) const UNDER_KANI: &str = "2 routes of up to 2 circuits, 32 circuits, 2 segments of up to 2 circuits";
 
-type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
+pub(super) type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
 
 /// Any route, as far as grants and segments look at it.
 fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
@@ -33,8 +33,10 @@ fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
     });
     let timed = Ticks(1);
     Route {
+        heading: any_heading(e, "heading (odd: right)"),
         path,
         length: any_byte(e, "length (places)", 1..=3),
+        to: SegmentSet::from_bits(any_byte(e, "segments that it leads to (bits)", 0..=2) & 3),
         drive: timed,
         release: timed,
         stay: timed,
@@ -43,7 +45,7 @@ fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
 }
 
 /// Any layout, as far as the ATC looks at it.
-fn any_line<E: crate::Engine + ?Sized>(e: &mut E) -> Option<Line> {
+pub(super) fn any_line<E: crate::Engine + ?Sized>(e: &mut E) -> Option<Line> {
     let mut first = 1 << 1;
     let routes = core::array::from_fn(|_| {
         let route = any_path(e, first);
@@ -58,6 +60,8 @@ fn any_line<E: crate::Engine + ?Sized>(e: &mut E) -> Option<Line> {
         }),
         length: any_byte(e, "length of a segment (circuits)", 0..=3),
         throat: any_circuits(e, "throat (bits)", 8..=8),
+        outward: any_heading(e, "direction out to a segment (odd: right)"),
+        shared: any_byte(e, "circuits that the neighbour sees too", 0..=1),
     });
     let plan = Plan { routes, segments, clear: 1, turn: Ticks(1), ..Plan::EMPTY };
     let layout = Layout::with_what_proofs_need(plan).ok();
@@ -71,21 +75,30 @@ fn any_grant<E: crate::Engine + ?Sized>(e: &mut E, route: &Route<PATH>) -> Grant
     let (first, last) = (any_byte(e, "first place granted", 0..=1), any_byte(e, "last place granted", 0..=2));
     let complete = any_flag(e, "to the end of the route (odd: yes)") && last.wrapping_add(1) == route.length;
     let speed = SpeedCode(any_byte(e, "speed code of the route", 0..=7));
-    let mut grant = Grant { train, complete, speed, ..Grant::NONE };
+    let mut grant = Grant { train, complete, heading: route.heading, speed, ..Grant::NONE };
+    let mut end = CircuitSet::EMPTY;
     for (place, element) in (0_u8..).zip(&route.path) {
         let circuit = element.circuits;
         if place >= first && place <= last && last < route.length {
             grant.circuits = grant.circuits.or(circuit);
             grant.last = circuit;
         }
+        end = if place < route.length { circuit } else { end };
     }
     let apart = grant.circuits.bits() & train.bits() == 0;
     e.assume(apart);
-    if grant.circuits.bits() == 0 { Grant::NONE } else { grant }
+    if grant.circuits.bits() != 0 {
+        grant
+    } else if complete && !route.to.is_empty() && !end.is_empty() {
+        // The train is on the last circuit of a route out.
+        Grant { train: end, last: end, ..grant }
+    } else {
+        Grant::NONE
+    }
 }
 
 /// Any contents that the interlocking may write for the ATC, by what is proven of grants.
-fn any_contents<E: crate::Engine + ?Sized>(e: &mut E, line: &Line) -> Contents<ROUTES> {
+pub(super) fn any_contents<E: crate::Engine + ?Sized>(e: &mut E, line: &Line) -> Contents<ROUTES> {
     let grants = [any_grant(e, &line.plan().routes[0]), any_grant(e, &line.plan().routes[1])];
     e.assume(grants[0].circuits.bits() & grants[1].circuits.bits() == 0);
     let granted = grants[0].circuits.or(grants[1].circuits);
@@ -113,7 +126,7 @@ fn limits(number: u16, its: u8, others: u8) -> SpeedLimits {
 }
 
 /// The telegram that is sent in a circuit.
-fn sent(line: &Line, contents: &Contents<ROUTES>, circuit: CircuitId) -> Movement {
+pub(super) fn sent(line: &Line, contents: &Contents<ROUTES>, circuit: CircuitId) -> Movement {
     telegram(line, Some(contents), begins(line, contents), circuit)
 }
 
@@ -139,15 +152,16 @@ fn place_of(segment: &Segment<PATH>, circuit: CircuitSet) -> Option<usize> {
     found
 }
 
-/// How many circuits of a segment a train in `here` has passed in the direction of the segment, the own one included; none if it is not on its way there.
-fn passed(line: &Line, contents: &Contents<ROUTES>, number: usize, here: CircuitSet) -> Option<usize> {
+/// How many circuits of a segment a train in `here` has passed in the direction of the segment, the own one included; none if it is not on its way
+/// there, from the throat by a route to one of `to`.
+fn passed(line: &Line, contents: &Contents<ROUTES>, number: usize, here: CircuitSet, to: SegmentSet) -> Option<usize> {
     let segment = &line.plan().segments[number];
     let length = length_of(segment);
     let away = contents.away.bits() >> number & 1 == 1;
     match place_of(segment, here) {
         Some(place) if away => Some(place + 1),
         Some(place) if contents.toward.bits() >> number & 1 == 1 => Some(length - place),
-        None if away && segment.throat.bits() == here.bits() => Some(0),
+        None if away && segment.throat.bits() == here.bits() && to.bits() >> number & 1 == 1 => Some(0),
         _ => None,
     }
 }
@@ -178,7 +192,7 @@ harness! {
     under_kani UNDER_KANI;
     claims {
         Two: "where more than one grant begins, of routes or of segments, none is used",
-        One: "where one route's grant begins, and no segment's, it is used",
+        One: "where one route's grant begins, and no segment's, it is used, and leads to the segments of the route if it reaches its end",
         Line: "where one segment's begins, and no route's, it is the circuits that follow without a gap, free and unblocked, as far as there are such",
         Last: "the last circuit is the farthest of them, and it says it is complete only if no circuit of the segment follows",
         None: "where none begins nothing is granted",
@@ -194,21 +208,22 @@ harness! {
         let Some(line) = any_line(e) else { return };
         let contents = any_contents(e, &line);
         let here = CircuitSet::from_bits(bit(e.word("the train's circuit (number)", 0..=15)));
-        let link = connect(&line, &contents, here);
+        let to = SegmentSet::from_bits(any_byte(e, "segments to which the route leads that ends there", 0..=3) & 3);
+        let (link, leads) = connect(&line, &contents, (here, to));
         let closed = contents.occupied.bits() | contents.blocked.bits();
         let (mut of_routes, mut of_segments) = (0_u32, 0_u32);
-        let mut expected = Grant::NONE;
-        for grant in contents.grants {
-            if grant.train.bits() == here.bits() && grant.circuits.bits() != 0 {
+        let mut expected = (Grant::NONE, 0);
+        for (route, grant) in line.plan().routes.iter().zip(contents.grants) {
+            if to.bits() == 0 && grant.train.bits() == here.bits() && grant.train.bits() != 0 {
                 of_routes += 1;
-                expected = grant;
+                expected = (grant, if grant.complete { route.to.bits() } else { 0 });
             }
         }
         let mut rightly = false;
         let mut ends = false;
         let mut steps = 0;
         for number in 0..SEGMENTS {
-            let Some(passed) = passed(&line, &contents, number, here) else { continue };
+            let Some(passed) = passed(&line, &contents, number, here, to) else { continue };
             let (mut circuits, mut last, mut open) = (0, 0, true);
             for step in 0..PATH {
                 let next = in_direction(&line, &contents, number, step);
@@ -228,10 +243,10 @@ harness! {
         }
         let found = of_routes + of_segments;
         e.claim(Claim::Two as u32, found < 2 || link == Grant::NONE);
-        e.claim(Claim::One as u32, found != 1 || of_routes == 0 || link == expected);
+        e.claim(Claim::One as u32, found != 1 || of_routes == 0 || link == expected.0 && leads.bits() == expected.1);
         e.claim(Claim::Line as u32, found != 1 || of_segments == 0 || rightly);
         e.claim(Claim::Last as u32, found != 1 || of_segments == 0 || ends);
-        e.claim(Claim::None as u32, found != 0 || link == Grant::NONE);
+        e.claim(Claim::None as u32, found != 0 || link == Grant::NONE && leads.bits() == 0);
         e.cover(Cover::Routes as u32, of_routes == 2);
         e.cover(Cover::Mixed as u32, of_routes == 1 && of_segments == 1);
         e.cover(Cover::Away as u32, found == 1 && of_segments == 1 && steps == 2 && contents.away.bits() != 0 && contents.toward.bits() == 0);
@@ -270,7 +285,7 @@ harness! {
         e.claim(Claim::Apart as u32, first.hold.bits() & second.hold.bits() == 0);
         let closed = contents.occupied.bits() | contents.blocked.bits();
         e.claim(Claim::Free as u32, first.hold.bits() & closed == 0);
-        e.cover(Cover::Both as u32, first.open && second.open);
+        e.cover(Cover::Both as u32, first.is_open() && second.is_open());
         let segment = line.plan().segments[0];
         let mut all = 0;
         for place in 0..PATH {
@@ -327,7 +342,7 @@ harness! {
         let telegram = sent(&line, &contents, circuit);
         let speed = telegram.speed.0;
         let hold = telegram.hold.bits();
-        if !telegram.open {
+        if !telegram.is_open() {
             // Nothing is granted, and the train stands (ATC-7).
             return e.claim(Claim::Table as u32, speed == 0);
         }
@@ -339,7 +354,7 @@ harness! {
             limit = if granted && grant.speed.0 < limit { grant.speed.0 } else { limit };
         }
         e.claim(Claim::Route as u32, by_route);
-        let restricted = hold >> number & 1 == 1 || own == number && telegram.open;
+        let restricted = hold >> number & 1 == 1 || own == number && telegram.is_open();
         e.claim(Claim::Limit as u32, !restricted || speed <= its);
         let (mut sum, mut needed) = (0_u32, 0_u32);
         for place in 0..MAX_CIRCUITS {
@@ -353,9 +368,9 @@ harness! {
         }
         e.claim(Claim::Distance as u32, needed <= sum);
         e.claim(Claim::Table as u32, usize::from(speed) < MAX_CODES && needed < u32::from(u16::MAX));
-        e.cover(Cover::ByRoute as u32, telegram.open && speed == limit && speed > 0 && its == 7);
-        e.cover(Cover::ByLimit as u32, telegram.open && restricted && speed == its && speed < limit && speed > 0);
-        e.cover(Cover::ByDistance as u32, telegram.open && speed < limit && its == 7 && others == 7);
+        e.cover(Cover::ByRoute as u32, telegram.is_open() && speed == limit && speed > 0 && its == 7);
+        e.cover(Cover::ByLimit as u32, telegram.is_open() && restricted && speed == its && speed < limit && speed > 0);
+        e.cover(Cover::ByDistance as u32, telegram.is_open() && speed < limit && its == 7 && others == 7);
         e.cover(Cover::Most as u32, speed == 7);
     }
 }
@@ -422,13 +437,13 @@ harness! {
         let joint = occupied.bits() & bit(far) != 0 && is_joint(&line, &contents.standing, bit(near), bit(far));
         let (has_near, has_far) = (train.bits() & bit(near) != 0, train.bits() & bit(far) != 0);
         e.claim(Claim::Joined as u32, !joint || !has_near || has_far);
-        e.claim(Claim::Limit as u32, !telegram.open || !has_far || telegram.speed.0 <= its);
+        e.claim(Claim::Limit as u32, !telegram.is_open() || !has_far || telegram.speed.0 <= its);
         let apart = near != own && far != own && !is_joint(&line, &contents.standing, bit(own), bit(far));
-        e.cover(Cover::Far as u32, telegram.open && apart && joint && has_near && telegram.speed.0 == its);
+        e.cover(Cover::Far as u32, telegram.is_open() && apart && joint && has_near && telegram.speed.0 == its);
         let path = line.plan().routes[0].path[0].circuits.bits();
         let outer = line.plan().segments[0].circuits[0].bits();
-        e.cover(Cover::Line as u32, train.bits() & path != 0 && train.bits() & outer != 0 && telegram.open && contents.standing.loose.bits() == 0);
-        e.cover(Cover::Free as u32, telegram.open && occupied.bits() & !train.bits() != 0);
+        e.cover(Cover::Line as u32, train.bits() & path != 0 && train.bits() & outer != 0 && telegram.is_open() && contents.standing.loose.bits() == 0);
+        e.cover(Cover::Free as u32, telegram.is_open() && occupied.bits() & !train.bits() != 0);
     }
 }
 
@@ -459,7 +474,8 @@ harness! {
         let own = e.word("the train's circuit (number)", 0..=8) & 31;
         let Some(circuit) = CircuitId::new(own.to_le_bytes()[0]) else { return };
         let telegram = sent(&line, &contents, circuit);
-        let Movement { stop, open, speed, hold } = telegram;
+        let Movement { stop, heading, speed, hold } = telegram;
+        let open = heading.is_some();
         let is_stop = !open && speed.0 == 0 && u16::from(stop.number()) == own && hold.bits() == 0;
         let train = contents.occupied.bits() >> own & 1 == 1;
         e.claim(Claim::Train as u32, train || is_stop);

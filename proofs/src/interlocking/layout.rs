@@ -52,8 +52,8 @@ harness! {
         Apart: "its approach has no circuit of its path or overlap, and its overlap none of its path",
         Beyond: "there is a circuit beyond it, other than its last",
         Names: "it names only routes and segments that there are, and is no conflict of itself",
-        Line: "it comes from one segment at most and leads to one at most, and ends in the throat of that",
-        Points: "every point that it positions is there and has a detector",
+        Line: "it comes from one segment at most and leads to one at most, ends in the throat of that, and leads the way that its segments and the routes that continue it do",
+        Points: "every point that it positions is there and has a detector, and no point has one on a segment",
         Speed: "its speed code has a braking distance and is not stop",
         Lengths: "every circuit of its path, and of a segment, has a length",
     }
@@ -95,10 +95,16 @@ harness! {
             routes |= u64::from(plan.routes[number].length != 0) << number;
         }
         let (mut throats, mut line) = (true, 0);
+        let mut leads = true;
+        for number in 0..ROUTES {
+            leads &= route.continuing.bits() >> number & 1 == 0 || plan.routes[number].heading == route.heading;
+        }
         for number in 0..SEGMENTS {
             let segment = &plan.segments[number];
             segments |= u8::from(segment.length != 0) << number;
             throats &= route.to.bits() >> number & 1 == 0 || bits(segment.throat) == last;
+            leads &= route.to.bits() >> number & 1 == 0 || segment.outward == route.heading;
+            leads &= route.from.bits() >> number & 1 == 0 || segment.outward != route.heading;
             for place in 0..PATH {
                 line |= if place < usize::from(segment.length) { bits(segment.circuits[place]) } else { 0 };
             }
@@ -108,12 +114,13 @@ harness! {
         let there = (conflicts | continuing) & !routes == 0 && (from | to) & !segments == 0;
         e.claim(Claim::Names as u32, there && conflicts >> it & 1 == 0);
         let single = from & from.wrapping_sub(1) == 0 && to & to.wrapping_sub(1) == 0;
-        e.claim(Claim::Line as u32, single && throats);
-        let mut detected = 0;
+        e.claim(Claim::Line as u32, single && throats && leads);
+        let (mut detected, mut apart) = (0, true);
         for number in 0..POINTS {
             detected |= u32::from(bits(plan.points[number].detectors) != 0) << number;
+            apart &= bits(plan.points[number].detectors) & line == 0;
         }
-        e.claim(Claim::Points as u32, positions & !detected == 0);
+        e.claim(Claim::Points as u32, positions & !detected == 0 && apart);
         let mut distance = Metres(u16::MAX);
         for code in 1..MAX_CODES {
             distance = if usize::from(route.speed.0) == code { plan.braking[code] } else { distance };

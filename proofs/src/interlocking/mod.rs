@@ -4,9 +4,12 @@
 //! runs one cycle after the tracking, and claims. One circuit, one point and one pair of routes stand for all.
 
 mod atc;
+mod border;
 mod cycle;
 mod direction;
+mod heading;
 mod layout;
+mod out;
 mod pair;
 mod point;
 mod route;
@@ -19,9 +22,9 @@ mod works;
 use crate::engine::{any_byte, any_flag, any_u32};
 use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Epoch, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan, Point,
-    PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId,
-    SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Works,
+    CircuitSet, Directions, Element, Epoch, Heading, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan,
+    Point, PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment,
+    SegmentId, SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -88,6 +91,9 @@ pub const ALL: &[Harness] = &[
     atc::t_atc_2_train::HARNESS,
     atc::t_atc_4::HARNESS,
     atc::t_atc_4_each::HARNESS,
+    heading::t_atc_5::HARNESS,
+    border::t_atc_6::HARNESS,
+    out::t_atc_7::HARNESS,
     layout::t_lay_2::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,
@@ -121,6 +127,11 @@ fn any_segments<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> SegmentSet
     SegmentSet::from_bits(any_byte(e, what, 0..=1))
 }
 
+/// Any direction of travel.
+fn any_heading<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Heading {
+    if any_flag(e, what) { Heading::Right } else { Heading::Left }
+}
+
 /// Any route; `number` only hints at likely circuits.
 fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Route<P> {
     let first = 1_u16.wrapping_shl(u32::from(number) * 4);
@@ -131,6 +142,7 @@ fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Rout
         Element { circuits, positions: any_positions(e) }
     });
     Route {
+        heading: any_heading(e, "heading (odd: right)"),
         entry: any_circuits(e, "entry (bits)", first.rotate_right(1)..=first.rotate_right(1)),
         approach: any_circuits(e, "approach (bits)", 0..=0),
         path,
@@ -168,6 +180,8 @@ fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, 
         }),
         length: any_byte(e, "length of a segment (circuits)", 0..=1),
         throat: any_circuits(e, "throat (bits)", 8..=8),
+        outward: any_heading(e, "direction out to a segment (odd: right)"),
+        shared: 0,
     });
     Plan {
         routes,

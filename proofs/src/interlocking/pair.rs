@@ -72,7 +72,7 @@ harness! {
     /// of it is clear, unblocked and has its direction; and if no point of it would have to move under a train.
     t_ilk_1(e)
     theorem "T-ILK-1";
-    requirements ["ILK-1", "ILK-2"];
+    requirements ["ILK-1", "ILK-2", "ATC-10"];
     assumptions [];
     bound BOUND;
     cases 2;
@@ -84,7 +84,7 @@ harness! {
         Overlaps: "no circuit is in the held overlaps of both",
         Continuing: "a circuit is in the path of one and the overlap of the other only where the first continues the second",
         Points: "no point is needed in normal position by one and in reverse by the other",
-        Conflicts: "neither is declared to conflict with the other while both are held",
+        Conflicts: "neither is declared to conflict with the other while both are held, and if they start from one circuit they lead the same way",
         Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
         Direction: "every segment that the route needs has the direction that it needs",
         Moves: "a point that is not detected in position has no train on it",
@@ -113,7 +113,9 @@ harness! {
         e.claim(Claim::Overlaps as u32, !reserved || pair.overlaps);
         e.claim(Claim::Continuing as u32, !reserved || pair.continuing);
         e.claim(Claim::Points as u32, !reserved || pair.points);
-        e.claim(Claim::Conflicts as u32, !reserved || pair.conflicts);
+        let starts = state.phase != Phase::Idle && routes[asked].entry.bits() & routes[other].entry.bits() & circuit != 0;
+        let same = !starts || routes[asked].heading == routes[other].heading;
+        e.claim(Claim::Conflicts as u32, !reserved || pair.conflicts && same);
         let route = &routes[asked];
         let mine = (held(route, RouteState::RESERVED), kept(route, RouteState::RESERVED));
         let ahead = (mine.0.circuits.bits() | mine.1.circuits.bits()) & circuit;

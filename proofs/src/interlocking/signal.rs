@@ -2,7 +2,7 @@
 
 use super::{any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, held, kept};
 use crate::Engine;
-use atc_kernel::interlocking::{CircuitSet, Phase, Route, RouteState, View, grant, ready, shows_proceed};
+use atc_kernel::interlocking::{CircuitSet, Grant, Phase, Route, RouteState, View, grant, ready, shows_proceed};
 
 /// The places of a path: half of the machine's, since what is granted is a second path to go through.
 const PLACES: usize = if super::PLACES > 8 { 8 } else { super::PLACES };
@@ -137,7 +137,7 @@ harness! {
     /// in order, from the last circuit that is occupied.
     t_atc_1(e)
     theorem "T-ATC-1";
-    requirements ["ATC-1"];
+    requirements ["ATC-1", "ATC-10", "ATC-13"];
     assumptions [];
     bound BOUND;
     cases 1;
@@ -148,12 +148,15 @@ harness! {
         Entry: "before entry the grant is for the entry circuit, and proceed is shown",
         Front: "after entry it is for the last occupied circuit of the path, which was entered in order, and whose own points are in position",
         Nobody: "in any other phase nothing is granted",
-        Last: "the last circuit is one that is granted",
+        Last: "the last circuit is one that is granted; without any it is the train's, or there is no grant",
+        Heading: "a grant is for the route's direction of travel",
+        Out: "a grant of no circuit is for the train on the last circuit of a route out, which has entered it in order and whose points there are in position",
     }
     covers {
         Entry: "a train at the entry is granted a path",
         Under: "a train in the path is granted what is ahead",
         Never: "nothing is granted to a train that is in the path out of order",
+        Out: "a train on the last circuit of a route out may go on to the line",
     }
     {
         let Some(scene) = any_scene::<E, PLACES>(e) else { return };
@@ -170,7 +173,13 @@ harness! {
         let at_front = given.train.bits() == train.circuit && in_order;
         e.claim(Claim::Front as u32, nothing || state.phase != Phase::InUse || at_front);
         e.claim(Claim::Nobody as u32, nothing || state.phase == Phase::Set || state.phase == Phase::InUse);
-        e.claim(Claim::Last as u32, given.last.bits() & !circuits == 0 && nothing == (given.last.bits() == 0));
+        let its = if nothing { given.train.bits() } else { circuits };
+        e.claim(Claim::Last as u32, given.last.bits() & !its == 0 && (given.last.bits() == 0) == (given == Grant::NONE));
+        e.claim(Claim::Heading as u32, given == Grant::NONE || given.heading == route.heading);
+        let at_end = train.front == route.length && !route.to.is_empty() && state.phase == Phase::InUse;
+        let out = nothing && given != Grant::NONE;
+        e.claim(Claim::Out as u32, !out || at_end && at_front && given.complete && given.last == given.train);
+        e.cover(Cover::Out as u32, out && route.length > 1);
         e.cover(Cover::Entry as u32, !nothing && state.phase == Phase::Set && route.length > 2);
         e.cover(Cover::Under as u32, !nothing && state.phase == Phase::InUse);
         e.cover(Cover::Never as u32, nothing && state.phase == Phase::InUse && train.front > state.head && state.head > 0);
@@ -192,7 +201,7 @@ harness! {
         Stretch: "a place is granted only if every place between it and the train is",
         Beyond: "no place behind the train is granted",
         End: "a grant is complete exactly if its last circuit is the last of the path",
-        Speed: "it carries the route's speed code, or that of stop if it is empty",
+        Speed: "it carries the route's speed code, or that of stop if there is none",
     }
     covers {
         Short: "a grant ends before the end of the path",
@@ -227,8 +236,7 @@ harness! {
         e.claim(Claim::Stretch as u32, !granted || between & !circuits == 0);
         e.claim(Claim::Beyond as u32, !granted || one >= front);
         e.claim(Claim::End as u32, circuits == 0 || given.complete == (given.last.bits() == last));
-        let stop = circuits == 0 && given.speed.0 == 0;
-        e.claim(Claim::Speed as u32, stop || circuits != 0 && given.speed == route.speed);
+        e.claim(Claim::Speed as u32, given == Grant::NONE && given.speed.0 == 0 || given.speed == route.speed);
         e.cover(Cover::Short as u32, granted && !given.complete);
         e.cover(Cover::Whole as u32, granted && given.complete);
     }

@@ -25,6 +25,7 @@ fn any_grant<E: Engine + ?Sized>(e: &mut E) -> Grant {
         circuits: any_set(e, "granted (bits)"),
         last: any_set(e, "last (bits)"),
         complete: any_flag(e, "complete (odd: yes)"),
+        heading: super::any_heading(e, "heading (odd: right)"),
         speed: SpeedCode(e.word("speed code", 0..=7).to_le_bytes()[0]),
     }
 }
@@ -58,7 +59,7 @@ fn flipped_code(code: SpeedCode, bit: u16) -> SpeedCode {
 }
 
 /// The fields of a grant.
-const OF_A_GRANT: usize = 5;
+const OF_A_GRANT: usize = 6;
 
 /// The first case that is where trains stand: the bodies and the loose circuits.
 const STANDING: usize = 6 + GRANTS * OF_A_GRANT;
@@ -128,6 +129,7 @@ harness! {
                             1 => grant.circuits = flipped(grant.circuits, bit),
                             2 => grant.last = flipped(grant.last, bit),
                             3 => grant.complete = !grant.complete,
+                            4 => grant.heading = grant.heading.opposite(),
                             _ => grant.speed = flipped_code(grant.speed, bit),
                         }
                     }
@@ -165,7 +167,10 @@ impl Scene {
     fn stops(&self, table: &Table<1>) -> bool {
         let mut stop = true;
         for (place, it) in (0_u8..).zip(&self.layout.telegrams(table, self.now)) {
-            let stays = it.stop == self.circuit && it.speed == SpeedCode(0) && !it.open && it.hold.bits() == 0;
+            let stays = match it {
+                Some(it) => it.stop == self.circuit && it.speed == SpeedCode(0) && !it.is_open() && it.hold.bits() == 0,
+                None => false,
+            };
             stop &= place != self.circuit.number() || stays;
         }
         stop

@@ -35,8 +35,8 @@ pub struct Arsenal {
     pub restart: usize,
     /// Points may take a command a cycle late.
     pub slow_points: bool,
-    /// Trains hear no telegram that is for the other way, as if each said so.
-    pub directed: bool,
+    /// Trains take a telegram for the other direction of travel as one to stop.
+    pub faces: bool,
     /// The drivers: those of telegrams, those of signals.
     pub drivers: [bool; 2],
 }
@@ -60,7 +60,7 @@ impl Arsenal {
         pace: 1,
         restart: 0,
         slow_points: false,
-        directed: true,
+        faces: true,
         drivers: [true, true],
     };
 

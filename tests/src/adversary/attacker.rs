@@ -40,7 +40,7 @@ impl Attacker {
             manner: Manner { overlaps: self.dice.once_in(2), late },
             slow: if self.arsenal.slow_points { slow } else { 0 },
             throw_percent: self.dice.within(30, 100),
-            directed: self.arsenal.directed,
+            faces: self.arsenal.faces,
         }
     }
 

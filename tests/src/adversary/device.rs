@@ -1,8 +1,8 @@
 //! The device under attack. This is the only file of the adversary that knows the kernel: a change of the kernel's interface ends here.
 
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Input, Layout, Orders, PointId, PointSet, Position, Positions, Request, RouteId, RouteSet,
-    SegmentId, SegmentSet, SpeedCode, State, Travel, begins, telegram,
+    CircuitId, CircuitSet, Heading, Input, Layout, Orders, PointId, PointSet, Position, Positions, Request, RouteId,
+    RouteSet, SegmentId, SegmentSet, SpeedCode, State, Travel, begins, silent, telegram,
 };
 use atc_layout::{Description, Errors};
 
@@ -71,8 +71,8 @@ pub struct Telegram {
     pub hold: Mask,
     /// The highest code.
     pub code: u8,
-    /// The circuit, alone, towards which the train must face; `None` where a telegram does not say so.
-    pub towards: Option<Mask>,
+    /// Whether it is for a train that faces right; `None` where it is for none.
+    pub right: Option<bool>,
 }
 
 /// A device.
@@ -91,6 +91,7 @@ struct Kernel<const R: usize, const P: usize, const N: usize, const S: usize> {
     state: State<R, S>,
     table: Option<atc_kernel::interlocking::Contents<R>>,
     begins: CircuitSet,
+    silent: CircuitSet,
 }
 
 fn circuits(mask: Mask) -> CircuitSet {
@@ -138,6 +139,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
         self.state = state;
         self.table = output.table.read(state.epoch);
         self.begins = self.table.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(&self.layout, contents));
+        self.silent = silent(&self.layout, self.table.as_ref());
         Said {
             proceed: RouteSet::bits(output.proceed),
             drives: [output.drives.normal.bits(), output.drives.reverse.bits()],
@@ -148,10 +150,12 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
     }
 
     fn telegram(&self, circuit: usize) -> Telegram {
-        let Some(circuit) = CircuitId::new(small(circuit)) else { return Telegram::default() };
+        let heard = CircuitId::new(small(circuit)).filter(|circuit| !self.silent.has(*circuit));
+        let Some(circuit) = heard else { return Telegram::default() };
         let movement = telegram(&self.layout, self.table.as_ref(), self.begins, circuit);
-        if movement.open {
-            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, towards: None }
+        if movement.is_open() {
+            let right = movement.heading.map(|heading| heading == Heading::Right);
+            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, right }
         } else {
             Telegram::default()
         }
@@ -159,7 +163,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
 
     fn restart(&mut self) {
         self.state = State::INITIAL;
-        (self.table, self.begins) = (None, CircuitSet::EMPTY);
+        (self.table, self.begins, self.silent) = (None, CircuitSet::EMPTY, CircuitSet::EMPTY);
     }
 }
 
@@ -184,7 +188,13 @@ pub fn kernel(description: &Description) -> Result<(Box<dyn Device>, Ground), Er
 fn started<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: Box<Layout<R, P, N, S>>,
 ) -> Box<dyn Device> {
-    Box::new(Kernel { layout, state: State::INITIAL, table: None, begins: CircuitSet::EMPTY })
+    Box::new(Kernel {
+        layout,
+        state: State::INITIAL,
+        table: None,
+        begins: CircuitSet::EMPTY,
+        silent: CircuitSet::EMPTY,
+    })
 }
 
 /// The circuits that a station of `ground` sees.

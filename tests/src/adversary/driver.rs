@@ -23,12 +23,7 @@ struct Sight {
 }
 
 /// The train hears the telegram of the circuit with its front.
-pub fn hear(
-    train: &mut Train,
-    (ground, points): (&Ground, &Points),
-    (device, directed): (&dyn Device, bool),
-    neighbour: Option<Heard>,
-) {
+pub fn hear(train: &mut Train, ground: &Ground, (device, faces): (&dyn Device, bool), neighbour: Option<Heard>) {
     if train.deaf > 0 {
         train.deaf -= 1;
         train.heard.age += 1;
@@ -43,12 +38,7 @@ pub fn hear(
     }
     let circuit = train.front_circuit(ground);
     let telegram = if circuit < ground.seen { device.telegram(circuit) } else { super::device::Telegram::default() };
-    // Where the telegram does not say which way it is for, a train takes it; unless the ground sees to it that only the right one hears it.
-    let ahead = || ahead(train, ground, points, train.to_joint() + 1);
-    let meant = match telegram.towards {
-        Some(next) => ahead() & next != 0,
-        None => !directed || ahead() & telegram.hold != 0,
-    };
+    let meant = !faces || telegram.right == Some(ground.faces_right(&train.front()));
     train.heard = if telegram.hold != 0 && meant {
         Heard {
             limit: train.run + train.to_joint() + length(ground, telegram.hold),

@@ -8,6 +8,8 @@ use atc_layout::graph::Kind;
 use atc_layout::model::Model;
 use atc_layout::{Compiled, Description};
 
+use super::train::Leg;
+
 /// A set of circuits, those of the neighbours included: bit `i` is circuit `i`.
 pub type Mask = u128;
 
@@ -314,6 +316,30 @@ impl Ground {
             (_, [left, right]) => (if *left == joint { *right } else { *left }, None),
             _ => (joint, None),
         }
+    }
+
+    /// Whether a train with its front on this leg faces right, by the plain tracks ahead of it or, where there are none, behind it.
+    pub fn faces_right(&self, leg: &Leg) -> bool {
+        let plain = |piece: usize| piece < self.pieces.len() && self.pieces[piece].point.is_none();
+        let at = |piece: usize, joint: usize, side: usize| self.pieces[piece].joints.get(side) == Some(&joint);
+        if plain(leg.piece) {
+            return at(leg.piece, leg.exit, 1);
+        }
+        let (mut piece, mut joint) = (leg.piece, leg.exit);
+        while let Some(next) = self.across(joint, piece) {
+            if plain(next) {
+                return at(next, joint, 0);
+            }
+            (piece, joint) = (next, self.leave(next, joint, false).0);
+        }
+        let (mut piece, mut joint) = (leg.piece, leg.enter);
+        while let Some(before) = self.across(joint, piece) {
+            if plain(before) {
+                return at(before, joint, 1);
+            }
+            (piece, joint) = (before, self.leave(before, joint, false).0);
+        }
+        true
     }
 
     /// The names of a set.

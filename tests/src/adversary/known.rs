@@ -28,6 +28,9 @@ pub struct Fault {
 const TELEGRAMS: Arsenal = Arsenal { drivers: [true, false], ..Arsenal::RUNNING };
 const LOOP: &str = "passing-loop";
 
+/// The last of them with the old rule put back: trains do not look at a telegram's direction of travel.
+pub const UNFACED: Arsenal = Arsenal { face: 10, faces: false, ..TELEGRAMS };
+
 /// The faults.
 pub const KNOWN: &[Fault] = &[
     Fault {
@@ -124,10 +127,10 @@ pub const KNOWN: &[Fault] = &[
         name: "telegram against the direction",
         session: "telegram-against-the-direction",
         must: "a telegram says for which direction of travel it is, and a train that faces the other way has none",
-        arsenal: Arsenal { face: 10, directed: false, ..TELEGRAMS },
+        arsenal: Arsenal { face: 10, ..TELEGRAMS },
         ends_in: &[Family::Unasked, Family::Derailment],
         layout: LOOP,
         seed: 1,
-        mended: false,
+        mended: true,
     },
 ];

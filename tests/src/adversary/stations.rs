@@ -33,11 +33,12 @@ pub fn random(number: u64) -> Description {
         text,
         "[times]\nrelease_ms = {}\nturn_ms = {}",
         dice.within(45_000, 90_000),
-        dice.within(2_000, 8_000)
+        dice.within(34_300, 40_000)
     );
     let _ = writeln!(text, "\n[speed]\nline_kmh = {line}\nreverse_kmh = {reverse}\n");
     for side in ["W", "E"] {
-        for (circuit, left, right) in [("2", "b", "a"), ("1", "c", "b")] {
+        for (circuit, outer, inner) in [("2", "a", "b"), ("1", "b", "c")] {
+            let (left, right) = if side == "W" { (outer, inner) } else { (inner, outer) };
             let length = dice.within(450, 700);
             circuit_of(
                 &mut text,
@@ -59,7 +60,10 @@ pub fn random(number: u64) -> Description {
             ladder(&mut text, side, point, tracks);
         }
         let _ = writeln!(text, "[[end]]\njoint = \"{side}a\"\nkind = \"line\"\n");
-        let _ = writeln!(text, "[[segment]]\nname = \"{side}\"\ncircuits = [\"{side}1\", \"{side}2\"]\n");
+        let _ = writeln!(
+            text,
+            "[[segment]]\nname = \"{side}\"\ncircuits = [\"{side}1\", \"{side}2\"]\nshared = [\"{side}2\"]\n"
+        );
     }
     for (side, other) in [("W", "E"), ("E", "W")] {
         for track in 1..=tracks {

@@ -21,8 +21,8 @@ pub struct Setting {
     pub slow: u32,
     /// The stroke of the points, in per cent of the longest.
     pub throw_percent: i64,
-    /// A train hears no telegram that is for the other way.
-    pub directed: bool,
+    /// Trains take a telegram for the other direction of travel as one to stop.
+    pub faces: bool,
 }
 
 /// The world.
@@ -97,8 +97,8 @@ impl<'a> World<'a> {
         self.pass_neighbours();
         for number in 0..self.trains.len() {
             let neighbour = self.neighbour_says(number);
-            let directed = self.setting.directed;
-            hear(&mut self.trains[number], (self.ground, &self.points), (device, directed), neighbour);
+            let faces = self.setting.faces;
+            hear(&mut self.trains[number], self.ground, (device, faces), neighbour);
             self.measured.age = self.measured.age.max(self.trains[number].heard.age);
         }
         self.authorities();

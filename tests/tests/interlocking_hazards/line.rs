@@ -20,22 +20,22 @@ fn nobody_is_sent_out_once_the_consent_has_ended() {
     assert_eq!(session.ask(set, &["1T"]), Err(Refusal::Direction));
     session.consent = SegmentSet::ALL;
     assert_eq!(session.ask(set, &["1T"]), Ok(()));
-    assert!(session.proceed("1-W") && session.telegram("1T").open);
+    assert!(session.proceed("1-W") && session.telegram("1T").is_open());
     session.consent = SegmentSet::EMPTY;
     for _ in 0..100 {
         session.wait(1, &["1T"]);
-        assert!(!session.proceed("1-W") && !session.telegram("1T").open);
+        assert!(!session.proceed("1-W") && !session.telegram("1T").is_open());
     }
     // In the throat and on the line too.
     session.consent = SegmentSet::ALL;
     session.wait(2, &["1T", "P1T"]);
     session.wait(2, &["P1T"]);
-    assert!(session.telegram("P1T").open);
+    assert!(session.telegram("P1T").is_open());
     session.consent = SegmentSet::EMPTY;
     session.wait(1, &["P1T"]);
-    assert!(!session.telegram("P1T").open);
+    assert!(!session.telegram("P1T").is_open());
     session.wait(1, &["W1"]);
-    assert!(!session.telegram("W1").open);
+    assert!(!session.telegram("W1").is_open());
 }
 
 /// After a restart with a train on the line, the line is given to nobody until it has been clear.

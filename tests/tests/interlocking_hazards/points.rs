@@ -31,7 +31,7 @@ fn a_point_that_leaves_after_an_individual_command_had_no_route_over_it() {
                     session.wait(1, &["W1"]);
                 }
                 assert!(!session.proceed("W-1"), "settles for {settle}, leaves after {leaves}");
-                assert!(!session.telegram("W1").open);
+                assert!(!session.telegram("W1").is_open());
             }
         }
     }

@@ -56,7 +56,7 @@ fn flashes_in_the_order_of_a_train_release_nothing_in_front_of_one() {
 #[test]
 fn a_bobbing_circuit_gives_the_point_to_nobody() {
     for bob in 1..6 {
-        let mut session = Session::new("[times]\ncycle_ms = 500\nclear_ms = 1500\nturn_ms = 3000");
+        let mut session = Session::new("[times]\ncycle_ms = 500\nclear_ms = 1500");
         session.wait(11, &[]);
         session.consent = atc_kernel::interlocking::SegmentSet::ALL;
         let away = session.turn("West", Travel::Away);
@@ -104,13 +104,13 @@ fn a_withdrawn_route_never_grants_again() {
     assert_eq!(session.ask(withdraw, &["W1"]), Ok(()));
     for cycle in 0..400 {
         session.wait(1, &["W1", "P1T"]);
-        assert!(!session.telegram("P1T").open && !session.telegram("W1").open, "cycle {cycle}");
+        assert!(!session.telegram("P1T").is_open() && !session.telegram("W1").is_open(), "cycle {cycle}");
         assert!(session.holds("P1T") && session.phase("W-1") == Phase::Releasing);
     }
     let again = session.withdraw("W-1");
     assert_eq!(session.ask(again, &["W1", "P1T"]), Ok(()));
     session.wait(200, &["W1", "P1T"]);
-    assert!(!session.telegram("P1T").open);
+    assert!(!session.telegram("P1T").is_open());
     // Once it has gone the route is free.
     session.wait(2, &[]);
     assert_eq!(session.phase("W-1"), Phase::Idle);

@@ -52,6 +52,20 @@ impl Session {
         session
     }
 
+    /// All points lie in reverse from now on.
+    pub fn reverse(&mut self) {
+        let points = |point: u8| Positions::of(PointId::new(point).expect("a point"), Position::Reverse);
+        self.detected = points(0).or(points(1));
+    }
+
+    /// The same where the neighbour in the west sees these circuits too.
+    pub fn sharing(circuits: &[&str]) -> Self {
+        let shared = format!("name = \"West\"\nshared = {circuits:?}\n");
+        let mut session = Self::of(&LOOP.replace("name = \"West\"\n", &shared));
+        session.wait(usize::from(session.layout.plan().start.0), &[]);
+        session
+    }
+
     fn of(text: &str) -> Self {
         let description = Description::from_toml("loop", text).expect("a layout");
         let compiled = description.compile().expect("a layout without problems");
@@ -128,8 +142,13 @@ impl Session {
         self.said.drives
     }
 
-    /// The telegram of a circuit.
+    /// The telegram of a circuit, of which the neighbour's device sees nothing.
     pub fn telegram(&self, circuit: &str) -> Movement {
+        self.sent(circuit).expect("this device speaks")
+    }
+
+    /// The telegram of a circuit, if this device sends one there.
+    pub fn sent(&self, circuit: &str) -> Option<Movement> {
         let all = self.layout.telegrams(&self.said.table, self.state.epoch);
         all[usize::from(number(&self.names.circuits, circuit))]
     }

@@ -15,7 +15,7 @@ fn nothing_moves_after_a_start_while_a_train_may_be_coming() {
     for cycle in 1..60 {
         let request = [drive, set, turn][cycle % 3];
         assert_eq!(session.ask(request, &["W1"]), Err(Refusal::Starting), "cycle {cycle}");
-        assert!(session.drives().is_empty() && !session.telegram("W1").open);
+        assert!(session.drives().is_empty() && !session.telegram("W1").is_open());
     }
     assert_eq!(session.ask(drive, &["W1"]), Ok(()));
 }

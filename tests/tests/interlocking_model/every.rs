@@ -29,10 +29,26 @@ fn station() -> Sketch {
                 from: Some(0),
                 ..short.clone()
             },
-            Way { entry: 1, approach: vec![1], path: vec![(0, normal)], beyond: vec![3], to: Some(0), ..short.clone() },
-            Way { entry: 2, approach: vec![2], path: vec![(0, reverse)], beyond: vec![3], to: Some(0), ..short },
+            Way {
+                entry: 1,
+                approach: vec![1],
+                path: vec![(0, normal)],
+                beyond: vec![3],
+                to: Some(0),
+                leftward: true,
+                ..short.clone()
+            },
+            Way {
+                entry: 2,
+                approach: vec![2],
+                path: vec![(0, reverse)],
+                beyond: vec![3],
+                to: Some(0),
+                leftward: true,
+                ..short
+            },
         ],
-        segments: vec![Line { circuits: vec![3], throat: Some(0) }],
+        segments: vec![Line { circuits: vec![3], throat: Some(0), leftward: true }],
         braking: vec![0, 100],
         clear: 1,
         turn: 1,

@@ -9,8 +9,8 @@ mod witness;
 use std::collections::BTreeMap;
 
 use atc_kernel::interlocking::{
-    Input, Layout, Orders, Output, Phase, PointId, Rear, Refusal, Request, RouteId, RouteState, SegmentId, SpeedCode,
-    State, Travel,
+    Heading, Input, Layout, Orders, Output, Phase, PointId, Rear, Refusal, Request, RouteId, RouteState, SegmentId,
+    SpeedCode, State, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{Sketch, circuits, positions, segments};
@@ -127,9 +127,10 @@ fn compare<const R: usize, const P: usize, const N: usize, const S: usize>(
     }
     let telegrams = layout.telegrams(&output.table, state.epoch);
     for (circuit, movement) in telegrams.iter().enumerate() {
+        let movement = movement.ok_or_else(|| format!("no telegram in circuit {circuit}"))?;
         let telegram = Telegram {
             stop: movement.stop.number().into(),
-            open: movement.open,
+            leftward: movement.heading.map(|heading| heading == Heading::Left),
             speed: movement.speed.0,
             hold: numbers(movement.hold.bits(), 64),
         };

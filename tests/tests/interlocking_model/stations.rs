@@ -106,13 +106,15 @@ impl Station {
         station.sketch.braking = vec![0, 60, 130, 300, 500, 800, 1200, 2000];
         station.sketch.braking.truncate(4 + dice.below(5));
         let throats = [columns[0][0], columns[columns.len() - 1][0]];
-        station.sketch.segments =
-            lines.into_iter().zip(throats).map(|(circuits, throat)| Line { circuits, throat: Some(throat) }).collect();
+        let lines = lines.into_iter().zip(throats).enumerate();
+        let line = |(side, (circuits, throat))| Line { circuits, throat: Some(throat), leftward: side == 0 };
+        station.sketch.segments = lines.map(line).collect();
         for _ in 0..3 + dice.below(6) {
             let way = station.way(dice, throats);
             station.sketch.routes.push(way);
         }
         station.relate(dice);
+        station.sketch = station.sketch.apart();
         station
     }
 
@@ -206,6 +208,7 @@ impl Station {
         let behind = self.ahead(entry, !rightward).iter().take(2).copied();
         let cab = dice.below(2) == 0;
         Way {
+            leftward: !rightward,
             entry,
             approach: [entry].into_iter().chain(behind).collect(),
             path: places,
@@ -226,7 +229,8 @@ impl Station {
     fn relate(&mut self, dice: &mut Dice) {
         for one in 0..self.sketch.routes.len() {
             for other in 0..self.sketch.routes.len() {
-                let follows = self.sketch.routes[other].entry == self.sketch.routes[one].last();
+                let (way, next) = (&self.sketch.routes[one], &self.sketch.routes[other]);
+                let follows = next.entry == way.last() && next.leftward == way.leftward;
                 if follows && !dice.one_in(4) {
                     self.sketch.routes[one].continuing.push(other);
                 }

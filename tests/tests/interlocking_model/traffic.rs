@@ -100,7 +100,7 @@ impl World {
                 train.on.remove(0);
                 continue;
             }
-            let open = said.is_some_and(|said| said.telegrams[front].open);
+            let open = said.is_some_and(|said| said.telegrams[front].leftward == Some(!train.rightward));
             if train.on.len() < 3 && (open && dice.one_in(2) || dice.one_in(120)) {
                 let fork =
                     station.forks.iter().position(|fork| fork.circuit == front && fork.rightward == train.rightward);

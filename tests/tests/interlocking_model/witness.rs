@@ -61,13 +61,19 @@ struct Leave {
     circuits: Vec<usize>,
     whole: bool,
     speed: u8,
+    leftward: bool,
+    /// The line to which the route leads, of which it is.
+    out: Option<usize>,
+    /// The line of whose throat it is: for a train that came by a route to that line.
+    behind: Option<usize>,
 }
 
 /// A telegram.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Telegram {
     pub stop: usize,
-    pub open: bool,
+    /// Whether it is for a train that faces left; none if it is for none.
+    pub leftward: Option<bool>,
     pub speed: u8,
     pub hold: Set,
 }

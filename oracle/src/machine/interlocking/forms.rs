@@ -9,7 +9,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::words::{Phase, Reason, Side, Travel};
+use super::words::{Heading, Phase, Reason, Side, Travel};
 
 /// One logic cycle's input.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -206,6 +206,9 @@ pub struct Output {
     pub drives: BTreeMap<String, Side>,
     /// The telegrams: of circuits with a train that may leave them, and on request of all.
     pub telegrams: BTreeMap<String, Telegram>,
+    /// The circuits in which this device sends no telegram, because the neighbour's device speaks there; left out if there are none.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub silent: BTreeSet<String>,
     /// The segments where this station permits the neighbour to send trains.
     pub permits: BTreeSet<String>,
     /// The blocked circuits that staff may rely on.
@@ -227,6 +230,11 @@ pub struct Telegram {
     pub speed_km_h: u16,
     /// Whether it may leave its circuit.
     pub open: bool,
+    /// The direction of travel in which it may leave it; null: it must stay there. A train that faces the other way must stop.
+    // It may be null, but it may not be missing.
+    #[serde(deserialize_with = "Option::deserialize")]
+    #[schemars(with = "HeadingOrNull")]
+    pub heading: Option<Heading>,
 }
 
 /// What became of a request.
@@ -264,12 +272,15 @@ impl PartialEq for Refused {
     }
 }
 
-/// For the schema only: an answer or null, not to be left out.
-enum AnswerOrNull {}
+/// For the schema only: a value or null, not to be left out.
+struct OrNull<T>(core::marker::PhantomData<T>);
 
-impl JsonSchema for AnswerOrNull {
+type AnswerOrNull = OrNull<Answer>;
+type HeadingOrNull = OrNull<Heading>;
+
+impl<T: JsonSchema> JsonSchema for OrNull<T> {
     fn schema_name() -> Cow<'static, str> {
-        "AnswerOrNull".into()
+        format!("{}OrNull", T::schema_name()).into()
     }
 
     fn inline_schema() -> bool {
@@ -277,6 +288,6 @@ impl JsonSchema for AnswerOrNull {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "anyOf": [generator.subschema_for::<Answer>(), { "type": "null" }] })
+        json_schema!({ "anyOf": [generator.subschema_for::<T>(), { "type": "null" }] })
     }
 }

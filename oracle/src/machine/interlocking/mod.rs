@@ -18,7 +18,7 @@ use config::Opened;
 
 pub use config::Config;
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
-pub use words::{Phase, Reason, Side, Travel};
+pub use words::{Heading, Phase, Reason, Side, Travel};
 
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
@@ -203,11 +203,12 @@ impl Interlocked {
     fn output(&self, input: kernel::Input, output: &kernel::Output<64>, all_telegrams: bool) -> Output {
         let movements = self.layout.telegrams(&output.table, self.state.epoch);
         let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
-        let telegrams = self.names.circuits.iter().zip(movements);
-        let telegrams = telegrams.filter(|(_, movement)| movement.open || all_telegrams).map(|(name, movement)| {
-            let telegram =
-                Telegram { stop: circuit(movement.stop), speed_km_h: self.speed(movement.speed), open: movement.open };
-            (name.clone(), telegram)
+        let silent = named(&self.names.circuits, |number| movements[number].is_none());
+        let telegrams = self.names.circuits.iter().zip(movements).filter_map(|(name, movement)| {
+            let movement = movement.filter(|movement| movement.is_open() || all_telegrams)?;
+            let (stop, speed_km_h) = (circuit(movement.stop), self.speed(movement.speed));
+            let heading = movement.heading.map(Heading);
+            Some((name.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
         });
         let held = self.names.routes.iter().zip(&self.state.routes).filter(|(_, route)| route.is_held());
         let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
@@ -227,6 +228,7 @@ impl Interlocked {
             }
         });
         Output {
+            silent,
             routes: held.map(|(name, route)| (name.clone(), Phase(route.phase))).collect(),
             proceed: named(&self.names.routes, |number| output.proceed.meets(kernel::RouteSet::nth(number))),
             drives: drives.collect(),

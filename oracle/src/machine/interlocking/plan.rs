@@ -9,7 +9,7 @@ use atc_layout::{Names, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ByName, Side, place, set};
+use super::{ByName, Heading, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
 /// engineering are not, so that a trace on a bad layout, which ends in an accident, can be replayed. Not for a real station.
@@ -88,6 +88,11 @@ pub struct SegmentForm {
     pub circuits: Vec<String>,
     /// The last circuit of the routes that go out to it.
     pub throat: Vec<String>,
+    /// The direction of travel away from the station.
+    pub outward: Heading,
+    /// How many of its circuits, the outermost ones, the neighbour's device sees too.
+    #[serde(default)]
+    pub shared: u8,
 }
 
 /// Circuits, and points with the positions in which they must stand.
@@ -108,6 +113,8 @@ pub struct ElementForm {
 pub struct RouteForm {
     /// Its name.
     pub name: String,
+    /// The direction of travel.
+    pub heading: Heading,
     /// The circuit in rear of its signal.
     pub entry: Vec<String>,
     /// The circuits on which a train may be that counts on the signal.
@@ -255,7 +262,8 @@ fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, St
 }
 
 fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> {
-    let mut made = Segment { throat: circuits(names, &form.throat, "throat")?, ..Segment::NONE };
+    let throat = circuits(names, &form.throat, "throat")?;
+    let mut made = Segment { throat, outward: form.outward.0, shared: form.shared, ..Segment::NONE };
     let listed = form.circuits.iter().map(|name| circuits(names, std::slice::from_ref(name), "circuits"));
     fill(&mut made.circuits, listed.collect::<Result<Vec<_>, _>>()?, "circuits")?;
     made.length = length_of(form.circuits.len(), "circuits")?;
@@ -267,6 +275,7 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
         return Err(format!("speed_code is {}; it is 0 to {}", form.speed_code, SpeedCode::MOST.0));
     }
     let mut made = kernel::Route {
+        heading: form.heading.0,
         entry: circuits(names, &form.entry, "entry")?,
         approach: circuits(names, &form.approach, "approach")?,
         length: length_of(form.path.len(), "path")?,

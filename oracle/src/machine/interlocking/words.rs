@@ -59,6 +59,13 @@ word! {
 }
 
 word! {
+    /// A direction of travel.
+    Heading(interlocking::Heading), "Heading", "direction of travel",
+    Left => "left", "Towards the ends of circuits that the layout calls left.";
+    Right => "right", "Towards the ends of circuits that the layout calls right.";
+}
+
+word! {
     /// A direction of plain line.
     Travel(interlocking::Travel), "Travel", "direction",
     Toward => "toward", "Towards this station: the neighbour sends trains.";

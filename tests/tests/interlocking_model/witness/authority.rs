@@ -17,10 +17,11 @@ impl Witness {
         for segment in 0..self.stretches.len() {
             leaves.extend(self.by_line(sketch, segment, occupied));
         }
-        leaves.retain(|leave| !leave.circuits.is_empty());
+        // What gives nothing is of use only where it leads on to the line.
+        leaves.retain(|leave| !leave.circuits.is_empty() || leave.whole && leave.out.is_some());
         (0..64)
             .map(|circuit| {
-                let stop = Telegram { stop: circuit, open: false, speed: 0, hold: Set::new() };
+                let stop = Telegram { stop: circuit, leftward: None, speed: 0, hold: Set::new() };
                 if occupied.contains(&circuit) {
                     self.linked(sketch, circuit, occupied, &leaves).unwrap_or(stop)
                 } else {
@@ -35,7 +36,8 @@ impl Witness {
     fn by_route(&self, sketch: &Sketch, route: usize, occupied: &Set, proceed: &Set, firm: &[Need]) -> Option<Leave> {
         let (held, way) = (&self.routes[route], &sketch.routes[route]);
         if proceed.contains(&route) {
-            return Some(Leave { train: way.entry, circuits: way.circuits(), whole: true, speed: way.speed });
+            let (circuits, speed, leftward) = (way.circuits(), way.speed, way.leftward);
+            return Some(Leave { train: way.entry, circuits, whole: true, speed, leftward, out: way.to, behind: None });
         }
         if !matches!(held.stage, Stage::InUse(_)) {
             return None;
@@ -50,10 +52,12 @@ impl Witness {
         let ahead = &kept[front + 1..];
         let sound = ahead.iter().take_while(|(circuit, needs)| !self.blocked.contains(circuit) && right(needs));
         let circuits: Vec<_> = sound.map(|(circuit, _)| *circuit).collect();
-        Some(Leave { train: kept[front].0, whole: circuits.len() == ahead.len(), circuits, speed: way.speed })
+        let whole = circuits.len() == ahead.len();
+        let (train, speed, leftward) = (kept[front].0, way.speed, way.leftward);
+        Some(Leave { train, whole, circuits, speed, leftward, out: way.to, behind: None })
     }
 
-    /// On plain line every train is given the free circuits ahead of it; outwards also one that stands in the throat.
+    /// On plain line every train is given the free circuits ahead of it; outwards also one that a route to the line lets into the throat.
     fn by_line(&self, sketch: &Sketch, segment: usize, occupied: &Set) -> Vec<Leave> {
         let line = &sketch.segments[segment];
         let order: Vec<usize> = match self.stretches[segment].travel {
@@ -67,21 +71,32 @@ impl Witness {
             let ahead = &order[place + 1..];
             let free = ahead.iter().take_while(|it| !occupied.contains(it) && !self.blocked.contains(it));
             let circuits: Vec<_> = free.copied().collect();
-            leaves.push(Leave { train: *train, whole: circuits.len() == ahead.len(), circuits, speed: 7 });
+            let leftward = line.leftward == (self.stretches[segment].travel == Some(Travel::Away));
+            let whole = circuits.len() == ahead.len();
+            let behind = (line.throat == Some(*train)).then_some(segment);
+            leaves.push(Leave { train: *train, whole, circuits, speed: 7, leftward, out: None, behind });
         }
         leaves
     }
 
     /// The telegram of a train in `circuit`, if it may leave it.
     fn linked(&self, sketch: &Sketch, circuit: usize, occupied: &Set, leaves: &[Leave]) -> Option<Telegram> {
-        let (mut here, mut speed, mut granted) = (circuit, 7, Vec::new());
+        let (mut here, mut speed, mut granted, mut leftward) = (circuit, 7, Vec::new(), None);
+        // The line that begins at the end of the route that the train is on.
+        let mut out = None;
         for _ in 0..LINKS {
-            let mut mine = leaves.iter().filter(|leave| leave.train == here);
+            let mut mine = leaves.iter().filter(|leave| leave.train == here && leave.behind == out);
             // What might be meant for two is for nobody.
             let (Some(leave), None) = (mine.next(), mine.next()) else { break };
+            // What is for a train that faces the other way is not for this one.
+            if leftward.is_some_and(|leftward| leftward != leave.leftward) {
+                break;
+            }
+            leftward = Some(leave.leftward);
             granted.extend(&leave.circuits);
             speed = speed.min(leave.speed);
-            here = *leave.circuits.last()?;
+            here = leave.circuits.last().copied().unwrap_or(here);
+            out = leave.out;
             if !leave.whole {
                 break;
             }
@@ -95,7 +110,7 @@ impl Witness {
         let distance: u32 = hold.iter().map(|it| u32::from(sketch.lengths[*it])).sum();
         let stops = sketch.braking.iter().rposition(|it| *it != u16::MAX && u32::from(*it) <= distance).unwrap_or(0);
         let speed = speed.min(limit).min(u8::try_from(stops).unwrap_or(0));
-        Some(Telegram { stop: here, open: true, speed, hold })
+        Some(Telegram { stop: here, leftward, speed, hold })
     }
 
     /// The limit of a circuit: that of staff, and that of the route that holds it or, if none does, the lowest of all over it.

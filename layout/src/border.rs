@@ -1,0 +1,230 @@
+//! The border of two stations: what each sees of the line between them, held against each other.
+//!
+//! A stretch that neither sees may have a train on it that both think is not there: both send. A stretch that both see is a circuit of the
+//! same name in both files.
+
+use std::fmt::{Display, Formatter, Result as Written};
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::SpeedCode;
+use atc_kernel::time::Ticks;
+
+use crate::derive::values::run_ms;
+use crate::description::Description;
+use crate::form::EndKind;
+use crate::model::{Model, Route, Segment};
+use crate::problem::{Errors, Problem};
+use crate::rule::Rule;
+
+/// A line between two stations whose views of it meet or overlap.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Border {
+    /// The name that both stations give the line.
+    pub line: String,
+    /// The circuits that the first station sees, outward from it.
+    pub first: Vec<String>,
+    /// The circuits that the second station sees, outward from it.
+    pub second: Vec<String>,
+    /// The circuits that both see, outward from the first.
+    pub shared: Vec<String>,
+}
+
+impl Display for Border {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Written {
+        let shared = if self.shared.is_empty() { "none".to_owned() } else { self.shared.join(", ") };
+        write!(f, "line {}: one sees {}, the other {}; ", self.line, self.first.join(", "), self.second.join(", "))?;
+        write!(f, "both see: {shared}; no stretch is seen by neither")
+    }
+}
+
+/// A station as it is compared: its file and its model.
+type Station<'a> = (&'a Description, &'a Model);
+
+/// Holds the views that two stations have of the lines that both name against each other.
+///
+/// # Errors
+/// That they have no line in common, and for each line in common what does not agree: with its place in the file of the first station, and
+/// what would be right.
+pub fn compare(first: Station<'_>, second: Station<'_>) -> Result<Vec<Border>, Errors> {
+    let mut problems = Vec::new();
+    let mut borders = Vec::new();
+    for (number, segment) in first.1.segments.iter().enumerate() {
+        let there = |other: &Segment| other.line.is_some() && other.line == segment.line;
+        let Some(other) = second.1.segments.iter().position(there) else { continue };
+        let before = problems.len();
+        line((first, number), (second, other), &mut problems);
+        if problems.len() == before {
+            borders.push(border(first.1, segment, second.1, &second.1.segments[other]));
+        }
+    }
+    if borders.is_empty() && problems.is_empty() {
+        let lines = |(description, model): Station<'_>| {
+            let named: Vec<&str> = model.segments.iter().filter_map(|segment| segment.line.as_deref()).collect();
+            let named = if named.is_empty() { "none".to_owned() } else { named.join(", ") };
+            format!("{}: {named}", description.station.name)
+        };
+        let what = format!("the stations name no line in common ({}; {})", lines(first), lines(second));
+        let right = "give the two segments of a line the same line = \"…\"";
+        problems.push(Problem::new(Rule::ViewsApart, &(0..0), what, right));
+    }
+    if problems.is_empty() { Ok(borders) } else { Err(Errors::new(&first.0.source, problems)) }
+}
+
+fn names<'a>(model: &'a Model, circuits: &[usize]) -> Vec<&'a str> {
+    circuits.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect()
+}
+
+fn shared<'a>(model: &'a Model, segment: &Segment) -> Vec<&'a str> {
+    names(model, &segment.circuits[segment.circuits.len().saturating_sub(segment.shared)..])
+}
+
+fn border(model: &Model, segment: &Segment, other_model: &Model, other: &Segment) -> Border {
+    let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
+    Border {
+        line: segment.line.clone().unwrap_or_default(),
+        first: owned(names(model, &segment.circuits)),
+        second: owned(names(other_model, &other.circuits)),
+        shared: owned(shared(model, segment)),
+    }
+}
+
+/// The joint at which the view of a segment ends.
+fn outer_end<'a>(model: &'a Model, segment: &Segment) -> Option<&'a str> {
+    let outermost = *segment.circuits.last()?;
+    let ends = |joint: &usize| model.graph.joints[*joint].end == Some(EndKind::Line);
+    let joint = model.graph.borders(outermost).into_iter().find(ends)?;
+    Some(&model.graph.joints[joint].name)
+}
+
+fn line((one, number): (Station<'_>, usize), (two, number_there): (Station<'_>, usize), problems: &mut Vec<Problem>) {
+    let ((description, model), (other_description, other_model)) = (one, two);
+    let (segment, given) = (&model.segments[number], &description.station.segments[number]);
+    let other = &other_model.segments[number_there];
+    let (here, there) = (&description.station.name, &other_description.station.name);
+    let span = given.line.as_ref().map_or(&segment.span, |line| &line.span);
+    let mut wrong = |what: String, right: String| problems.push(Problem::new(Rule::ViewsApart, span, what, right));
+    let (mine, its) = (shared(model, segment), shared(other_model, other));
+    let listed = |names: &[&str]| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    if !mine.iter().eq(its.iter().rev()) {
+        let what = format!("{here} shares {} with its neighbour, and {there} shares {}", listed(&mine), listed(&its));
+        wrong(what, "list the circuits that both see in both files: each from its own station outward".to_owned());
+    } else if mine.is_empty() {
+        let (end, its_end) = (outer_end(model, segment), outer_end(other_model, other));
+        if end.is_none() || end != its_end {
+            let name = |end: Option<&str>| end.map_or_else(|| "no joint".to_owned(), |end| format!("joint {end}"));
+            let what = format!(
+                "the view of {here} ends at {}, that of {there} at {}: a train between them is seen by neither",
+                name(end),
+                name(its_end)
+            );
+            wrong(what, "list circuits that both see as shared, or end both views at one joint".to_owned());
+        }
+    }
+    for name in &mine {
+        let length = |model: &Model| {
+            let named = model.circuits.iter().find(|circuit| circuit.name == *name);
+            named.map_or(0, |circuit| circuit.length.0)
+        };
+        if length(model) != length(other_model) {
+            let what = format!("{name} is {} m long here and {} m in {there}", length(model), length(other_model));
+            wrong(what, "give the same circuit the same length".to_owned());
+        }
+    }
+    let speed = |model: &Model, segment: &Segment| model.values.speeds_kmh[usize::from(segment.speed.0)];
+    let (speed, its_speed) = (speed(model, segment), speed(other_model, other));
+    if speed != its_speed {
+        let what = format!(
+            "trains run at {speed} km/h here and at {its_speed} in {there}, and a tail may lie across the border"
+        );
+        wrong(what, format!("give both segments a speed_kmh of {}", speed.min(its_speed)));
+    }
+    if segment.outward == other.outward {
+        let what = format!("the line leads out to the same side in {here} and in {there}");
+        wrong(what, "change left and right over in one of the files: a telegram says left or right".to_owned());
+    }
+    times(one, two, &mut wrong);
+    times(two, one, &mut wrong);
+    let longest = longest_train(model, other_model);
+    tails(one, number, longest, &mut wrong);
+    tails(two, number_there, longest, &mut wrong);
+}
+
+/// What the device of one station counts on, held against the trains that its neighbour sends: what a station's own layout says of its own trains.
+fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong: &mut impl FnMut(String, String)) {
+    let (station, neighbour) = (&description.station.name, &its.station.name);
+    let (values, its_values) = (&model.values, &its_model.values);
+    let turn = values.ms(values.turn);
+    let (lives, runs, loss) =
+        (&its.station.times.telegram_age_ms, &its_values.residual_ms, &its.station.times.shunt_loss_ms);
+    let least = run_ms(lives.value, runs.value, loss.value);
+    if turn <= lives.value {
+        let what =
+            format!("{station} turns the line after {turn} ms, and telegrams in {neighbour} live for {lives} ms");
+        wrong(what, format!("turn_ms of {station} must be more than {lives}"));
+    } else if turn < least {
+        let what = format!(
+            "{station} turns the line and confirms blocks on it after {turn} ms, and a train of {neighbour} may run in for {least} ms: telegrams \
+             live for {lives} ms, it runs on for {runs} ms, and may be lost for {loss} ms"
+        );
+        wrong(what, format!("turn_ms of {station} must be at least {least}"));
+    }
+    let (start, least) = (values.ms(values.start), run_ms(lives.value, runs.value, 0));
+    if start < least && description.station.times.start_protected.is_none() {
+        let what = format!(
+            "after a start of {station} nothing moves for {start} ms, and a train of {neighbour} may run on for {least} ms: telegrams live for \
+             {lives} ms, and it runs on for {runs} ms"
+        );
+        let right =
+            format!("start_ms of {station} must be at least {least}, or start_protected say why every train stands");
+        wrong(what, right);
+    }
+    let clear = values.ms(Ticks(values.clear.into()));
+    if clear <= loss.value {
+        let what = format!(
+            "in {station} a circuit counts as clear after {clear} ms, and a train of {neighbour} may be lost for {loss} ms"
+        );
+        wrong(what, format!("clear_ms of {station} must be more than {loss}"));
+    }
+}
+
+/// The length of the longest train of two stations; none if a file does not say.
+fn longest_train(one: &Model, other: &Model) -> Option<Metres> {
+    Some(one.values.longest_train?.max(other.values.longest_train?))
+}
+
+/// A train that the neighbour's device speaks to has its tail in circuits of plain line, or nothing there is slower than the line: the neighbour
+/// knows neither a station's points nor its routes.
+fn tails(
+    (description, model): Station<'_>,
+    number: usize,
+    longest: Option<Metres>,
+    wrong: &mut impl FnMut(String, String),
+) {
+    let station = &description.station.name;
+    let segment = &model.segments[number];
+    let own = segment.circuits.len().saturating_sub(segment.shared);
+    let unshared: u32 =
+        segment.circuits[..own].iter().map(|circuit| u32::from(model.circuits[*circuit].length.0)).sum();
+    if longest.is_some_and(|longest| u32::from(longest.0) <= unshared) {
+        return;
+    }
+    let kmh = |code: SpeedCode| model.values.speeds_kmh[usize::from(code.0)];
+    let line = kmh(segment.speed);
+    let uses = |route: &&Route| route.is_sound() && (route.from == Some(number) || route.to == Some(number));
+    let slowest = model.routes.iter().filter(uses).min_by_key(|route| kmh(route.speed));
+    let Some(slow) = slowest.filter(|route| kmh(route.speed) < line) else { return };
+    let (train, right) = match longest {
+        Some(Metres(longest)) => (
+            format!("trains are up to {longest} m long"),
+            format!("let {station} see {longest} m or more of the line alone"),
+        ),
+        None => ("not both files say how long trains are".to_owned(), "give longest_train_m in both files".to_owned()),
+    };
+    let what = format!(
+        "{station} alone sees {unshared} m of the line, and {train}: the neighbour lets one run at {line} km/h whose tail is still in route {}, \
+         which is for {}",
+        slow.name,
+        kmh(slow.speed)
+    );
+    wrong(what, format!("{right}, or give the line a speed_kmh of {} in both files", kmh(slow.speed)));
+}

@@ -1,0 +1,203 @@
+//! What two stations see of the line between them, held against each other: `layouts/passing-loop.toml` beside itself, the east of the one against
+//! the west of the other.
+
+use atc_layout::border::{Border, compare};
+use atc_layout::{At, Description, Errors, Rule};
+
+const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
+
+/// A station that calls itself so, with lines added to both of its segments.
+fn station(name: &str, west: &str, east: &str) -> Description {
+    let text = LOOP.replace("name = \"Passing loop\"", &format!("name = \"{name}\""));
+    let text = text.replace("name = \"West\"\n", &format!("name = \"West\"\n{west}\n"));
+    let text = text.replace("name = \"East\"\n", &format!("name = \"East\"\n{east}\n"));
+    Description::from_toml("station.toml", &text).expect("a layout")
+}
+
+fn held(one: &Description, other: &Description) -> Result<Vec<Border>, Errors> {
+    let (model, other_model) = (one.model().expect("a model"), other.model().expect("a model"));
+    compare((one, &model), (other, &other_model))
+}
+
+/// The same station with other names for the circuits and joints of its west, so that they are those of the east of its neighbour.
+fn renamed(description: &Description, names: &[(&str, &str)]) -> Description {
+    let mut text = description.to_toml();
+    for (from, to) in names {
+        text = text.replace(&format!("\"{from}\""), &format!("\"{to}\""));
+    }
+    Description::from_toml("station.toml", &text).expect("a layout")
+}
+
+/// The neighbour in the east: its west is our east.
+fn neighbour(line: &str) -> Description {
+    renamed(&station("Neighbour", line, ""), &[("E1", "E8"), ("E2", "E9"), ("j", "far")])
+}
+
+fn refused(one: &Description, other: &Description, says: &str) {
+    let errors = held(one, other).expect_err("the views do not agree");
+    let message = errors.to_string();
+    assert!(errors.breaks(Rule::ViewsApart) && message.contains(says), "{says:?} is not in {message}");
+    assert!(message.starts_with("station.toml"), "{message}");
+}
+
+/// The session of the unseen stretch: each station ends its view at a joint of its own, and between the two nobody sees anything.
+#[test]
+fn views_that_do_not_meet() {
+    let line = "line = \"between\"";
+    let (one, other) = (station("One", "", line), neighbour(line));
+    refused(
+        &one,
+        &other,
+        "the view of One ends at joint j, that of Neighbour at joint a: a train between them is seen by neither",
+    );
+    refused(&other, &one, "the view of Neighbour ends at joint a, that of One at joint j");
+}
+
+#[test]
+fn views_that_meet_at_a_joint() {
+    let line = "line = \"between\"";
+    let (one, other) = (station("One", "", line), renamed(&neighbour(line), &[("a", "j")]));
+    let found = held(&one, &other).expect("they meet");
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].line, "between");
+    assert!(found[0].shared.is_empty());
+    assert_eq!(
+        found[0].to_string(),
+        "line between: one sees E1, E2, the other W1, W2; both see: none; no stretch is seen by neither"
+    );
+}
+
+#[test]
+fn views_that_overlap() {
+    let one = station("One", "", "line = \"between\"\nshared = [\"E2\"]");
+    let two = neighbour("line = \"between\"\nshared = [\"W2\"]");
+    refused(&one, &two, "One shares E2 with its neighbour, and Neighbour shares W2");
+    let other = renamed(&two, &[("W2", "E2")]);
+    assert_eq!(held(&one, &other).expect("they overlap")[0].shared, ["E2"]);
+    assert_eq!(held(&other, &one).expect("either way round")[0].shared, ["E2"]);
+    // One of them says so alone.
+    let silent = renamed(&neighbour("line = \"between\""), &[("W2", "E2")]);
+    refused(&one, &silent, "Neighbour shares none");
+    // The same circuit has one length.
+    let mut long = other.clone();
+    let circuit = long.station.circuits.iter_mut().find(|circuit| circuit.name.value == "E2").expect("E2");
+    circuit.length_m.value = 400;
+    refused(&one, &long, "E2 is 300 m long here and 400 m in Neighbour");
+}
+
+/// Both call the way to the other one right: no telegram could be told from one for the other direction.
+#[test]
+fn left_and_right_agree() {
+    let one = station("One", "", "line = \"between\"\nshared = [\"E2\"]");
+    let same = renamed(&station("Two", "", "line = \"between\"\nshared = [\"E2\"]"), &[("E1", "E8")]);
+    refused(&one, &same, "leads out to the same side in One and in Two");
+}
+
+#[test]
+fn no_line_in_common_and_a_turn_time_that_is_too_short() {
+    let one = station("One", "line = \"a\"", "line = \"b\"");
+    refused(&one, &neighbour("line = \"c\""), "no line in common (One: a, b; Neighbour: c)");
+    let other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    assert!(held(&one, &other).is_ok());
+    // With a strong brake the station's own trains have soon run out.
+    let (mut quick, mut slow) = (one.clone(), other.clone());
+    quick.station.times.telegram_age_ms.value = 100;
+    quick.station.braking.deceleration_mm_s2.value = 4000;
+    slow.station.times.telegram_age_ms.value = 8000;
+    refused(&quick, &slow, "One turns the line after 7500 ms, and telegrams in Neighbour live for 8000 ms");
+}
+
+/// The neighbour's trains may run on for longer, and be lost for longer, than the station's own.
+#[test]
+fn times_of_the_neighbours_trains() {
+    let one = station("One", "", "line = \"b\"");
+    let other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    let mut weak = other.clone();
+    weak.station.braking.deceleration_mm_s2.value = 400;
+    for (one, other) in [(&one, &weak), (&weak, &one)] {
+        refused(
+            one,
+            other,
+            "One turns the line and confirms blocks on it after 34300 ms, and a train of Neighbour may run in for 65500 ms: telegrams live for \
+             1000 ms, it runs on for 63500 ms, and may be lost for 1000 ms; turn_ms of One must be at least 65500",
+        );
+        refused(
+            one,
+            other,
+            "after a start of One nothing moves for 60000 ms, and a train of Neighbour may run on for 64500 ms",
+        );
+    }
+    let mut covered = one.clone();
+    covered.station.times.turn_ms = Some(At::derived(65_500));
+    covered.station.times.start_ms = Some(At::derived(65_500));
+    assert!(held(&covered, &weak).is_ok());
+    let mut lossy = other.clone();
+    (lossy.station.times.shunt_loss_ms.value, lossy.station.times.clear_ms.value) = (3000, 4000);
+    for (one, other) in [(&one, &lossy), (&lossy, &one)] {
+        refused(
+            one,
+            other,
+            "in One a circuit counts as clear after 2000 ms, and a train of Neighbour may be lost for 3000 ms; clear_ms of One must be more \
+             than 3000",
+        );
+    }
+}
+
+/// The neighbour's device does not know the points that a tail lies on, nor the speed over them.
+#[test]
+fn tails_that_the_neighbour_does_not_see() {
+    let line = "line = \"b\"\nshared = [\"E2\"]";
+    let (one, two) =
+        (station("One", "", line), renamed(&neighbour("line = \"b\"\nshared = [\"W2\"]"), &[("W2", "E2")]));
+    assert!(held(&one, &two).is_ok());
+    let mut long = two.clone();
+    long.station.longest_train_m = Some(At::derived(301));
+    for (one, other) in [(&one, &long), (&long, &one)] {
+        refused(
+            one,
+            other,
+            "One alone sees 300 m of the line, and trains are up to 301 m long: the neighbour lets one run at 75 km/h whose tail is still in \
+             route E-2, which is for 45; let One see 301 m or more of the line alone, or give the line a speed_kmh of 45 in both files",
+        );
+    }
+    let mut unsaid = two.clone();
+    unsaid.station.longest_train_m = None;
+    refused(&one, &unsaid, "not both files say how long trains are");
+    // All that one of them sees is shared: its points lie next to it.
+    let all = station("One", "", "line = \"b\"\nshared = [\"E1\", \"E2\"]");
+    let three = renamed(&neighbour("line = \"b\"\nshared = [\"W1\", \"W2\"]"), &[("W2", "E1"), ("W1", "E2")]);
+    refused(&all, &three, "One alone sees 0 m of the line, and trains are up to 200 m long");
+    refused(&all, &three, "Neighbour alone sees 0 m of the line");
+    // A line that is no faster than the points.
+    let slow = |station: &Description| {
+        let mut slow = station.clone();
+        let segments = slow.station.segments.iter_mut().filter(|segment| segment.line.is_some());
+        segments.for_each(|segment| segment.speed_kmh = Some(At::derived(45)));
+        slow
+    };
+    assert!(held(&slow(&one), &slow(&long)).is_ok() && held(&slow(&all), &slow(&three)).is_ok());
+}
+
+/// A tail that still lies on this side of the border is not seen on the other: the line has one speed.
+#[test]
+fn one_speed_across_the_border() {
+    let one = station("One", "", "line = \"b\"\nspeed_kmh = 45");
+    refused(
+        &one,
+        &renamed(&neighbour("line = \"b\""), &[("a", "j")]),
+        "trains run at 45 km/h here and at 75 in Neighbour",
+    );
+    let twice = station("One", "line = \"b\"", "line = \"b\"").compile().expect_err("one line, two neighbours");
+    assert!(twice.breaks(Rule::NameTwice), "{twice}");
+}
+
+/// What is shared is what lies outermost.
+#[test]
+fn shared_within() {
+    let error = station("One", "", "shared = [\"E1\"]").compile().expect_err("E1 is the inner one");
+    assert!(error.breaks(Rule::SharedWithin), "{error}");
+    let error = station("One", "", "shared = [\"E2\", \"E1\"]").compile().expect_err("not outward");
+    assert!(error.breaks(Rule::SharedWithin), "{error}");
+    let both = station("One", "", "shared = [\"E1\", \"E2\"]").compile().expect("a layout");
+    assert_eq!(both.plan.segments[1].shared, 2);
+}
