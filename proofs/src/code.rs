@@ -192,15 +192,15 @@ harness! {
         e.claim(Claim::Detected as u32, !says || !listed || !by_main && !by_sub);
         // All pairs of pairs that share one code.
         let (mut row, mut column, mut pairs) = (false, false, 0);
-        let mut in_columns = [0; MAX_CODES];
-        for of_main in speeds {
-            let mut in_row = 0;
-            for (speed, in_column) in of_main.into_iter().zip(&mut in_columns) {
-                in_row += u32::from(speed.is_some());
-                *in_column += u32::from(speed.is_some());
-                column |= *in_column > 1;
+        let named = |main: usize, sub: usize| u32::from(speeds[main][sub].is_some());
+        for line in 0..MAX_CODES {
+            let (mut in_row, mut in_column) = (0, 0);
+            for place in 0..MAX_CODES {
+                in_row += named(line, place);
+                in_column += named(place, line);
             }
             row |= in_row > 1;
+            column |= in_column > 1;
             pairs += in_row;
         }
         e.claim(Claim::Undetected as u32, says || row || column);

@@ -3,12 +3,14 @@
 //! A harness draws a layout, assumes only that [`Layout::with_what_proofs_need`] accepts it, draws a valid state and an input,
 //! runs one cycle after the tracking, and claims. One circuit, one point and one pair of routes stand for all.
 
+mod ahead;
 mod atc;
 mod border;
 mod cycle;
 mod direction;
 mod heading;
 mod layout;
+mod meeting;
 mod out;
 mod pair;
 mod point;
@@ -52,8 +54,17 @@ pub(crate) const LONGEST: usize = MAX_CIRCUITS;
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 8] =
-    [atc::BOUND, direction::BOUND, pair::BOUND, point::BOUND, route::BOUND, signal::BOUND, train::BOUND, works::BOUND];
+pub const SMALLER: [&str; 9] = [
+    atc::BOUND,
+    direction::BOUND,
+    pair::BOUND,
+    point::BOUND,
+    route::BOUND,
+    signal::BOUND,
+    train::ALONE,
+    train::BOUND,
+    works::BOUND,
+];
 
 /// All harnesses of this room.
 #[cfg(not(chosen))]
@@ -99,6 +110,9 @@ pub const ALL: &[Harness] = &[
     train::t_ilk_train_release::HARNESS,
     train::t_ilk_train_overlap::HARNESS,
     train::t_ilk_train_body::HARNESS,
+    ahead::t_ilk_train_points::HARNESS,
+    ahead::t_ilk_train_worker::HARNESS,
+    meeting::t_ilk_train_line::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
