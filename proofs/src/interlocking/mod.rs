@@ -54,8 +54,7 @@ pub(crate) const LONGEST: usize = MAX_CIRCUITS;
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 9] = [
-    atc::BOUND,
+pub const SMALLER: [&str; 8] = [
     direction::BOUND,
     pair::BOUND,
     point::BOUND,
