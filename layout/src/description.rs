@@ -1,10 +1,12 @@
 //! A layout file that was read, and what is made of it.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
 use crate::compile::{Compiled, compile};
 use crate::form::Station;
+use crate::graph::POINTS_IN_A_CIRCUIT;
 use crate::model::Model;
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
@@ -58,6 +60,10 @@ impl Description {
     /// Every broken rule.
     pub fn model(&self) -> Result<Model, Errors> {
         let mut problems = Vec::new();
+        sizes(&self.station, &mut problems);
+        if !problems.is_empty() {
+            return Err(Errors::new(&self.source, problems));
+        }
         let model = derive::model(&self.station, &mut problems);
         // What follows from tracks that are wrong would only hide what is wrong with them.
         if problems.iter().any(|problem| TRACKS.contains(&problem.rule)) {
@@ -74,6 +80,10 @@ impl Description {
     /// What is wrong with names, joints and values.
     pub fn tracks(&self) -> Result<Model, Errors> {
         let mut problems = Vec::new();
+        sizes(&self.station, &mut problems);
+        if !problems.is_empty() {
+            return Err(Errors::new(&self.source, problems));
+        }
         let model = derive::model(&self.station, &mut problems);
         problems.retain(|problem| TRACKS.contains(&problem.rule));
         if problems.is_empty() { Ok(model) } else { Err(Errors::new(&self.source, problems)) }
@@ -95,6 +105,32 @@ impl Description {
         &self,
     ) -> Result<Compiled<R, P, N, S>, Errors> {
         compile(&self.source, &self.station, self.model()?)
+    }
+}
+
+/// That nothing is looked into that is larger than any station: the time for it would have no bound.
+fn sizes(station: &Station, problems: &mut Vec<Problem>) {
+    let mut in_circuit: BTreeMap<&str, usize> = BTreeMap::new();
+    for point in &station.points {
+        let number = in_circuit.entry(&point.circuit.value).or_default();
+        *number += 1;
+        if *number == POINTS_IN_A_CIRCUIT + 1 {
+            let what = format!("circuit {} has more than {POINTS_IN_A_CIRCUIT} points", point.circuit);
+            problems.push(Problem::new(Rule::TooMany, &point.circuit.span, what, "divide it"));
+        }
+    }
+    let counts = [
+        ("track circuits", station.circuits.len(), 1024),
+        ("points", station.points.len(), 1024),
+        ("routes", station.routes.len(), 1024),
+        ("segments", station.segments.len(), 1024),
+        ("pairs of circuits that foul each other", station.fouling.len(), 1024),
+    ];
+    for (kind, count, most) in counts {
+        if count > most {
+            let what = format!("the layout has {count} {kind}, and no station has more than {most}");
+            problems.push(Problem::new(Rule::TooMany, &(0..0), what, "divide the station"));
+        }
     }
 }
 

@@ -41,6 +41,12 @@ pub struct Track {
     pub joints: Vec<usize>,
 }
 
+/// The most points in one circuit.
+pub const POINTS_IN_A_CIRCUIT: usize = 12;
+
+/// The most ways through one circuit: each point has two legs.
+const WAYS: usize = 1 << POINTS_IN_A_CIRCUIT;
+
 /// The tracks of a station.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
@@ -195,7 +201,7 @@ impl Graph {
         (0..self.joints.len()).filter(border).collect()
     }
 
-    /// Every way that leads from `joint` into `circuit` and out of it.
+    /// Every way that leads from `joint` into `circuit` and out of it: of a circuit that has no more points than one may have.
     pub fn ways(&self, circuit: usize, joint: usize) -> Vec<Way> {
         let mut found = Vec::new();
         let enters = |track: &usize| self.tracks[*track].circuit == circuit;
@@ -207,7 +213,7 @@ impl Graph {
     }
 
     fn follow(&self, from: usize, track: usize, seen: &mut Vec<usize>, passed: &mut Vec<Passed>, found: &mut Vec<Way>) {
-        if seen.contains(&track) {
+        if seen.contains(&track) || found.len() >= WAYS {
             return;
         }
         seen.push(track);

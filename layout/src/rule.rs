@@ -47,8 +47,8 @@ pub enum Rule {
     NoFlank,
     /// The overlap is as long as the least one, or the file says why not.
     OverlapTooShort,
-    /// Routes over circuits that foul each other exclude each other.
-    FoulingUndeclared,
+    /// A route over one of two circuits that foul each other goes over the other, too.
+    FoulingNotHeld,
     /// T_clear is longer than the longest tolerated loss of shunt.
     ClearUnderShunt,
     /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
@@ -114,7 +114,7 @@ impl Rule {
             }
             Self::NoFlank => "a track from which a vehicle can run into the path is kept off, or the file says why not",
             Self::OverlapTooShort => "the overlap is as long as the least one, or the file says why not",
-            Self::FoulingUndeclared => "routes over circuits that foul each other exclude each other",
+            Self::FoulingNotHeld => "a route over one of two circuits that foul each other goes over the other, too",
             Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
             Self::TurnUnderRun => "plain line turns only after a train that was sent before has run out",

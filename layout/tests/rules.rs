@@ -2,6 +2,7 @@
 
 use atc_kernel::interlocking::Rule as Kernel;
 use atc_layout::{Description, Errors, Rule};
+use std::time::{Duration, Instant};
 
 const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
 const JUNCTION: &str = include_str!("../../layouts/junction.toml");
@@ -203,13 +204,37 @@ fn overlap_too_short() {
     breaks(&format!("{LOOP}\n[overlaps]\nleast_m = 61\n"), Rule::OverlapTooShort, "an overlap of 60 m");
 }
 
+/// The circuit where a train may stand that fouls the route is kept clear only as a circuit of that route.
 #[test]
-fn fouling_undeclared() {
-    let text = format!("{LOOP}\n[[fouling]]\nbetween = [\"P1T\", \"E1\"]\n");
-    // E1 is in no path: nothing can be set together there.
-    assert!(Description::from_toml("x", &text).unwrap().compile().is_ok());
-    let text = format!("{JUNCTION}\n[[fouling]]\nbetween = [\"P1T\", \"P3T\"]\n");
-    breaks(&text, Rule::FoulingUndeclared, "routes A-B over P1T and B-A over P3T can be set together");
+fn fouling_not_held() {
+    let fouls =
+        |text: &str, one: &str, other: &str| format!("{text}\n[[fouling]]\nbetween = [\"{one}\", \"{other}\"]\n");
+    breaks(&fouls(JUNCTION, "P1T", "P3T"), Rule::FoulingNotHeld, "is set while a train stands in");
+    // The routes exclude each other by P1T, which is released while the train stands in 1T.
+    breaks(&fouls(LOOP, "1T", "2T"), Rule::FoulingNotHeld, "route W-1 over 1T is set while a train stands in 2T");
+    // A train at the signal in W1 is in no route.
+    breaks(&fouls(LOOP, "W1", "2T"), Rule::FoulingNotHeld, "over 2T is set while a train stands in W1, which fouls it");
+    breaks(&fouls(LOOP, "W2", "E2"), Rule::FoulingNotHeld, "W2 and E2 foul each other, and no route goes over them");
+    // A point that is run over while a train stands beside it; the same as a detector.
+    for given in ["fouled_in = [\"1T\"]", "detectors = [\"P1T\", \"1T\"]"] {
+        let text = change(LOOP, "name = \"P1\"", "toe", &format!("{given}\ntoe"));
+        breaks(&text, Rule::FoulingNotHeld, "over P1T is set while a train stands in 1T");
+    }
+}
+
+#[test]
+fn more_than_any_station_has() {
+    let begun = Instant::now();
+    let point = |number: usize| {
+        format!(
+            "\n[[point]]\nname = \"X{number}\"\ncircuit = \"P1T\"\ntoe = \"x{number}\"\nnormal = \"y{number}\"\nreverse = \"z{number}\""
+        )
+    };
+    let points: String = (0..60).map(point).collect();
+    breaks(&format!("{LOOP}{points}"), Rule::TooMany, "circuit P1T has more than 12 points");
+    let pair = "\n[[fouling]]\nbetween = [\"1T\", \"2T\"]\n";
+    breaks(&format!("{LOOP}{}", pair.repeat(1025)), Rule::TooMany, "has 1025 pairs of circuits that foul each other");
+    assert!(begun.elapsed() < Duration::from_mins(1), "it would take a day");
 }
 
 #[test]
@@ -272,7 +297,8 @@ fn point_in_segment() {
         "point P9 breaks a rule: no circuit of a segment is a detector of a point",
     );
     // One that lies elsewhere and is fouled from the line.
-    breaks(&change(LOOP, "name = \"P1\"", "toe", "fouled_in = [\"W1\"]\ntoe"), rule, "point P1 breaks a rule");
+    let fouled = change(LOOP, "name = \"P1\"", "toe", "fouled_in = [\"W1\"]\ntoe");
+    breaks(&fouled, Rule::FoulingNotHeld, "route W-1 over P1T is set while a train stands in W1");
 }
 
 /// Who waits at the signal may stand on the other leg of the point, or on the other track.
@@ -347,6 +373,17 @@ fn segment_order() {
     let text = change(LOOP, "name = \"West\"", "[\"W1\", \"W2\"]", "[\"W1\", \"E2\"]");
     let text = change(&text, "name = \"East\"", "[\"E1\", \"E2\"]", "[\"E1\"]");
     breaks(&text, Rule::SegmentOrder, "segment West: E2 does not adjoin W1");
+    // The circuits adjoin, but the tracks of E2 lead past the line: a train would run into the siding.
+    let crossing = "right = \"siding\"\n\n[[circuit.crossing]]\nleft = \"depot\"\nright = \"j\"";
+    let text = change(LOOP, "name = \"E2\"", "right = \"j\"", crossing);
+    let buffer = |joint: &str| format!("\n[[end]]\njoint = \"{joint}\"\nkind = \"buffer\"\n");
+    let text = format!("{text}{}{}", buffer("siding"), buffer("depot"));
+    breaks(&text, Rule::SegmentOrder, "segment East: its tracks lead to a buffer stop");
+    // The same with another circuit beyond.
+    let text = change(&text, "name = \"E2\"", "right = \"j\"", "right = \"k\"");
+    let beyond = "\n[[circuit]]\nname = \"E3\"\nlength_m = 300\nleft = \"k\"\nright = \"j\"\n";
+    let text = change(&format!("{text}{beyond}"), "name = \"East\"", "[\"E1\", \"E2\"]", "[\"E1\", \"E2\", \"E3\"]");
+    breaks(&text, Rule::SegmentOrder, "segment East: a train cannot run through E2 to E3 without turning back");
 }
 
 #[test]

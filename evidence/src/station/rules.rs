@@ -75,7 +75,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     EntryNotPlain => (Asked::Engineering, Stage::Model, Scope::Routes);
     SegmentElsewhere => (Asked::Engineering, Stage::Model, Scope::Routes);
     BeyondApart => (Asked::Engineering, Stage::Model, Scope::Routes);
-    FoulingUndeclared => (Asked::Engineering, Stage::Model, Scope::Pairs);
+    FoulingNotHeld => (Asked::Engineering, Stage::Model, Scope::Pairs);
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderRun => (Asked::Engineering, Stage::Model, Scope::File);

@@ -1,11 +1,13 @@
 //! Rules of the station as a whole: times, detectors, segments, circuits that foul each other.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use atc_kernel::time::Ticks;
 
-use crate::form::Station;
-use crate::model::{Model, Route};
+use crate::derive::way::{Step, through};
+use crate::form::{EndKind, Station};
+use crate::model::{Model, Positions, Route};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -73,57 +75,92 @@ fn detectors(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
 }
 
 fn segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
+    let name = |circuit: usize| model.circuits[circuit].name.clone();
     for (given, segment) in station.segments.iter().zip(&model.segments) {
+        let span = |place: usize| given.circuits.get(place).map_or(&segment.span, |named| &named.span);
         let order: Vec<usize> = segment.throat.into_iter().chain(segment.circuits.iter().copied()).collect();
-        for (place, pair) in order.windows(2).enumerate() {
-            if !model.graph.between(pair[0], pair[1]).is_empty() {
-                continue;
-            }
-            let (one, other) = (&model.circuits[pair[0]].name, &model.circuits[pair[1]].name);
+        let skipped = usize::from(segment.throat.is_some());
+        let apart = order.windows(2).position(|pair| model.graph.between(pair[0], pair[1]).is_empty());
+        if let Some(place) = apart {
+            let (one, other) = (name(order[place]), name(order[place + 1]));
             let what = format!("segment {}: {other} does not adjoin {one}", segment.name);
-            let skipped = usize::from(segment.throat.is_some());
-            let span =
-                given.circuits.get((place + 1).saturating_sub(skipped)).map_or(&segment.span, |named| &named.span);
-            problems.push(Problem::new(Rule::SegmentOrder, span, what, "name the circuits outward from the station"));
+            let right = "name the circuits outward from the station";
+            problems.push(Problem::new(Rule::SegmentOrder, span((place + 1).saturating_sub(skipped)), what, right));
+            continue;
+        }
+        // A train must be able to run through all of them: over a crossing the tracks lead elsewhere.
+        let Some(first) = segment.circuits.first() else { continue };
+        let starts = match segment.throat {
+            Some(throat) => model.graph.between(throat, *first),
+            None => model.graph.borders(*first),
+        };
+        let step = |(place, circuit): (usize, &usize)| Step {
+            circuit: *circuit,
+            positions: Positions::new(),
+            span: span(place).clone(),
+        };
+        let steps: Vec<Step> = segment.circuits.iter().enumerate().map(step).collect();
+        let right = "name the circuits along one track";
+        match through(&model.graph, &name, &starts, &steps) {
+            Err(problem) => {
+                let what = format!("segment {}: {}", segment.name, problem.what);
+                problems.push(Problem::new(Rule::SegmentOrder, &problem.span, what, right));
+            }
+            Ok(ways) if ways.iter().all(|way| model.graph.joints[way.exit()].end == Some(EndKind::Buffer)) => {
+                let what = format!("segment {}: its tracks lead to a buffer stop", segment.name);
+                problems.push(Problem::new(Rule::SegmentOrder, &segment.span, what, right));
+            }
+            Ok(_) => {}
         }
     }
 }
 
+/// The kernel keeps a route's own circuits clear and no others: that a train stands in the one of two circuits keeps trains out of the other
+/// only where every route holds both. A declared conflict does not: it ends with the route, and the train stands on.
 fn fouling(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (given, (one, other)) in station.fouling.iter().zip(&model.fouling) {
-        let on = |circuit: usize| model.routes.iter().enumerate().filter(move |(_, route)| holds(route, circuit));
-        for (number, route) in on(*one) {
-            for (number_of_other, against) in on(*other) {
-                if number == number_of_other || exclude(model, (number, route), (number_of_other, against)) {
-                    continue;
-                }
-                let (here, there) = (&model.circuits[*one].name, &model.circuits[*other].name);
-                let what = format!(
-                    "routes {} over {here} and {} over {there} can be set together, and the circuits foul each other",
-                    route.name, against.name
-                );
-                let span =
-                    if station.routes[number].conflicts.is_empty() { &given.between[0].span } else { &route.span };
-                let right =
-                    format!("add conflicts = [{:?}] to {}, and the same the other way", against.name, route.name);
-                problems.push(Problem::new(Rule::FoulingUndeclared, span, what, right));
-            }
+        foul(model, (*one, *other), &given.between[0].span, problems);
+    }
+    for (given, point) in station.points.iter().zip(&model.points) {
+        let Some(own) = point.circuit else { continue };
+        let named = given.fouled_in.first().or_else(|| given.detectors.as_ref().and_then(|named| named.first()));
+        let span = named.map_or(&point.span, |named| &named.span);
+        for beside in point.detectors.iter().filter(|circuit| **circuit != own) {
+            foul(model, (own, *beside), span, problems);
         }
+    }
+}
+
+fn foul(model: &Model, (one, other): (usize, usize), span: &Range<usize>, problems: &mut Vec<Problem>) {
+    let name = |circuit: usize| &model.circuits[circuit].name;
+    let right = "move the joint beyond the fouling point, or make the two one circuit: the kernel proves only those clear that a route runs over";
+    let mut held = false;
+    for route in &model.routes {
+        let (over, not_over) = match (holds(route, one), holds(route, other)) {
+            (true, true) => {
+                held = true;
+                continue;
+            }
+            (true, false) => (one, other),
+            (false, true) => (other, one),
+            (false, false) => continue,
+        };
+        let (over, not_over) = (name(over), name(not_over));
+        let what =
+            format!("route {} over {over} is set while a train stands in {not_over}, which fouls it", route.name);
+        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
+        return;
+    }
+    if !held {
+        let what = format!(
+            "{} and {} foul each other, and no route goes over them: nothing keeps trains apart",
+            name(one),
+            name(other)
+        );
+        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
     }
 }
 
 fn holds(route: &Route, circuit: usize) -> bool {
     route.circuits().any(|held| held == circuit) || route.overlap.contains(&circuit)
-}
-
-/// Whether the kernel never holds the two routes together from their first circuit to their overlap.
-fn exclude(model: &Model, (one, a): (usize, &Route), (other, b): (usize, &Route)) -> bool {
-    let declared = model.routes[one].conflicts.contains(&other);
-    let circuit =
-        a.circuits().any(|circuit| holds(b, circuit)) || b.circuits().any(|circuit| a.overlap.contains(&circuit));
-    let overlaps = a.overlap.iter().any(|circuit| b.overlap.contains(circuit));
-    let point =
-        a.positions().any(|(point, position)| b.positions().any(|(same, in_it)| same == point && in_it != position));
-    let through = a.continuing.contains(&other) || b.continuing.contains(&one);
-    declared || point || (circuit || overlaps) && !through
 }

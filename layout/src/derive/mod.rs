@@ -7,7 +7,7 @@ pub mod heading;
 pub mod positions;
 mod route;
 pub mod values;
-mod way;
+pub(crate) mod way;
 
 pub use approach::{Back, Shortfall, back};
 

@@ -39,10 +39,13 @@ impl Through {
     }
 }
 
+/// The most ways that are followed at a time.
+const WAYS: usize = 4096;
+
 /// Every way from one of the joints `starts` through all steps, in the positions that the file gives.
 ///
 /// # Errors
-/// The first step that no way reaches.
+/// The first step that no way reaches, or that too many reach.
 pub fn through(
     graph: &Graph,
     names: &dyn Fn(usize) -> String,
@@ -66,6 +69,10 @@ pub fn through(
                 if let Some(passed) = opposed {
                     against = Some(*passed);
                     continue;
+                }
+                if further.len() == WAYS {
+                    let what = format!("more than {WAYS} ways lead as far as {}", names(step.circuit));
+                    return Err(Problem::new(Rule::TooMany, &step.span, what, "give the positions of the points"));
                 }
                 let mut ways = so_far.ways.clone();
                 ways.push(way);
