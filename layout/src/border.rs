@@ -168,6 +168,20 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
         );
         wrong(what, format!("turn_ms of {station} must be at least {least}"));
     }
+    // Approaches, release times, stays and the distances of the codes follow from these two.
+    let (brake, its_brake) = (&description.station.braking.deceleration_mm_s2, &its.station.braking.deceleration_mm_s2);
+    if its_brake.value < brake.value {
+        let what = format!(
+            "trains of {neighbour} brake with {its_brake} mm/s², and {station} counts on {brake} for distances"
+        );
+        wrong(what, format!("deceleration_mm_s2 of {station} must be at most {its_brake}"));
+    }
+    let own = values.residual_ms.value;
+    if own < runs.value {
+        let what =
+            format!("trains of {neighbour} run on for {runs} ms, and {station} counts on {own} ms for its routes");
+        wrong(what, format!("residual_ms of {station} must be at least {runs}"));
+    }
     let (start, least) = (values.ms(values.start), run_ms(lives.value, runs.value, 0));
     if start < least && description.station.times.start_protected.is_none() {
         let what = format!(

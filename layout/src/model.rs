@@ -287,7 +287,8 @@ pub struct Values {
     pub telegram_age_ms: u32,
     /// The speed of each code, in km/h; 0 where there is no such code, and for code 0.
     pub speeds_kmh: [u16; MAX_CODES],
-    /// The braking distance from the speed of each code; the longest length where there is no such code.
+    /// How far a train runs from the speed of each code when a lower one goes out: while its telegram ages, and braking. The longest length where
+    /// there is no such code.
     pub braking: [Metres; MAX_CODES],
     /// The least length of an overlap.
     pub least_overlap: Metres,

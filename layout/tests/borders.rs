@@ -130,7 +130,12 @@ fn times_of_the_neighbours_trains() {
     let mut covered = one.clone();
     covered.station.times.turn_ms = Some(At::derived(65_500));
     covered.station.times.start_ms = Some(At::derived(65_500));
-    assert!(held(&covered, &weak).is_ok());
+    refused(&covered, &weak, "trains of Neighbour brake with 400 mm/s², and One counts on 800 for distances");
+    refused(&covered, &weak, "trains of Neighbour run on for 63500 ms, and One counts on 32250 ms for its routes");
+    // A brake as weak as theirs, and times to suit it.
+    let mut alike = one.clone();
+    alike.station.braking = weak.station.braking.clone();
+    assert!(held(&alike, &weak).is_ok());
     let mut lossy = other.clone();
     (lossy.station.times.shunt_loss_ms.value, lossy.station.times.clear_ms.value) = (3000, 4000);
     for (one, other) in [(&one, &lossy), (&lossy, &one)] {

@@ -456,6 +456,8 @@ fn distances_round_up_and_times_as_is_safe() {
     assert_eq!(plan.clear, 16, "1051 ms at 70 ms, up");
     assert_eq!(plan.routes[0].drive.0, 142, "10 000 ms at 70 ms, down: it restricts");
     assert_eq!(plan.routes[0].release.0, 858, "60 000 ms at 70 ms, up: it permits");
-    // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m.
-    assert_eq!(plan.braking[3].0, 98);
+    // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m, up; and 12.5 m in the second for which a telegram lives, up.
+    assert_eq!(plan.braking[3].0, 98 + 13);
+    let older = Description::from_toml("loop", &format!("{LOOP}\n[times]\ntelegram_age_ms = 2000\n")).unwrap();
+    assert_eq!(older.compile().unwrap().plan.braking[3].0, 98 + 25);
 }

@@ -240,7 +240,8 @@ pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> 
     pub lengths: [Metres; MAX_CIRCUITS],
     /// The line speed of each circuit.
     pub line: SpeedLimits,
-    /// The distance within which a train stops from the speed of each code; the longest length where there is no such code.
+    /// How far a train runs from the speed of each code when a lower one goes out: while its telegram ages, and braking. The longest length where
+    /// there is no such code.
     pub braking: [Metres; MAX_CODES],
     /// How many cycles in a row a circuit must be reported clear before it counts as clear, 1 to 255.
     pub clear: u8,

@@ -138,6 +138,7 @@ fn stopping_ms(station: &Station, speeds_kmh: [u16; MAX_CODES]) -> u32 {
 
 fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [Metres; MAX_CODES]) {
     let given = &station.braking;
+    let age_ms = station.times.telegram_age_ms.value;
     let worst = worst(station);
     let brake = brake(station);
     let speeds = &given.speeds_kmh;
@@ -165,7 +166,7 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
     for (code, speed) in (1..MAX_CODES).zip(&speeds.value) {
         table.0[code] = *speed;
         match stopping(brake, KmhTenths(speed * 10)) {
-            Some(distance) => table.1[code] = distance,
+            Some(distance) => table.1[code] = Metres(distance.0.saturating_add(aged(*speed, age_ms))),
             None => problems.push(Problem::new(
                 Rule::Range,
                 &given.deceleration_mm_s2.span,
@@ -214,14 +215,19 @@ pub fn code(values: &Values, speed: &At<u16>, problems: &mut Vec<Problem>) -> Sp
     SpeedCode(1)
 }
 
+/// What a train runs while its telegram ages, in whole metres, rounded up.
+fn aged(speed_kmh: u16, age_ms: u32) -> u16 {
+    let metres = (u64::from(speed_kmh) * u64::from(age_ms)).div_ceil(3600);
+    u16::try_from(metres).unwrap_or(u16::MAX)
+}
+
 /// How far back an approach must reach for trains of `speed_kmh`: braking distance and what is run while a telegram ages.
 pub fn approach_m(values: &Values, speed_kmh: u16) -> u32 {
-    // The first code that is at least as fast: its braking distance is not shorter.
+    // The first code that is at least as fast: its distance is not shorter.
     let code = (1..MAX_CODES).find(|code| values.speeds_kmh[*code] >= speed_kmh);
-    let braking = code.map_or_else(
-        || values.braking.iter().map(|distance| distance.0).filter(|metres| *metres < u16::MAX).max().unwrap_or(0),
-        |code| values.braking[code].0,
-    );
-    let aged = (u64::from(speed_kmh) * u64::from(values.telegram_age_ms)).div_ceil(3600);
-    u32::from(braking).saturating_add(u32::try_from(aged).unwrap_or(u32::MAX))
+    let longest = || values.braking.iter().map(|distance| distance.0).filter(|metres| *metres < u16::MAX).max();
+    match code {
+        Some(code) => u32::from(values.braking[code].0),
+        None => u32::from(longest().unwrap_or(0)).saturating_add(u32::from(aged(speed_kmh, values.telegram_age_ms))),
+    }
 }

@@ -3,7 +3,7 @@
 //! The accidents: a train runs over a point that moves, or lies the other way; a train runs into a circuit whose block was confirmed.
 //! The train is that of T-ILK-10 ([`super::train`]), with all that may happen around it.
 
-use super::train::{ALONE, BOUND, Beside, FIRST, ROUTES, Scene, Train, any_scene};
+use super::train::{BOUND, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use super::{any_circuits, any_settling, bit};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
@@ -96,7 +96,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Lie: "a point that the train still needs lies as the route needs it, and no stroke of it can begin",
         Counted: "the machine counts no more cycles than have passed since a stroke could last begin",
@@ -153,7 +153,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Apart: "no circuit that the train may still reach, or is in, is confirmed",
         Kept: "nor does the device remember one as confirmed",

@@ -4,7 +4,7 @@
 //! The train that goes out is that of T-ILK-10 ([`super::train`]). What comes in is seen when it is reported on the line, and not before.
 
 use super::any_circuits;
-use super::train::{ALONE, BOUND, Beside, FIRST, LENGTH, ROUTES, Scene, Train, any_scene};
+use super::train::{BOUND, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Directions, Plan, SegmentSet, State};
@@ -112,7 +112,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Meet: "no train may be on its way out while one is on its way in",
         Sent: "while one is on its way in, no signal to the line shows proceed, and no telegram grants it",

@@ -25,6 +25,8 @@ pub const ALONE: &str = match LENGTH {
     _ => "1 route of up to 2 circuits, 32 circuits",
 };
 
+pub const UNDER_KANI: &str = ALONE;
+
 pub const BOUND: &str = match ROUTES {
     2 => "2 routes of up to 3 circuits, 32 circuits",
     _ => ALONE,
@@ -72,8 +74,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    fn of<const R: usize, const N: usize, const S: usize>(plan: &Plan<R, LENGTH, N, S>) -> Self {
-        let route = &plan.routes[0];
+    fn of<const R: usize, const N: usize, const S: usize>(plan: &Plan<R, LENGTH, N, S>, route: &Route<LENGTH>) -> Self {
         Self {
             last: FIRST.wrapping_add(route.length).wrapping_sub(1),
             over: FIRST.wrapping_add(route.length),
@@ -319,7 +320,8 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
 ) -> Option<Scene<R, N, S>> {
     let mut plan: Plan<R, LENGTH, N, S> = any_plan(e);
     // A rule of engineering, kept from the start: who draws values would break it with nearly all of them.
-    plan.routes[0].approach = plan.routes[0].approach.or(plan.routes[0].entry);
+    let own = plan.routes.first_mut()?;
+    own.approach = own.approach.or(own.entry);
     let slow = super::any_circuits(e, "slow line (bits)", 0..=0);
     plan.line = SpeedLimits::from_parts(core::array::from_fn(|code| slow.only_if(code == usize::from(SLOW))));
     // Rules that who draws values would break with nearly all of them: conflicts go both ways, and a route continues another one or not.
@@ -339,8 +341,8 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
     e.assume(layout.is_some());
     let layout = layout?;
     let plan = *layout.plan();
-    let route = plan.routes[0];
-    let ground = Ground::of(&plan);
+    let route = *plan.routes.first()?;
+    let ground = Ground::of(&plan, &route);
     // Rules of the constructor that are engineering's: LAY-2.
     let path = route.held_from(0).circuits;
     let apart = !route.approach.meets(path.or(ground.overlap)) && !path.meets(ground.overlap);
@@ -352,7 +354,7 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
         let valid = device.routes[number].is_valid(&plan.routes[number]) && device.compatible(&layout, number, 0);
         device.routes[number] = if valid { device.routes[number] } else { RouteState::IDLE };
     }
-    let before = device.routes[0];
+    let before = *device.routes.first()?;
     let train = Train::any(e);
     let valid = before.is_valid(&route) && train.is_one(&ground) && holds(&train, &ground, &before);
     e.assume(valid);
@@ -368,10 +370,11 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
     e.assume(train.is_reported(&ground, input.occupied));
     let (end, output) = layout.interlock(device, input);
     let (_, _, contents) = output.table.parts();
-    let granted = contents.grants[0].train.meets(ground.entry) && !contents.grants[0].circuits.is_empty();
+    let grant = contents.grants.first()?;
+    let granted = grant.train.meets(ground.entry) && !grant.circuits.is_empty();
     let lets_in = output.proceed.bits() & 1 == 1 || granted;
     let informed = train.informed(e, &ground, lets_in, input.occupied);
-    let (devices, after) = ((device, end), end.routes[0]);
+    let (devices, after) = ((device, end), *end.routes.first()?);
     Some(Scene { ground, plan, route, before, after, earlier, train, informed, slow, devices, input, output })
 }
 
@@ -396,7 +399,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Behind: "a place that the route held and holds no more is behind the train's tail, if the train has entered or may still enter",
         Nothing: "a route that is withdrawn lets nobody in, before it is requested anew",
@@ -435,7 +438,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Stands: "an overlap that was held and is not any more has no train that may slide into it, or slid into it and has not left it",
     }
@@ -465,7 +468,7 @@ harness! {
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
-    under_kani ALONE;
+    under_kani UNDER_KANI;
     claims {
         Holds: "the invariant of the train and the route",
         Valid: "and the train is one that there can be",
