@@ -23,8 +23,7 @@ pub fn versions(root: &Path) -> BTreeMap<String, String> {
 
 /// How the provers are run: so many at a time, each for so many seconds at most.
 pub fn options(jobs: usize, seconds: u64) -> Options {
-    // The native engine is not what the case rests on: fewer values than `atc-prover` draws by itself.
-    Options { jobs, limit: Duration::from_secs(seconds), tests: 4_000, ..Options::default() }
+    Options { jobs, limit: Duration::from_secs(seconds), ..Options::default() }
 }
 
 /// The harnesses of these names, in this order.

@@ -25,8 +25,18 @@ fn run(out: &Path, more: &[&str]) -> Output {
     let tests = "     Running tests/charts.rs (target/debug/deps/charts-02)\n\
                  test result: ok. 4 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out; finished in 0.00s\n";
     std::fs::write(&log, tests).expect("written");
-    let fixed =
-        ["run", "--jobs", "1", "--no-provers", "--no-models", "--no-measurements", "--test-results", path(&log)];
+    let fixed = [
+        "run",
+        "--jobs",
+        "1",
+        "--native-runs",
+        "400",
+        "--no-provers",
+        "--no-models",
+        "--no-measurements",
+        "--test-results",
+        path(&log),
+    ];
     safety_case(&[&fixed[..], &["--out", path(out)], more].concat())
 }
 

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use atc_kernel::Machine as _;
 use atc_kernel::duplex::{Duplex, output};
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Orders, Positions,
-    Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, State, Table, Travel,
+    CircuitId, CircuitSet, Combined, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, MAX_CODES, Memory, Movement,
+    Orders, Positions, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, State, Table, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{self, Line, Need, Sketch, Way};
@@ -149,7 +149,9 @@ fn a_sound_table_of_this_cycle_opens() {
 fn a_stale_table_stops_every_train() {
     let layout = station();
     let (state, table) = in_service(&layout);
-    for other in (0..=u16::MAX).filter(|epoch| *epoch != state.epoch.0) {
+    for other in
+        (0..=0x2_0000).chain((0..32).map(|bit| state.epoch.0 ^ 1 << bit)).filter(|epoch| *epoch != state.epoch.0)
+    {
         assert_eq!(table.read(Epoch(other)), None);
     }
     assert!(all_stop(&layout.telegrams(&table, state.epoch.next())));
@@ -170,7 +172,7 @@ fn a_damaged_table_stops_every_train() {
         assert_eq!(table.read(state.epoch), None, "{table:?}");
     }
     assert!(all_stop(&layout.telegrams(&tables[0], state.epoch)));
-    for bit in 0..16 {
+    for bit in 0..32 {
         let wrong = Epoch(epoch.0 ^ 1 << bit);
         let table = Table::from_parts(wrong, check, contents);
         assert!(table.read(epoch).is_none() && table.read(wrong).is_none(), "bit {bit} of the epoch");
@@ -179,7 +181,7 @@ fn a_damaged_table_stops_every_train() {
 
 #[test]
 fn the_unreadable_table_is_unreadable_at_every_epoch() {
-    for epoch in 0..=u16::MAX {
+    for epoch in (0..=0x2_0000).chain((0..32).map(|bit| u32::MAX ^ 1 << bit)) {
         assert_eq!(Table::<2>::UNREADABLE.read(Epoch(epoch)), None);
         assert_eq!(Table::<64>::UNREADABLE.read(Epoch(epoch)), None);
     }
@@ -195,14 +197,18 @@ fn nobody_knows_anything_at_power_on() {
     assert_eq!((contents.blocked, contents.grants), (CircuitSet::ALL, [Grant::NONE; 2]));
 }
 
-/// Every single bit of one channel's state.
-fn flips(state: State<2, 2>) -> Vec<State<2, 2>> {
-    let mut all = Vec::new();
+/// Every single bit of one channel's memory.
+fn flips(memory: Memory<2, 2>) -> Vec<Memory<2, 2>> {
+    let state = memory.interlocking;
+    let mut all: Vec<_> = (0..32).map(|bit| Memory { cycle: Epoch(memory.cycle.0 ^ 1 << bit), ..memory }).collect();
     let mut with = |change: &dyn Fn(&mut State<2, 2>)| {
         let mut other = state;
         change(&mut other);
-        all.push(other);
+        all.push(Memory { interlocking: other, ..memory });
     };
+    for bit in 0..32 {
+        with(&|it| it.epoch.0 ^= 1 << bit);
+    }
     for bit in 0..64 {
         with(&|it| it.works.blocked = CircuitSet::from_bits(it.works.blocked.bits() ^ 1 << bit));
         with(&|it| it.works.confirmed = CircuitSet::from_bits(it.works.confirmed.bits() ^ 1 << bit));
@@ -227,7 +233,6 @@ fn flips(state: State<2, 2>) -> Vec<State<2, 2>> {
     }
     let flip = |ticks: Ticks, bit: u32| Ticks(ticks.0 ^ 1 << bit);
     for bit in 0..16 {
-        with(&|it| it.epoch.0 ^= 1 << bit);
         for place in 0..2 {
             with(&|it| it.directions.withdrawn[place] = flip(it.directions.withdrawn[place], bit));
             with(&|it| it.routes[place].time = flip(it.routes[place].time, bit));
@@ -257,12 +262,15 @@ fn flips(state: State<2, 2>) -> Vec<State<2, 2>> {
 #[test]
 fn a_wrong_bit_in_one_channel_stops_every_train() {
     let layout = station();
-    let mut sound = Duplex::initial(&layout);
+    let device = Combined(&layout);
+    let mut sound = Duplex::initial(&device);
     for input in inputs() {
-        sound = sound.step(&layout, input).0;
+        sound = sound.step(&device, input).0;
     }
-    let (_, agreed) = sound.step(&layout, quiet(&[1]));
-    assert!(output::<Layout<2, 2, 1, 2>>(agreed).proceed.has(RouteId::ZERO), "two sound channels open the route");
+    let (_, agreed) = sound.step(&device, quiet(&[1]));
+    let said = output::<Combined<2, 2, 1, 2>>(agreed);
+    assert!(said.interlocking.proceed.has(RouteId::ZERO), "two sound channels open the route");
+    assert_eq!(open(&said.telegrams), BTreeSet::from([1]), "and tell the train");
     let flips = flips(sound.a.state);
     println!("{} wrong states", flips.len());
     for state in flips {
@@ -275,10 +283,10 @@ fn a_wrong_bit_in_one_channel_stops_every_train() {
                 channels.b.state = state;
             }
             for _ in 0..2 {
-                let (next, agreed) = channels.step(&layout, quiet(&[1]));
-                let said = output::<Layout<2, 2, 1, 2>>(agreed);
-                assert_eq!(said, Layout::<2, 2, 1, 2>::SAFE, "{state:?}");
-                assert!(all_stop(&layout.telegrams(&said.table, next.a.state.epoch)));
+                let (next, agreed) = channels.step(&device, quiet(&[1]));
+                let said = output::<Combined<2, 2, 1, 2>>(agreed);
+                assert_eq!(said, Combined::<2, 2, 1, 2>::SAFE, "{state:?}");
+                assert_eq!(said.telegrams, [None; MAX_CIRCUITS]);
                 channels = next;
             }
             assert!(channels.is_tripped());

@@ -110,6 +110,9 @@ pub struct Run {
     /// Do not run the harnesses natively.
     #[arg(long)]
     no_native: bool,
+    /// Runs of each harness natively: such as meet its assumptions, on drawn values.
+    #[arg(long, default_value_t = 4000)]
+    native_runs: usize,
     /// Do not run the wrong kernels.
     #[arg(long)]
     no_mutants: bool,

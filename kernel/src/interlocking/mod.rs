@@ -11,6 +11,7 @@
 
 mod atc;
 mod check;
+mod combined;
 mod direction;
 mod layout;
 mod limits;
@@ -27,6 +28,7 @@ mod works;
 
 pub use atc::{MAX_LINKS, Movement, begins, connect, movement, silent, telegram};
 pub use check::{Broken, Place, Rule};
+pub use combined::{Combined, Commands, Memory};
 pub use direction::{Directions, Needs, Travel};
 pub use layout::{
     Element, Heading, Layout, MAX_CIRCUITS, MAX_CODES, MAX_POINTS, Plan, Point, Route, Segment, SpeedCode, Station,
@@ -65,7 +67,7 @@ pub struct Input {
     pub consent: SegmentSet,
 }
 
-/// What the device commands in one logic cycle, besides the telegrams.
+/// What the interlocking commands in one logic cycle. With the telegrams it is [`Commands`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output<const R: usize> {
     /// The routes whose signals show proceed; all others show stop.
@@ -78,7 +80,7 @@ pub struct Output<const R: usize> {
     pub confirmed: CircuitSet,
     /// What became of the request.
     pub answer: Option<Result<(), Refusal>>,
-    /// The shared table. The telegrams follow from it: [`Layout::telegrams`].
+    /// The shared table, from which the ATC makes the telegrams.
     pub table: Table<R>,
 }
 
@@ -219,6 +221,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
 
     /// The telegram of each circuit, from the shared table and the number of this cycle: all stop telegrams if the table is not
     /// of this cycle, or damaged. `None`: this device sends nothing there; the neighbour's is the one that speaks.
+    /// [`Combined`] has the number of the cycle, and its output has these telegrams: a device is that machine.
     #[must_use]
     pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Option<Movement>; MAX_CIRCUITS] {
         let contents = table.read(epoch);

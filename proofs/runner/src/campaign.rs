@@ -241,13 +241,19 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
     for (number, cover) in result.covers.iter_mut().enumerate() {
         cover.hit = answers.iter().any(|(_, reach)| reach.cover(number) == Some(false));
     }
-    let failed = answers.iter().find_map(|(proof, _)| proof.values.iter().find(|(what, _)| what.starts_with("claim ")));
-    result.counterexample = failed.map(|(_, values)| values.clone());
+    let tape = |case: usize, values: &[u16]| {
+        native::replay_case(harness, case, values).drawn.into_iter().map(|(_, value)| value).collect::<Vec<_>>()
+    };
+    let is_claim = |(what, _): &(&String, &Vec<u16>)| what.starts_with("claim ");
+    let failed = |proof: &Answer| proof.values.iter().find(is_claim).map(|(_, values)| values.clone());
+    let mut each = answers.iter().enumerate();
+    result.counterexample = each.find_map(|(case, (proof, _))| Some(tape(case, &failed(proof)?)));
     if let Some(trap) = answers.iter().find_map(|(proof, _)| proof.other_failure()) {
         // What comes after a trap is cut off, so nothing is proved.
-        let values = answers.iter().find_map(|(proof, _)| proof.values.get(trap));
+        let mut each = answers.iter().enumerate();
+        let values = each.find_map(|(case, (proof, _))| Some(tape(case, proof.values.get(trap)?)));
         result.reason = Some(format!("{trap} can be reached"));
-        result.counterexample = result.counterexample.or_else(|| values.cloned());
+        result.counterexample = result.counterexample.or(values);
         for claim in &mut result.claims {
             claim.verdict = claim.verdict.max(Verdict::Error);
         }

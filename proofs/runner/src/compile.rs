@@ -146,7 +146,7 @@ pub fn compile_one(tools: &Tools, source: &Path, folder: &Path) -> Result<Compil
 
 impl Compiled {
     /// Links the harness `name` alone and turns it into C. Its stack has `stack` bytes, or as many as its frames need. Returns the folder with
-    /// `harness.c` and `harness.h`, which says how much memory there is.
+    /// `harness.c`, `harness.h`, which says how much memory there is, and `original.c`, which is not rewritten.
     ///
     /// # Errors
     /// What the linker or wasm2c said.
@@ -162,9 +162,8 @@ impl Compiled {
         let declared = std::fs::read_to_string(&header).map_err(|error| format!("{}: {error}", header.display()))?;
         let (code, data) = data_apart(&without_accessors(&text)?, memory)?;
         write(&header, &with_memory(declared, memory, &data))?;
-        let original = one_way_back(&code)?;
-        write(&folder.join("original.c"), &original)?;
-        write(&folder.join("harness.c"), &apart(&original)?)?;
+        write(&folder.join("original.c"), &code)?;
+        write(&folder.join("harness.c"), &apart(&one_way_back(&code)?)?)?;
         write(&folder.join("driver.c"), DRIVER)?;
         Ok(folder)
     }

@@ -23,6 +23,7 @@ mod together;
 pub mod tools;
 pub mod traps;
 mod twin;
+pub mod twins;
 pub mod unwound;
 
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
-//! `cargo run -p atc-proofs -- list | prove | mutants | replay | selftest | traps`.
+//! `cargo run -p atc-prover -- list | prove | mutants | replay | twins | selftest | traps`.
 
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
 use atc_prover::traps::table;
+use atc_prover::twins::twins;
 use atc_prover::{
     Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
 };
@@ -65,6 +66,16 @@ enum Command {
     Kani {
         #[command(subcommand)]
         what: Kani,
+    },
+    /// Runs harnesses as Rust, as wasm2c's C and as the C that is proved, on the same values, and compares.
+    Twins {
+        /// The harnesses; all of them if none is named.
+        names: Vec<String>,
+        /// Inputs that are drawn for each.
+        #[arg(long, default_value_t = 4096)]
+        runs: usize,
+        #[command(flatten)]
+        run: Run,
     },
     /// Tests the cbmc engine on small programs whose verdicts are known.
     Selftest {
@@ -161,6 +172,7 @@ fn run(command: Command) -> Result<bool, String> {
         }
         Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
+        Command::Twins { names, runs, run } => compare_twins(&names, runs, &run.options()),
         Command::Kani { what } => of_kani(what),
         Command::Selftest { run } => {
             selftest::check(&Tools::find(&root())?, &run.options())?;
@@ -252,6 +264,20 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())
+}
+
+fn compare_twins(names: &[String], runs: usize, options: &Options) -> Result<bool, String> {
+    let all = twins(options, &select(names)?, runs, &|twins| match &twins.outcome {
+        Ok((runs, accepted)) => println!("same     {:32} {accepted} of {runs} runs meet its assumptions", twins.name),
+        Err(reason) => println!("differs  {:32} {reason}", twins.name),
+    })?;
+    let (same, silent) = all.iter().fold((0, 0), |(same, silent), twins| match twins.outcome {
+        Ok((_, accepted)) => (same + 1, silent + usize::from(accepted == 0)),
+        Err(_) => (same, silent),
+    });
+    println!("{same} of {} harnesses are the same in Rust, in wasm2c's C and as they are proved", all.len());
+    println!("{silent} of these say nothing: no drawn value met their assumptions");
+    Ok(same == all.len())
 }
 
 fn try_traps(options: &Options) -> Result<bool, String> {

@@ -18,6 +18,8 @@ pub struct Run {
     pub claims: Vec<(u32, bool)>,
     /// Cover points that were reached.
     pub covered: Vec<u32>,
+    /// Which of the drawn values is the case: a prover is given it apart.
+    pub picked: Option<usize>,
 }
 
 impl Run {
@@ -35,6 +37,8 @@ enum Source<'a> {
     Random(&'a mut TestRng),
     /// As recorded; 0 when they run out.
     Tape(std::slice::Iter<'a, u16>),
+    /// As a prover has them: the case, and the others in order.
+    Proved(u16, std::slice::Iter<'a, u16>),
 }
 
 struct Native<'a> {
@@ -56,7 +60,7 @@ impl Engine for Native<'_> {
                     }
                 }
             }
-            Source::Tape(values) => values.next().copied().unwrap_or(0),
+            Source::Tape(values) | Source::Proved(_, values) => values.next().copied().unwrap_or(0),
         };
         self.run.drawn.push((what, value));
         value
@@ -64,7 +68,15 @@ impl Engine for Native<'_> {
 
     fn choose(&mut self, what: &'static str, cases: usize) -> usize {
         let last = u16::try_from(cases).unwrap_or(u16::MAX).saturating_sub(1);
-        usize::from(self.word(what, 0..=last)).min(usize::from(last))
+        self.run.picked = Some(self.run.drawn.len());
+        let value = match self.source {
+            Source::Proved(case, _) => {
+                self.run.drawn.push((what, case));
+                case
+            }
+            _ => self.word(what, 0..=last),
+        };
+        usize::from(value.min(last))
     }
 
     fn assume(&mut self, holds: bool) {
@@ -91,6 +103,17 @@ fn run(harness: &Harness, source: Source) -> Run {
 /// Runs the harness on these values, in order.
 pub fn replay(harness: &Harness, values: &[u16]) -> Run {
     run(harness, Source::Tape(values.iter()))
+}
+
+/// Runs the harness on what a prover says of this case.
+pub fn replay_case(harness: &Harness, case: usize, values: &[u16]) -> Run {
+    run(harness, Source::Proved(u16::try_from(case).unwrap_or(u16::MAX), values.iter()))
+}
+
+/// So many runs on drawn values, always the same ones.
+pub fn drawn(harness: &Harness, runs: usize) -> Vec<Run> {
+    let mut random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    (0..runs).map(|_| run(harness, Source::Random(&mut random))).collect()
 }
 
 /// Draws values until `accepted` runs have met the harness's assumptions (or 200 times as many were drawn), always

@@ -27,7 +27,7 @@
 //! A place that only panics, to which many jump, would make one region of all that is between: such a jump panics where it is. A panic and the
 //! way round it complete nothing either, since one of the two ways ends. So they are a function, too, of however few jumps.
 //!
-//! The self-test has programs of this kind, and the rewritten C is run as a program on drawn values (`traps/native.rs`).
+//! The self-test has programs of this kind, and the rewritten C is run as a program on drawn values (`traps/native.rs`, `twins.rs`).
 
 use crate::loops::by_function;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! The C of a harness, run on this machine: on values that are given, and no others.
 //!
 //! Two things are held against what CBMC is given and what it says. The C that is rewritten for CBMC must do the same as what wasm2c wrote,
-//! on the same values. And a counterexample that is said to reject a mutant must do so when it is run, and must not without the mutant.
+//! on the same values (`twins.rs`). And a counterexample that is said to reject a mutant must do so when it is run, and must not without the mutant.
 
 use crate::cbmc::{Question, defines};
 use crate::process::{End, Job, Limits, errors_of, run};

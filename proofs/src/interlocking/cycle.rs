@@ -2,6 +2,7 @@
 
 use super::{any_cycle, any_input, any_layout, any_state, bit, held};
 use crate::Engine;
+use crate::engine::any_u32;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
     CircuitSet, Epoch, Input, Layout, Needs, Phase, Plan, PointSet, Positions, Refusal, Request, Route, RouteState,
@@ -356,7 +357,7 @@ harness! {
     }
     {
         let Some(layout) = any_layout::<E, 1, 1, 0, 1>(e) else { return };
-        let epoch = Epoch(e.word("a cycle (number)", 0..=3));
+        let epoch = Epoch(any_u32(e, "a cycle (number)", 0..=3));
         let initial = layout.initial();
         e.claim(Claim::Valid as u32, initial.is_valid(&layout));
         let directions = initial.directions;

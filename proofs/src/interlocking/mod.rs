@@ -91,6 +91,7 @@ pub const ALL: &[Harness] = &[
     table::t_atc_3::HARNESS,
     table::t_atc_3_stale::HARNESS,
     table::t_atc_3_damaged::HARNESS,
+    table::t_atc_3_device::HARNESS,
     works::t_ilk_8::HARNESS,
     direction::t_ilk_9::HARNESS,
     point::t_ilk_4::HARNESS,
@@ -298,7 +299,7 @@ fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> S
             confirmed: any_circuits(e, "confirmed (bits)", 0..=0),
             restrictions: SpeedLimits::STOP,
         },
-        epoch: Epoch(e.word("epoch", 0..=u16::MAX)),
+        epoch: Epoch(any_u32(e, "epoch", 0..=u16::MAX)),
     }
 }
 

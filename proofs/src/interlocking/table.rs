@@ -2,10 +2,11 @@
 
 use super::any_circuits;
 use crate::Engine;
-use crate::engine::{any_byte, any_flag};
+use crate::engine::{any_byte, any_flag, any_u32};
+use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Layout, MAX_CODES, Plan, SegmentSet, SpeedCode, SpeedLimits,
-    Standing, Table,
+    CircuitId, CircuitSet, Combined, Contents, Epoch, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Plan,
+    SegmentSet, SpeedCode, SpeedLimits, Standing, Table,
 };
 use atc_kernel::time::Ticks;
 
@@ -91,8 +92,8 @@ harness! {
         High: "the highest bit of its field is wrong",
     }
     {
-        let epoch = Epoch(e.word("epoch", 0..=3));
-        let other = Epoch(e.word("epoch of another cycle", 0..=3));
+        let epoch = Epoch(any_u32(e, "epoch", 0..=3));
+        let other = Epoch(any_u32(e, "epoch of another cycle", 0..=3));
         let field = e.choose("field with the wrong bit", FIELDS);
         let bit = e.word("wrong bit of the field (number)", 0..=63);
         let contents: Contents<GRANTS> = any_contents(e);
@@ -102,7 +103,7 @@ harness! {
         let (_, check, _) = table.parts();
         let (mut wrong_epoch, mut wrong_check, mut wrong) = (epoch, check, contents);
         match field {
-            0 => wrong_epoch.0 ^= 1 << (bit & 15),
+            0 => wrong_epoch.0 ^= 1 << (bit & 31),
             1 => wrong_check ^= 1 << (bit & 63),
             2 => wrong.occupied = flipped(wrong.occupied, bit),
             3 => wrong.blocked = flipped(wrong.blocked, bit),
@@ -156,7 +157,7 @@ fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
     let circuit = CircuitId::new(any_byte(e, "a circuit that stands for all (number)", 0..=7));
     let layout = Layout::with_what_proofs_need(Plan { clear: 1, turn: Ticks(1), ..Plan::EMPTY });
     let contents = any_contents(e);
-    let now = Epoch(e.word("this cycle (epoch)", 0..=1));
+    let now = Epoch(any_u32(e, "this cycle (epoch)", 0..=1));
     e.assume(circuit.is_some() && layout.is_ok());
     Some(Scene { layout: layout.ok()?, contents, now, circuit: circuit? })
 }
@@ -165,15 +166,25 @@ impl Scene {
     /// Whether the circuit's telegram tells a train to stay where it is.
     #[inline]
     fn stops(&self, table: &Table<1>) -> bool {
-        let mut stop = true;
-        for (place, it) in (0_u8..).zip(&self.layout.telegrams(table, self.now)) {
-            let stays = match it {
-                Some(it) => it.stop == self.circuit && it.speed == SpeedCode(0) && !it.is_open() && it.hold.bits() == 0,
-                None => false,
+        self.told(&self.layout.telegrams(table, self.now)).0
+    }
+
+    /// Whether the circuit's telegram tells a train to stay where it is, and whether it lets one go.
+    #[inline]
+    fn told(&self, telegrams: &[Option<Movement>; MAX_CIRCUITS]) -> (bool, bool) {
+        let (mut stop, mut open) = (true, false);
+        for (place, it) in (0_u8..).zip(telegrams) {
+            let (stays, goes) = match it {
+                Some(it) => {
+                    let own = it.stop == self.circuit && it.speed == SpeedCode(0);
+                    (own && !it.is_open() && it.hold.bits() == 0, it.is_open())
+                }
+                None => (false, false),
             };
             stop &= place != self.circuit.number() || stays;
+            open |= place == self.circuit.number() && goes;
         }
-        stop
+        (stop, open)
     }
 
     /// Whether the contents say that a train in the circuit is granted something.
@@ -202,7 +213,7 @@ harness! {
     }
     {
         let Some(scene) = any_scene(e) else { return };
-        let written = Epoch(e.word("epoch", 0..=1));
+        let written = Epoch(any_u32(e, "epoch", 0..=1));
         if written == scene.now {
             return e.assume(false);
         }
@@ -237,5 +248,43 @@ harness! {
         let table = Table::from_parts(scene.now, right ^ damage, scene.contents);
         e.claim(Claim::Stop as u32, scene.stops(&table));
         e.cover(Cover::Train as u32, scene.grants());
+    }
+}
+
+harness! {
+    /// In the device as a whole the ATC reads the table by a count of its own. Where the table has another number, no train is told to go.
+    t_atc_3_device(e)
+    theorem "T-ATC-3";
+    requirements ["ATC-14", "ATC-15"];
+    assumptions [];
+    bound "1 route, no segment";
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Stop: "where the table's number is not the next one, the telegram stops its train where it is, and holds nothing",
+        Count: "the count goes on by one in each cycle, whatever the table",
+        Safe: "the safe output sends no telegram, and is that of the interlocking besides",
+    }
+    covers {
+        Open: "the table has the next number, and its telegram lets a train go",
+        Differ: "the table has another number, and says that a train in the circuit is granted something",
+    }
+    {
+        let Some(scene) = any_scene(e) else { return };
+        let written = Epoch(any_u32(e, "epoch", 0..=1));
+        let table = Table::write(written, scene.contents);
+        let (cycle, telegrams) = Combined(&scene.layout).speak(scene.now, &table);
+        let same = written.0 == scene.now.0.wrapping_add(1);
+        let (stops, opens) = scene.told(&telegrams);
+        e.claim(Claim::Stop as u32, same || stops);
+        e.claim(Claim::Count as u32, cycle.0 == scene.now.0.wrapping_add(1));
+        let safe = <Combined<'_, 1, 1, 0, 1> as Machine>::SAFE;
+        let mut none = safe.interlocking == Layout::<1, 1, 0, 1>::SAFE;
+        for telegram in &safe.telegrams {
+            none &= telegram.is_none();
+        }
+        e.claim(Claim::Safe as u32, none);
+        e.cover(Cover::Open as u32, same && opens);
+        e.cover(Cover::Differ as u32, !same && scene.grants());
     }
 }

@@ -55,7 +55,7 @@ impl Interlocked {
                 }
             }),
             Refusal::Occupied => self.circuits_of(all.and(occupied)),
-            Refusal::Blocked => self.circuits_of(all.or(self.line(asked.out)).and(self.state.works.blocked)),
+            Refusal::Blocked => self.circuits_of(all.or(self.line(asked.out)).and(self.state().works.blocked)),
             Refusal::PointUnderTrain => match request {
                 Request::Drive(point, _) => self.points_of(point.alone()),
                 _ => self.points_of(self.under(asked.positions.missing_in(detected).points(), occupied)),
@@ -63,7 +63,7 @@ impl Interlocked {
             Refusal::Direction => self.in_the_way(request, occupied),
             Refusal::Waiting => {
                 // A segment with a block waits for its end; otherwise for time, or for the neighbour.
-                let blocked = self.circuits_of(self.line(asked.out).and(self.state.works.blocked));
+                let blocked = self.circuits_of(self.line(asked.out).and(self.state().works.blocked));
                 if blocked.is_empty() { self.segments_of(asked.out) } else { blocked }
             }
         }
@@ -120,7 +120,7 @@ impl Interlocked {
 
     /// The segments that a route lacks; or what keeps a segment from turning: circuits with trains, and routes.
     fn in_the_way(&self, request: Request, occupied: CircuitSet) -> BTreeSet<String> {
-        let directions = self.state.directions;
+        let directions = self.state().directions;
         match request {
             Request::Set(route) => {
                 let route = &self.layout.plan().routes[usize::from(route.number())];
@@ -141,7 +141,7 @@ impl Interlocked {
 
     /// The held routes for which it is so.
     fn held_where(&self, is_so: impl Fn(RouteSet, &Route<16>, &RouteState) -> bool) -> BTreeSet<String> {
-        let routes = self.layout.plan().routes.iter().zip(&self.state.routes).enumerate();
+        let routes = self.layout.plan().routes.iter().zip(&self.state().routes).enumerate();
         let found =
             routes.filter(|(number, (route, state))| state.is_held() && is_so(RouteSet::nth(*number), route, state));
         found.filter_map(|(number, _)| self.names.routes.get(number).cloned()).collect()

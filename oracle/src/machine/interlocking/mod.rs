@@ -9,8 +9,8 @@ mod words;
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Epoch, PointId, PointSet, Position, Positions, RouteId, SegmentId,
-    SegmentSet, SpeedCode, Station,
+    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Position, Positions, RouteId,
+    SegmentId, SegmentSet, SpeedCode, Station,
 };
 use atc_layout::Names;
 
@@ -34,7 +34,7 @@ pub struct Interlocked {
     names: Names,
     speeds_kmh: [u16; kernel::MAX_CODES],
     cycle_ms: u32,
-    state: Box<State>,
+    memory: Box<Memory<64, 8>>,
 }
 
 /// Where the name stands in the list.
@@ -92,7 +92,7 @@ impl Interlocked {
 
     /// The kernel's state.
     pub fn state(&self) -> &State {
-        &self.state
+        &self.memory.interlocking
     }
 
     /// The length of a logic cycle in ms.
@@ -200,8 +200,8 @@ impl Interlocked {
         table.read(epoch).map_or(CircuitSet::ALL, |contents| contents.occupied)
     }
 
-    fn output(&self, input: kernel::Input, output: &kernel::Output<64>, all_telegrams: bool) -> Output {
-        let movements = self.layout.telegrams(&output.table, self.state.epoch);
+    fn output(&self, input: kernel::Input, commands: &kernel::Commands<64>, all_telegrams: bool) -> Output {
+        let (output, movements) = (&commands.interlocking, &commands.telegrams);
         let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
         let silent = named(&self.names.circuits, |number| movements[number].is_none());
         let telegrams = self.names.circuits.iter().zip(movements).filter_map(|(name, movement)| {
@@ -210,7 +210,7 @@ impl Interlocked {
             let heading = movement.heading.map(Heading);
             Some((name.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
         });
-        let held = self.names.routes.iter().zip(&self.state.routes).filter(|(_, route)| route.is_held());
+        let held = self.names.routes.iter().zip(&self.memory.interlocking.routes).filter(|(_, route)| route.is_held());
         let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
             let point = PointSet::nth(number);
             let side = |position| Some((name.clone(), Side(position)));
@@ -223,7 +223,7 @@ impl Interlocked {
         let answer = output.answer.map(|answer| match answer {
             Ok(()) => Answer::Accepted(Accepted::Accepted),
             Err(refusal) => {
-                let occupied = Self::occupied(&output.table, self.state.epoch);
+                let occupied = Self::occupied(&output.table, self.memory.cycle);
                 Answer::Refused(Refused { refused: Reason(refusal), because: self.because(input, occupied, refusal) })
             }
         });
@@ -251,14 +251,14 @@ impl Machine for Interlocked {
 
     fn open(config: &Config) -> Result<Self, String> {
         let Opened { layout, names, speeds_kmh, cycle_ms } = config.opened()?;
-        Ok(Self { layout, names, speeds_kmh, cycle_ms, state: Box::new(State::INITIAL) })
+        Ok(Self { layout, names, speeds_kmh, cycle_ms, memory: Box::new(Memory::INITIAL) })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         let input = self.input(step)?;
-        let (state, output) = self.layout.cycle(*self.state, input);
-        *self.state = state;
-        Ok(self.output(input, &output, step.all_telegrams))
+        let (memory, commands) = atc_kernel::Machine::step(&Combined(&self.layout), *self.memory, input);
+        *self.memory = memory;
+        Ok(self.output(input, &commands, step.all_telegrams))
     }
 
     fn cycles(&self) -> Vec<(&'static str, u16)> {

@@ -1,0 +1,72 @@
+//! Interlocking and ATC as one machine: its output is everything that leaves the device, telegrams included.
+
+use super::atc::Movement;
+use super::layout::{Layout, MAX_CIRCUITS};
+use super::state::State;
+use super::table::{Epoch, Table};
+use super::{Input, Output};
+use crate::Machine;
+
+/// The device with its ATC. Its two channels are compared over all that it puts out ([`crate::duplex`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Combined<'a, const R: usize, const P: usize, const N: usize, const S: usize>(pub &'a Layout<R, P, N, S>);
+
+/// What the device remembers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Memory<const R: usize, const S: usize> {
+    /// The interlocking.
+    pub interlocking: State<R, S>,
+    /// The ATC's own count of the cycles: a table is read by it, and never by the number that stands in the table.
+    pub cycle: Epoch,
+}
+
+impl<const R: usize, const S: usize> Memory<R, S> {
+    /// The most restrictive memory.
+    pub const INITIAL: Self = Self { interlocking: State::INITIAL, cycle: Epoch(0) };
+
+    /// Whether the device can have this memory.
+    pub fn is_valid<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
+        self.interlocking.is_valid(layout) && self.interlocking.epoch == self.cycle
+    }
+}
+
+/// Everything that leaves the device in one logic cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Commands<const R: usize> {
+    /// What the interlocking commands.
+    pub interlocking: Output<R>,
+    /// The telegram of each circuit. `None`: nothing is sent there.
+    pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Combined<'_, R, P, N, S> {
+    /// One logic cycle of the ATC: its count of the cycles, and the telegrams from the table.
+    #[inline]
+    #[must_use]
+    pub fn speak(&self, cycle: Epoch, table: &Table<R>) -> (Epoch, [Option<Movement>; MAX_CIRCUITS]) {
+        //= spec/interlocking.md#atc-15-count-of-its-own
+        //# The ATC MUST read the table by a count of the cycles of its own, which is the same again after 2^32 cycles at the earliest.
+        let cycle = cycle.next();
+        (cycle, self.0.telegrams(table, cycle))
+    }
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Machine for Combined<'_, R, P, N, S> {
+    type State = Memory<R, S>;
+    type Input = Input;
+    type Output = Commands<R>;
+
+    //= spec/interlocking.md#atc-14-what-is-compared
+    //# What the two channels compare MUST include every telegram, and a device whose channels differ MUST send none.
+    const SAFE: Self::Output = Commands { interlocking: Layout::<R, P, N, S>::SAFE, telegrams: [None; MAX_CIRCUITS] };
+
+    fn initial(&self) -> Self::State {
+        Memory::INITIAL
+    }
+
+    fn step(&self, memory: Self::State, input: Self::Input) -> (Self::State, Self::Output) {
+        let (state, output) = self.0.cycle(memory.interlocking, input);
+        let (cycle, telegrams) = self.speak(memory.cycle, &output.table);
+        (Memory { interlocking: state, cycle }, Commands { interlocking: output, telegrams })
+    }
+}
