@@ -21,6 +21,7 @@ use atc_models::{Entry, Limits};
 use atc_prover::Options;
 use atc_prover::report::{Campaign, HarnessResult, Mutants, Provenance, SCHEMA};
 use std::convert::Infallible;
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::time::Duration;
 
@@ -31,6 +32,9 @@ const SPIN: &str = "second opinions";
 const MUTANTS: &str = "wrong kernels";
 const HARD: &str = "proofs, the long ones";
 const MEASURED: &str = "measurements";
+
+/// What measures, as an item of a phase.
+const BENCH: &str = "waveform bench";
 const TESTS: &str = "tests";
 
 /// A theorem that takes more seconds than an ordinary one belongs to the second pass.
@@ -80,14 +84,13 @@ impl Engines<'_> {
                 works.push(work(MUTANTS, of("mutant", self.mutants())));
             }
         }
+        let measured = if self.measures_here() { single(BENCH, costs.each.measured) } else { Vec::new() };
         if !self.options.no_models {
-            works.push(work(
-                MODELS,
-                of("model", self.entries("model").iter().map(|entry| entry.name.to_owned()).collect()),
-            ));
+            let models = of("model", self.entries("model").iter().map(|entry| entry.name.to_owned()).collect());
+            works.push(work(MODELS, if self.is_beside() { [models, measured.clone()].concat() } else { models }));
         }
-        if self.measures() && !self.options.no_measurements && self.options.measurements.is_none() {
-            works.push(work(MEASURED, single("waveform", costs.each.measured)));
+        if !measured.is_empty() && !self.is_beside() {
+            works.push(work(MEASURED, measured));
         }
         let tested = self.options.no_tests || self.options.test_results.is_some() || self.tests_stand();
         if self.chosen.tests != Tests::None && !tested {
@@ -165,6 +168,16 @@ impl Engines<'_> {
     fn measures(&self) -> bool {
         measured::TARGETS.iter().any(|target| self.chosen.has(&measured::id(target.name)))
             && !self.kept.has(again::MEASURED)
+    }
+
+    /// Whether the waveform package is to measure, here and now.
+    fn measures_here(&self) -> bool {
+        self.measures() && !self.options.no_measurements && self.options.measurements.is_none()
+    }
+
+    /// Whether it measures beside the search of models: it has one thread, and the models leave some of the others idle.
+    fn is_beside(&self) -> bool {
+        self.measures_here() && !self.options.no_models && !self.entries("model").is_empty()
     }
 
     /// Whether an earlier run's tests stand. Those that are given are looked at in any case.
@@ -275,17 +288,26 @@ impl Engines<'_> {
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
         let entries = self.entries("model");
         let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
+        let beside = self.is_beside();
         let searched = || {
-            let mut items = Vec::new();
             let mut outcomes = live.with(|results| results.outcomes.clone());
-            for entry in &entries {
-                live.progress.running(entry.name);
-                let outcome = atc_models::check_within(entry, self.jobs, limits);
-                live.progress.done(entry.name);
-                items.push((entry.name.to_owned(), outcome.seconds));
-                live.with(|results| results.outcomes.push(outcome.clone()));
-                outcomes.push(outcome);
-            }
+            let items = std::thread::scope(|scope| {
+                let measured = beside.then(|| scope.spawn(|| self.measure(live, &|_| ())));
+                let mut items = Vec::new();
+                for entry in &entries {
+                    live.progress.running(entry.name);
+                    let outcome = atc_models::check_within(entry, self.jobs, limits);
+                    live.progress.done(entry.name);
+                    items.push((entry.name.to_owned(), outcome.seconds));
+                    live.with(|results| results.outcomes.push(outcome.clone()));
+                    outcomes.push(outcome);
+                }
+                if measured.is_some() {
+                    live.progress.running(BENCH);
+                }
+                items.extend(measured.map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic))));
+                items
+            });
             let requirements: Vec<_> = self.plan.requirements.iter().map(|one| one.id.clone()).collect();
             faults::check(&outcomes, &self.plan.data.assumptions, &requirements)?;
             Ok::<_, Vec<Fault>>(items)
@@ -326,15 +348,23 @@ impl Engines<'_> {
         if self.options.no_measurements {
             return enter(measured::Run::NotRun("left out by --no-measurements".to_owned()));
         }
-        let Ok(()) = Self::phase::<Infallible>(live, MEASURED, || {
-            let raw = self.folder.stage().join("waveform");
-            let limit = Duration::from_secs(self.options.time_limit);
-            let run = measured::run(self.root, &raw, limit, &|log| live.progress.watch(log));
-            measured::tidy(&raw);
-            let seconds = if let measured::Run::Ran(ran) = &run { ran.seconds } else { 0.0 };
-            enter(run);
-            Ok(vec![("waveform bench".to_owned(), seconds)])
-        });
+        // Else it was done beside the models.
+        if !self.is_beside() {
+            let work = || Ok::<_, Infallible>(vec![self.measure(live, &|log| live.progress.watch(log))]);
+            let Ok(()) = Self::phase(live, MEASURED, work);
+        }
+    }
+
+    /// Runs the waveform package. Its time.
+    fn measure(&self, live: &Live, watch: &(dyn Fn(&Path) + Sync)) -> (String, f64) {
+        let raw = self.folder.stage().join("waveform");
+        let limit = Duration::from_secs(self.options.time_limit);
+        let run = measured::run(self.root, &raw, limit, &|log| watch(log));
+        measured::tidy(&raw);
+        let seconds = if let measured::Run::Ran(ran) = &run { ran.seconds } else { 0.0 };
+        live.with(|results| results.measured = Some(run));
+        live.progress.done(BENCH);
+        (BENCH.to_owned(), seconds)
     }
 
     fn suites(&self, live: &Live) -> Result<(), Fault> {

@@ -144,13 +144,9 @@ pub fn mutants(
     Ok(Mutants { schema: SCHEMA, provenance, mutants: results, controls })
 }
 
-/// The harnesses to which choices cost more than compilations: found by running them, and a matter of time only. (With mutants to be
-/// selected, even the kernel with none of them takes 90 s instead of 2 s in `t_blk_4_line`: fewer values are constant.)
-const APART: [&str; 3] = ["t_blk_3_border", "t_blk_4_line", "t_blk_5_line"];
-
 /// Whether the mutant is compiled with others, and selected at run time.
 fn goes_together(root: &Path, mutant: &Mutant) -> bool {
-    !mutant.alone && !mutant.killed_by.iter().any(|name| APART.contains(&name.as_str())) && selectable(root, mutant)
+    !mutant.alone && selectable(root, mutant)
 }
 
 /// Whether the mutant can be selected at run time.
@@ -245,6 +241,9 @@ impl<'a> Tally<'a> {
 /// The harnesses on whose mutants MiniSat is known to have no answer in the time that it is given; found by running them, and a matter of
 /// time only.
 pub const SLOW: [&str; 5] = ["t_per_4", "t_per_4_fix", "t_per_7", "per_machine", "t_pos_1"];
+
+/// The harnesses whose mutants have no answer together, and each at once: sums of many bits, which are another sum with each mutant.
+pub(crate) const SINGLY: [&str; 1] = ["t_tel_3_linear"];
 
 /// What is wrong is found more easily than that nothing is: MiniSat gets some time, and Kissat what that leaves.
 pub(crate) const FIRST: Duration = Duration::from_secs(40);

@@ -5,7 +5,7 @@ use crate::campaign::{HARD, Options, in_parallel};
 use crate::cbmc::{self, Ask, Question, Silence, ask_in_turn};
 use crate::compile::{Compiled, Kernel, compile, copy, write};
 use crate::control::is_smaller;
-use crate::mutants::{FIRST, Mutant, SLOW};
+use crate::mutants::{FIRST, Mutant, SINGLY, SLOW};
 use crate::report::{Control, Kill};
 use crate::schemata::{Change, instrument};
 use crate::tools::Tools;
@@ -248,7 +248,8 @@ impl<'a> Asked<'a> {
         // What fails is found more easily than that nothing does, and each mutant fails in some case: first all of them at once, then each
         // alone for a short time in every case, and only then for as long as it takes. Claims come before panics.
         'asking: for ask in [Ask::Mutants, Ask::Panics] {
-            for (way, case) in WAYS.iter().flat_map(|way| (0..self.harness.cases).map(move |case| (way, case))) {
+            let ways = &WAYS[usize::from(SINGLY.contains(&self.harness.name))..];
+            for (way, case) in ways.iter().flat_map(|way| (0..self.harness.cases).map(move |case| (way, case))) {
                 left.retain(|number| !found.contains_key(number) && !judged.contains_key(number));
                 let groups: Vec<BTreeSet<usize>> = match way {
                     Way::Together => vec![left.clone()],
