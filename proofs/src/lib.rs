@@ -50,9 +50,10 @@ pub const fn bound(aspects: usize) -> &'static str {
     }
 }
 
-/// All harnesses, module by module. Not there where some are chosen (`--cfg chosen`): then only those are compiled.
-#[cfg(not(chosen))]
-pub const HARNESSES: &[&[Harness]] = &[
+/// All harnesses, module by module. Not there where some are chosen (`--cfg chosen`), or for the prover: then only those are compiled that are
+/// called. A static, so that they are compiled here, optimised, and not again in each crate that runs them.
+#[cfg(not(any(chosen, engine = "cbmc")))]
+pub static HARNESSES: &[&[Harness]] = &[
     time::ALL,
     aspect::ALL,
     supervision::ALL,

@@ -70,13 +70,16 @@ impl Engine for Native<'_> {
         let last = u16::try_from(cases).unwrap_or(u16::MAX).saturating_sub(1);
         self.run.picked = Some(self.run.drawn.len());
         let value = match self.source {
-            Source::Proved(case, _) => {
-                self.run.drawn.push((what, case));
-                case
+            Source::Proved(case, _) => case,
+            _ => {
+                let value = self.word(what, 0..=last);
+                self.run.drawn.pop();
+                value
             }
-            _ => self.word(what, 0..=last),
         };
-        usize::from(value.min(last))
+        let value = value.min(last);
+        self.run.drawn.push((what, value));
+        usize::from(value)
     }
 
     fn assume(&mut self, holds: bool) {
