@@ -3,8 +3,10 @@
 mod common;
 mod meeting;
 
+use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteState, SpeedLimits, State, Table, Travel, Works,
+    CircuitId, Grant, Input, Output, Phase, Positions, Request, RouteSet, RouteState, SpeedLimits, State, Table,
+    Travel, Works,
 };
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
@@ -12,7 +14,7 @@ use atc_models::interlocking::ground::{Heading, Station};
 use atc_models::interlocking::stations::{
     Overlaps, ROUTES, SEGMENTS, Small, loop_route, passing, passing_loop, rest, siding,
 };
-use atc_models::interlocking::yard::Yard;
+use atc_models::interlocking::yard::{RESTRICTED, Yard};
 use atc_models::interlocking::{Purpose, Sight};
 use atc_models::{Outcome, Verdict};
 use common::outcome;
@@ -39,7 +41,9 @@ enum Wrong {
     ConfirmedAtOnce,
     /// Restrictions are not in the table.
     Unrestricted,
-    /// Routes grant their path also while the signal does not show proceed.
+    /// Withdrawn routes grant their path.
+    GrantsWhenWithdrawn,
+    /// Routes grant their path, and no signal shows proceed.
     GrantsWithoutProceed,
 }
 
@@ -97,7 +101,8 @@ impl Device for Wrong {
         let (mut after, output) = device.cycle(before, input);
         let output = match self {
             Self::Unrestricted => rewritten(&output, &after, |_, limits| *limits = SpeedLimits::NONE),
-            Self::GrantsWithoutProceed => rewritten(&output, &after, |grants, _| {
+            Self::GrantsWithoutProceed => Output { proceed: RouteSet::EMPTY, ..output },
+            Self::GrantsWhenWithdrawn => rewritten(&output, &after, |grants, _| {
                 for (grant, (route, held)) in grants.iter_mut().zip(plan.routes.iter().zip(&after.routes)) {
                     if held.phase == Phase::Releasing && held.head == 0 {
                         let circuits = held.path(route).circuits;
@@ -116,7 +121,7 @@ impl Device for Wrong {
             Self::ProceedInUse => {
                 let mut proceed = output.proceed;
                 for (number, route) in after.routes.iter().enumerate() {
-                    let it = atc_kernel::interlocking::RouteSet::nth(number);
+                    let it = RouteSet::nth(number);
                     proceed = proceed.or(it.only_if(route.phase == Phase::InUse));
                 }
                 Output { proceed, ..output }
@@ -175,12 +180,24 @@ fn wrong_devices_turn_red() {
     red(Wrong::NoReleaseTime, &station, &meeting(), "no-derailment");
     red(Wrong::ProceedInUse, &station, &meeting(), "proceed-over-clear");
     red(Wrong::DetectionIgnored, &station, &meeting(), "proceed-over-clear");
-    red(Wrong::GrantsWithoutProceed, &station, &telegrams, "no-overrun");
+    let following = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE];
+    let alone = Environment {
+        before: vec![turn(0, Travel::Toward), turn(1, Travel::Away)],
+        requests: dispatch(&following),
+        trains: vec![UP],
+        ..telegrams.clone()
+    };
+    red(Wrong::GrantsWhenWithdrawn, &station, &alone, "authority-asked-for");
+    red(Wrong::GrantsWithoutProceed, &station, &alone, "no-overrun");
+    let slow = station.with(|plan| {
+        plan.routes[usize::from(loop_route::UP_IN_ONE)].speed = RESTRICTED;
+        plan.braking[2] = Metres(100);
+    });
+    red(Wrong::Unrestricted, &slow, &alone, "limit-under-train");
     let blocks = Environment { blocks: 1 << passing::ONE, ..meeting() };
     red(Wrong::ConfirmedAtOnce, &station, &blocks, "no-staff-hit");
     let restricts = Environment { restricts: 1 << passing::ONE, ..telegrams };
     red(Wrong::Unrestricted, &station, &restricts, "restricted");
-    let following = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE];
     let flicker = Environment {
         unheard: 1,
         residual: 0,

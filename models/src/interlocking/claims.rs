@@ -7,7 +7,7 @@ use super::stations::{POINTS, ROUTES};
 use super::train::{Place, Train};
 use super::yard::{Harm, RESTRICTED, State, Yard, mask};
 use crate::check::{Checked, Claim};
-use atc_kernel::interlocking::{Epoch, Movement, Output, Phase, movement};
+use atc_kernel::interlocking::{Epoch, Movement, Output, Phase, SegmentSet, SpeedCode, movement};
 
 /// What a model is there to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +85,7 @@ impl<D: Device> Yard<D> {
             return Harm::None;
         }
         let all = after.trains.iter().fold(0, |all, train| all | train.occupies());
-        if mask(output.confirmed) & all != 0 {
+        if (mask(output.confirmed) | self.staff_beyond(after)) & all != 0 {
             return Harm::Staff;
         }
         let ground = &self.station.ground;
@@ -113,12 +113,47 @@ impl<D: Device> Yard<D> {
                 return Harm::Authority;
             }
             granted |= hold;
-            let touched = hold | 1 << front;
-            if touched & after.kept.restricted != 0 && telegram.speed > RESTRICTED {
+            let under = train.occupies();
+            if (hold | under) & after.kept.restricted != 0 && telegram.speed > RESTRICTED {
                 return Harm::Speed;
+            }
+            if telegram.speed > self.limit_under(under, after) {
+                return Harm::Limit;
+            }
+            if hold & !self.asked_for(front, after) != 0 {
+                return Harm::Unasked;
             }
         }
         Harm::None
+    }
+
+    /// The line circuits with the neighbours' staff: a mask.
+    pub(super) fn staff_beyond(&self, state: &State) -> u8 {
+        let Some(wait) = self.environment.staff_beyond else { return 0 };
+        let segments = self.station.layout.plan().segments.iter().zip(state.shown.since_consent);
+        segments.filter(|(_, since)| *since > wait).fold(0, |all, (segment, _)| all | mask(segment.all()))
+    }
+
+    /// The lowest speed of the routes that hold one of these circuits.
+    fn limit_under(&self, under: u8, state: &State) -> SpeedCode {
+        let routes = self.station.layout.plan().routes.iter().zip(&state.kept.routes);
+        let there = routes.filter(|(route, held)| mask(held.path(route).circuits) & under != 0);
+        there.map(|(route, _)| route.speed).min().unwrap_or(SpeedCode::MOST)
+    }
+
+    /// Where a train with its front in this circuit may be sent: over the routes that are asked for and the lines that they lead to; on plain
+    /// line, over that too.
+    fn asked_for(&self, front: u8, state: &State) -> u8 {
+        let (plan, line) = (self.station.layout.plan(), self.station.ground.line);
+        let mut all = if line >> front & 1 == 1 { line } else { 0 };
+        let asked = |(number, _): &(usize, &_)| state.shown.asked >> number & 1 == 1;
+        for (_, route) in plan.routes.iter().enumerate().filter(asked) {
+            all |= mask(route.held_from(0).circuits);
+            for (number, segment) in plan.segments.iter().enumerate() {
+                all |= mask(segment.all().only_if(route.to.meets(SegmentSet::nth(number))));
+            }
+        }
+        all
     }
 
     /// Whether the way from a signal to the next one, or to plain line, is free and its points lie right.
@@ -215,6 +250,16 @@ impl<D: Device> Yard<D> {
                  right",
                 |_, s| s.harm != Harm::Authority,
             ),
+            Claim::<Self>::always(
+                "authority-asked-for",
+                "a telegram leads only over routes that were requested and not withdrawn since, and the lines that they lead to",
+                |_, s| s.harm != Harm::Unasked,
+            ),
+            Claim::<Self>::always(
+                "limit-under-train",
+                "no telegram has a speed code above that of a route under any part of its train",
+                |_, s| s.harm != Harm::Limit,
+            ),
         ];
         if self.environment.obey == Obey::Telegrams {
             claims.push(Claim::<Self>::always(
@@ -223,7 +268,7 @@ impl<D: Device> Yard<D> {
                 |_, s| s.harm != Harm::Overrun,
             ));
         }
-        if self.environment.blocks != 0 {
+        if self.environment.blocks != 0 || self.environment.staff_beyond.is_some() {
             claims.push(Claim::<Self>::always(
                 "no-staff-hit",
                 "no train is in a circuit whose block was confirmed",
@@ -233,7 +278,7 @@ impl<D: Device> Yard<D> {
         if self.environment.restricts != 0 {
             claims.push(Claim::<Self>::always(
                 "restricted",
-                "no telegram has a speed code above a restriction of a circuit that it covers",
+                "no telegram has a speed code above a restriction of a circuit that it covers, or that is under its train",
                 |_, s| s.harm != Harm::Speed,
             ));
         }

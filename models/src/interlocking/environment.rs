@@ -82,6 +82,13 @@ pub struct Environment {
     pub blocks: u8,
     /// The circuits that may be restricted, and restrictions lifted, in any cycle: a mask.
     pub restricts: u8,
+    /// The circuits that may be reported without a train, any of them at once, in any cycle: a mask.
+    pub falsely: u8,
+    /// Whether the neighbours may end their consent in any cycle: for how many cycles their staff wait after that, and until the line is clear,
+    /// before they step onto it. None: they consent wherever this station does not permit.
+    pub staff_beyond: Option<u8>,
+    /// Whether the device has just started and finds the trains there, on their way on a signal that showed proceed before.
+    pub found: bool,
 }
 
 impl Environment {
@@ -102,6 +109,9 @@ impl Environment {
             requests: Vec::new(),
             blocks: 0,
             restricts: 0,
+            falsely: 0,
+            staff_beyond: None,
+            found: false,
         }
     }
 }

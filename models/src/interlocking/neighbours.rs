@@ -103,6 +103,8 @@ pub struct Pair {
     pub neighbour: Neighbour,
     /// What each sees of the line.
     pub view: View,
+    /// Whether the first station has just started with a train on the line.
+    pub found: bool,
     /// What the model is there to show.
     pub purpose: Purpose,
 }
@@ -176,21 +178,16 @@ impl Pair {
         state
     }
 
-    /// The cycle before the model begins, in which everything is clear and unblocked.
-    fn unblocking() -> Input {
+    /// The cycle before the model begins, in which everything is unblocked, with a train on the line or none.
+    fn unblocking(&self, train: Option<Train>) -> Input {
         let orders = Orders { unblock: CircuitSet::ALL, ..Orders::default() };
-        Input {
-            occupied: CircuitSet::EMPTY,
-            detected: Positions::NONE,
-            request: None,
-            orders,
-            consent: SegmentSet::EMPTY,
-        }
+        let quiet = Cycle { commands: [None; 2], consent: [false; 2], train };
+        Input { orders, ..self.input(quiet, 0) }
     }
 
     /// The state after it.
-    fn begin(layout: &Small) -> Kernel<1, 1> {
-        layout.cycle(layout.initial(), Self::unblocking()).0
+    fn begin(&self, layout: &Small) -> Kernel<1, 1> {
+        layout.cycle(layout.initial(), self.unblocking(None)).0
     }
 
     /// Whether a station has the direction away from it.
@@ -204,8 +201,22 @@ impl Subject for Pair {
     type Action = Cycle;
 
     fn initial(&self) -> Vec<State> {
-        let directions = Self::begin(&self.layout()).directions;
-        vec![State { directions: [directions; 2], sent: [0; 2], train: None, against: false }]
+        let started = self.begin(&self.layout()).directions;
+        let none = State { directions: [started; 2], sent: [0; 2], train: None, against: false };
+        if !self.found {
+            return vec![none];
+        }
+        let it = SegmentSet::nth(0);
+        let toward = Directions { toward: it, came: it, withdrawn: [Ticks(0)], ..started };
+        let away = Directions { away: it, withdrawn: [Ticks(self.turn)], ..started };
+        let living = u8::MAX >> (7 - self.life);
+        // The other station as it was, and the permissions that are on their way: to whoever sent the train, and from that one no more.
+        let others =
+            [(0, toward, [0, living]), (0, started, [0, living]), (1, away, [living, 0]), (1, started, [living, 0])];
+        let places = self.view.seen().1;
+        let on = (1..1_u8 << places).filter(|on| on.is_power_of_two() || (on / (on & on.wrapping_neg())) == 0b11);
+        let states = others.map(|(sender, other, sent)| (sender, State { directions: [started, other], sent, ..none }));
+        on.flat_map(|on| states.map(|(sender, state)| State { train: Some(Train { sender, on }), ..state })).collect()
     }
 
     fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
@@ -302,7 +313,10 @@ impl Subject for Pair {
     fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
         let layout = self.layout();
         let mut run = Run::begin("line", &["line", "way in", "beyond"], &layout);
-        run.step(&Self::unblocking(), BTreeMap::from([("hazard".to_owned(), json!(false))]));
+        run.step(
+            &self.unblocking(path.first().and_then(|(state, _)| state.train)),
+            BTreeMap::from([("hazard".to_owned(), json!(false))]),
+        );
         let word = |directions: Directions<1>| {
             if Self::sends(directions) {
                 "away"

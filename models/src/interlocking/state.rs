@@ -8,12 +8,15 @@ use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, SpeedLimits, Track,
     Works,
 };
+use atc_kernel::time::Ticks;
 
 /// The machine's state, without what never changes in a model and without the number of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kept {
     /// Cycles for which each circuit has been reported clear.
     pub clear_for: [u8; CIRCUITS],
+    /// For how many cycles the device has run, as far as that matters.
+    pub started: Ticks,
     /// Cycles for which each point has been detected and not driven.
     pub stood: [u8; POINTS],
     /// Where the points were detected last, if that matters.
@@ -45,6 +48,7 @@ impl Kept {
         let code = |circuit: usize| state.works.restrictions.over(CircuitSet::nth(circuit)) <= RESTRICTED;
         Self {
             clear_for: std::array::from_fn(|circuit| all[circuit]),
+            started: state.started,
             stood: std::array::from_fn(|point| state.points.parts().0[point]),
             last: state.points.parts().1,
             routes: state.routes,
@@ -55,7 +59,7 @@ impl Kept {
         }
     }
 
-    /// The machine's state, in cycle 0.
+    /// The machine's state, in a cycle that is not its first.
     pub fn kernel(&self, layout: &Small) -> kernel::State<ROUTES, SEGMENTS> {
         let mut clear_for = [layout.plan().clear; kernel::MAX_CIRCUITS];
         clear_for[..CIRCUITS].copy_from_slice(&self.clear_for);
@@ -64,12 +68,12 @@ impl Kept {
         let restrictions = SpeedLimits::NONE.and_at_most(RESTRICTED, circuits(self.restricted));
         kernel::State {
             track: Track::from_parts(clear_for),
-            started: layout.plan().start,
+            started: self.started,
             points: Settling::from_parts(stood, self.last),
             routes: self.routes,
             directions: self.directions,
             works: Works { blocked: circuits(self.blocked), confirmed: circuits(self.confirmed), restrictions },
-            epoch: kernel::Epoch(0),
+            epoch: kernel::Epoch(1),
         }
     }
 }
@@ -89,6 +93,10 @@ pub struct Shown {
     pub since_permit: [u8; SEGMENTS],
     /// For each signal the cycles since it showed proceed, where trains keep to telegrams: one more than the residual running at most.
     pub fallen: [u8; SIGNALS],
+    /// The routes that were requested, and neither withdrawn nor released since: a mask. In a machine that is right that follows from its state.
+    pub asked: u8,
+    /// For each segment the cycles since the neighbour's consent ended; one more than its staff wait once they are on the line.
+    pub since_consent: [u8; SEGMENTS],
 }
 
 /// What has gone wrong.
@@ -106,10 +114,14 @@ pub enum Harm {
     Proceed,
     /// A telegram lets a train run over a circuit with another train, or that is granted to another one, or over a point that does not lie right.
     Authority,
-    /// A train is in a circuit whose block was confirmed to staff.
+    /// A train is in a circuit whose block was confirmed to staff, of this station or of the neighbour.
     Staff,
     /// A telegram has a higher speed code than a restriction.
     Speed,
+    /// A telegram has a higher speed code than a route under its train.
+    Limit,
+    /// A telegram lets a train run where no route leads that was requested and not withdrawn since.
+    Unasked,
 }
 
 /// Trains, points, the machine, and what was seen.

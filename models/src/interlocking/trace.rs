@@ -306,5 +306,7 @@ const fn harm_word(harm: Harm) -> &'static str {
         Harm::Authority => "authority",
         Harm::Staff => "staff",
         Harm::Speed => "speed",
+        Harm::Limit => "limit",
+        Harm::Unasked => "unasked",
     }
 }

@@ -41,6 +41,8 @@ impl<D: Device> Yard<D> {
 
     /// What the machine reads before the model begins: circuits are unblocked and restrictions lifted until everything counts as clear, then
     /// the requests of the environment, one a cycle.
+    ///
+    /// A device that finds trains when it starts is unblocked at once.
     pub(super) fn prelude(&self) -> Vec<Input> {
         let plan = self.station.layout.plan();
         let all = CircuitSet::ALL;
@@ -52,6 +54,10 @@ impl<D: Device> Yard<D> {
             orders: Orders::default(),
             consent: SegmentSet::ALL,
         };
+        if self.environment.found {
+            let there = self.environment.trains.iter().fold(0, |all, train| all | 1 << train.at);
+            return vec![Input { occupied: circuits(there), orders, ..quiet }];
+        }
         let cycles = u16::from(plan.clear).max(plan.turn.0);
         let requests = self.environment.before.iter().map(|request| Input { request: Some(*request), ..quiet });
         std::iter::repeat_n(Input { orders, ..quiet }, usize::from(cycles)).chain(requests).collect()
@@ -160,6 +166,17 @@ impl<D: Device> Yard<D> {
         ways
     }
 
+    /// What circuits may be reported without a train.
+    fn falsely(&self) -> Vec<u8> {
+        (0..=self.environment.falsely).filter(|set| set & !self.environment.falsely == 0).collect()
+    }
+
+    /// Where the neighbours may consent.
+    fn consents(&self, state: &State) -> Vec<SegmentSet> {
+        let all = SegmentSet::from_bits(!state.shown.permits);
+        if self.environment.staff_beyond.is_some() { vec![all, SegmentSet::EMPTY] } else { vec![all] }
+    }
+
     /// What may be detected of the points.
     fn detections(&self, blades: [Blade; POINTS]) -> Vec<Positions> {
         let all = detected(blades);
@@ -224,6 +241,34 @@ impl<D: Device> Yard<D> {
                 let shows = signal.routes & shown.proceed != 0;
                 *fallen = if shows { 0 } else { (*fallen + 1).min(self.environment.residual + 1) };
             }
+        }
+    }
+
+    /// The routes that are asked for after a cycle.
+    fn asked(before: u8, request: Option<Request>, output: &Output<ROUTES>, after: &Kept) -> u8 {
+        let held =
+            (0..).zip(&after.routes).filter(|(_, route)| route.is_held()).fold(0, |all, (number, _)| all | 1 << number);
+        let asked = match request.filter(|_| output.answer == Some(Ok(()))) {
+            Some(Request::Set(route)) => before | 1 << route.number(),
+            Some(Request::Withdraw(route)) => before & !(1 << route.number()),
+            _ => before,
+        };
+        asked & held
+    }
+
+    /// Counts for how long the neighbours' consent has ended where they may not send themselves. Their staff step onto a line that is clear.
+    fn since_consent(&self, shown: &mut Shown, cycle: &Cycle) {
+        let Some(wait) = self.environment.staff_beyond else { return };
+        let running = cycle.input.consent.or(SegmentSet::from_bits(shown.permits));
+        let all = cycle.trains.iter().fold(0, |all, train| all | train.occupies());
+        let segments = self.station.layout.plan().segments.iter();
+        for ((number, segment), since) in segments.enumerate().zip(&mut shown.since_consent) {
+            let clear = mask(segment.all()) & all == 0;
+            *since = match *since {
+                _ if running.meets(SegmentSet::nth(number)) => 0,
+                since if since < wait || since == wait && clear => since + 1,
+                since => since,
+            };
         }
     }
 
@@ -314,6 +359,10 @@ impl<D: Device> Subject for Yard<D> {
         let mut trains = [Train { place: Place::Gone, ..Train::coming(super::ground::Heading::Up, 0) }; TRAINS];
         for (train, start) in trains.iter_mut().zip(&self.environment.trains) {
             *train = Train::coming(start.heading, self.environment.residual);
+            if self.environment.found {
+                let place = Place::Here { front: start.at, rear: start.at };
+                *train = Train { place, since_proceed: 0, ..*train };
+            }
         }
         let mut shown = Shown {
             proceed: 0,
@@ -322,6 +371,8 @@ impl<D: Device> Subject for Yard<D> {
             permits,
             since_permit: [self.environment.permission_lives + 1; SEGMENTS],
             fallen: [0; SIGNALS],
+            asked: 0,
+            since_consent: [0; SEGMENTS],
         };
         if self.environment.obey == Obey::Telegrams {
             shown.fallen[..self.station.ground.signals.len()].fill(self.environment.residual + 1);
@@ -337,15 +388,20 @@ impl<D: Device> Subject for Yard<D> {
         }
         let commands = self.commands(state);
         let blades = self.blades(state);
-        let consent = SegmentSet::from_bits(!state.shown.permits);
+        let (falsely, consents) = (self.falsely(), self.consents(state));
         for (trains, fate) in self.trains(state) {
             for (reported, trains) in self.heard(&state.trains, &trains) {
                 for blades in &blades {
                     for detected in self.detections(*blades) {
                         for (request, orders) in &commands {
-                            let (request, orders) = (*request, *orders);
-                            let input = Input { occupied: circuits(reported), detected, request, orders, consent };
-                            cycles.push(Cycle { trains, fate, blades: *blades, input });
+                            for also in falsely.iter().filter(|also| **also & reported == 0) {
+                                cycles.extend(consents.iter().map(|consent| {
+                                    let (occupied, consent) = (circuits(reported | also), *consent);
+                                    let input =
+                                        Input { occupied, detected, request: *request, orders: *orders, consent };
+                                    Cycle { trains, fate, blades: *blades, input }
+                                }));
+                            }
                         }
                     }
                 }
@@ -368,9 +424,12 @@ impl<D: Device> Subject for Yard<D> {
         let late = self.environment.drives == Drives::AfterTheDrive;
         let drives_before = if late { state.shown.drives } else { Positions::NONE };
         let permits = output.permits.bits();
-        let mut shown = Shown { proceed, drives: output.drives, drives_before, permits, ..state.shown };
+        let kept = Kept::of(&kernel);
+        let asked = Self::asked(state.shown.asked, cycle.input.request, &output, &kept);
+        let mut shown = Shown { proceed, drives: output.drives, drives_before, permits, asked, ..state.shown };
         self.since(&mut shown);
-        let mut after = State { trains, blades: cycle.blades, kept: Kept::of(&kernel), shown, harm: Harm::None };
+        self.since_consent(&mut shown, cycle);
+        let mut after = State { trains, blades: cycle.blades, kept, shown, harm: Harm::None };
         after.harm = self.harm(cycle, &after, &output, &telegrams);
         Some(after)
     }

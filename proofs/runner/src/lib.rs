@@ -13,6 +13,7 @@ pub mod kani;
 mod loops;
 pub mod mutants;
 pub mod native;
+pub mod old_rules;
 mod process;
 pub mod provenance;
 mod regions;

@@ -1,5 +1,6 @@
-//! `cargo run -p atc-prover -- list | prove | mutants | replay | twins | selftest | traps`.
+//! `cargo run -p atc-prover -- list | prove | mutants | old-rules | replay | twins | selftest | traps`.
 
+use atc_prover::old_rules::{self, Program};
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
 use atc_prover::traps::table;
 use atc_prover::twins::twins;
@@ -50,6 +51,21 @@ enum Command {
         alone: bool,
         #[command(flatten)]
         run: Run,
+    },
+    /// Runs the adversary, or the models, on a kernel that is wrong in named ways: old rules put back.
+    OldRules {
+        /// The mutants, with commas; none of them is the kernel as it is.
+        #[arg(value_delimiter = ',')]
+        mutants: Vec<String>,
+        /// What runs on it.
+        #[arg(long, value_enum, default_value = "adversary")]
+        program: ProgramName,
+        /// The table of the known faults instead: what finds each of them with the old rule put back.
+        #[arg(long, conflicts_with_all = ["mutants", "program", "arguments"])]
+        table: bool,
+        /// What the program is told.
+        #[arg(last = true)]
+        arguments: Vec<String>,
     },
     /// Runs one harness natively on given values, and says in words what they are.
     Replay {
@@ -116,6 +132,14 @@ enum EngineName {
     Native,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum ProgramName {
+    /// Hunts for accidents, episode by episode.
+    Adversary,
+    /// Goes through all states of small stations.
+    Models,
+}
+
 #[derive(clap::Args)]
 struct Run {
     /// Runs of the prover at a time [default: the cores].
@@ -171,6 +195,8 @@ fn run(command: Command) -> Result<bool, String> {
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
         }
         Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
+        Command::OldRules { table: true, .. } => table_of_old_rules(),
+        Command::OldRules { mutants, program, arguments, .. } => with_old_rules(&mutants, program, &arguments),
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
         Command::Twins { names, runs, run } => compare_twins(&names, runs, &run.options()),
         Command::Kani { what } => of_kani(what),
@@ -278,6 +304,45 @@ fn compare_twins(names: &[String], runs: usize, options: &Options) -> Result<boo
     println!("{same} of {} harnesses are the same in Rust, in wasm2c's C and as they are proved", all.len());
     println!("{silent} of these say nothing: no drawn value met their assumptions");
     Ok(same == all.len())
+}
+
+fn with_old_rules(mutants: &[String], program: ProgramName, arguments: &[String]) -> Result<bool, String> {
+    let program = match program {
+        ProgramName::Adversary => Program::Adversary,
+        ProgramName::Models => Program::Models,
+    };
+    let names: Vec<&str> = mutants.iter().map(String::as_str).collect();
+    let mut command = old_rules::build(&root(), &[program])?.with(program, &names)?;
+    let status = command.args(arguments).status().map_err(|error| format!("{}: {error}", program.name()))?;
+    Ok(status.success())
+}
+
+/// Hunts for each known fault with the old rule put back and without, for as many cycles, and asks the model that is said to find it.
+fn table_of_old_rules() -> Result<bool, String> {
+    let programs = old_rules::build(&root(), &[Program::Adversary, Program::Models])?;
+    let mut ok = true;
+    println!(
+        "| fault | mutants | cycles | accident | model | what fails with the old rule alone |\n|---|---|---|---|---|---|"
+    );
+    for fault in programs.known()? {
+        let hunted = programs.hunt(&fault, &fault.mutants)?.found;
+        let (after, mut accident) = hunted.clone().unwrap_or((fault.cycles, "NOT FOUND".to_owned()));
+        let control = programs.hunt(&fault, &[])?.found;
+        if let Some((_, accident_of_control)) = &control {
+            accident = format!("FOUND IN THE KERNEL AS IT IS, TOO: {accident_of_control}");
+        }
+        let (red, green) =
+            (programs.unexpected(&fault.model, &fault.mutants)?, programs.unexpected(&fault.model, &[])?);
+        let claims = match (red.is_empty(), green.is_empty()) {
+            (_, false) => format!("RED WITHOUT THE OLD RULE, TOO: {}", green.join(", ")),
+            (true, true) => "NOT RED".to_owned(),
+            (false, true) => red.join(", "),
+        };
+        ok &= hunted.is_some() && control.is_none() && !red.is_empty() && green.is_empty();
+        let (name, mutants, model) = (&fault.name, fault.mutants.join(", "), &fault.model);
+        println!("| {name} | {mutants} | {after} | {accident} | {model} | {claims} |");
+    }
+    Ok(ok)
 }
 
 fn try_traps(options: &Options) -> Result<bool, String> {

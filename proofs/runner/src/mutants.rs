@@ -146,11 +146,11 @@ pub fn mutants(
 
 /// Whether the mutant is compiled with others, and selected at run time.
 fn goes_together(root: &Path, mutant: &Mutant) -> bool {
-    !mutant.alone && selectable(root, mutant)
+    !mutant.alone && is_together(root, mutant)
 }
 
 /// Whether the mutant can be selected at run time.
-fn selectable(root: &Path, mutant: &Mutant) -> bool {
+pub(crate) fn is_together(root: &Path, mutant: &Mutant) -> bool {
     let change = Change { number: 1, find: &mutant.find, replace: &mutant.replace };
     let text = std::fs::read_to_string(root.join(mutant.path())).unwrap_or_default();
     // The selector is in the kernel, which its arithmetic does not know.

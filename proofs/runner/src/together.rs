@@ -7,7 +7,7 @@ use crate::compile::{Compiled, Kernel, compile, copy, write};
 use crate::control::is_smaller;
 use crate::mutants::{FIRST, Mutant, SINGLY, SLOW};
 use crate::report::{Control, Kill};
-use crate::schemata::{Change, instrument};
+use crate::schemata::{Change, instrument, with_cells};
 use crate::tools::Tools;
 use crate::twin::{self, Tape};
 use atc_proofs::Harness;
@@ -169,28 +169,19 @@ fn build(tools: &Tools, root: &Path, folder: &Path, options: &Options, group: &G
 
 /// The crate's root with what its mutants ask: a cell for each, which the prover fills before the harness begins.
 fn with_selector(text: &str, numbers: impl Iterator<Item = usize> + Clone) -> Result<String, String> {
-    const FORBIDS: &str = "#![forbid(unsafe_code)]";
-    if text.matches(FORBIDS).count() != 1 {
-        return Err(format!("the kernel's lib.rs does not have `{FORBIDS}` once"));
-    }
     let most = numbers.clone().max().unwrap_or(0) + 1;
-    let mut written = text.replacen(FORBIDS, "", 1);
-    let _ = write!(
-        written,
-        "\nstatic mut SELECTED: [u32; {most}] = [0; {most}];
-         #[inline(always)]
-         pub(crate) const fn selected(number: usize) -> bool {{ unsafe {{ SELECTED[number] != 0 }} }}
-         #[link(wasm_import_module = \"prover\")]
-         unsafe extern \"C\" {{ #[link_name = \"selected\"] safe fn is_selected(number: u32) -> u32; }}
+    let mut written = String::from(
+        "#[link(wasm_import_module = \"prover\")]
+         unsafe extern \"C\" { #[link_name = \"selected\"] safe fn is_selected(number: u32) -> u32; }
          /// Asks which mutants this kernel is to be.
          #[inline(always)]
-         pub fn select() {{ unsafe {{\n"
+         pub fn select() { unsafe {\n",
     );
     for number in numbers {
         let _ = writeln!(written, "SELECTED[{number}] = is_selected({number});");
     }
     written.push_str("} }\n");
-    Ok(written)
+    with_cells(text, most, &written)
 }
 
 /// One harness with mutants in it. Mutant 0 is the kernel with none of them selected; or, if it was compiled alone, the mutant.

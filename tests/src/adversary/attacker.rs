@@ -3,6 +3,7 @@
 use super::arsenal::Arsenal;
 use super::device::{Ask, Commands, all};
 use super::dice::Dice;
+use super::dispatcher::{busy_lines, dispatch};
 use super::ground::{Ground, Mask, bit, members, mm_s};
 use super::moves::{Arrival, Move};
 use super::neighbour::Manner;
@@ -16,6 +17,8 @@ pub struct Attacker {
     driver: Option<Driver>,
     unblock: Option<i64>,
     interval: usize,
+    /// For how long the stations agree on a direction.
+    agreed: i64,
     later: Vec<(i64, Move)>,
 }
 
@@ -29,7 +32,8 @@ impl Attacker {
             [false, true] => Some(Driver::Signals),
             _ => dice.pick(&[None, Some(Driver::Telegrams), Some(Driver::Telegrams), Some(Driver::Signals)]).flatten(),
         };
-        Self { dice, arsenal, driver, unblock: None, interval, later: Vec::new() }
+        let agreed = dice.within(700, 2500);
+        Self { dice, arsenal, driver, unblock: None, interval, agreed, later: Vec::new() }
     }
 
     /// What is fixed for the episode.
@@ -57,8 +61,12 @@ impl Attacker {
         let ground = world.ground;
         let now = world.truth.now;
         if now == 0 {
-            for _ in 0..self.dice.below(4) {
-                let circuit = self.dice.below(ground.seen);
+            // After a start nobody knows which way a train on plain line was sent: it stays there for good.
+            let line = ground.lines.iter().fold(0, |all, line| all | line.mask);
+            let inside: Vec<usize> = members(all(ground) & !line).collect();
+            for _ in 0..=self.dice.below(3) {
+                let any = self.dice.below(ground.seen);
+                let circuit = self.dice.pick(&inside).filter(|_| !self.dice.once_in(8)).unwrap_or(any);
                 let arrival = self.arrival(ground);
                 moves.push(Move::Place(circuit, arrival));
             }
@@ -95,7 +103,11 @@ impl Attacker {
         let train = self.dice.below(world.trains.len());
         let train = world.trains.get(train);
         match kind {
-            0 => moves.push(Move::Ask(Ask::Set(self.route(world)))),
+            0 => {
+                let (agreed, arsenal) = (self.agreed, self.arsenal);
+                let sends = |line: usize| agree(world, line, agreed, arsenal) == Agreed::Out;
+                dispatch(world, &mut self.dice, &sends, moves);
+            }
             1 => {
                 let asked: Vec<usize> = (0..ground.routes.len()).filter(|route| world.truth.asked[*route].0).collect();
                 if let Some(route) = self.dice.pick(&asked) {
@@ -127,11 +139,11 @@ impl Attacker {
             6 => self.maintain(world, circuit, moves),
             7 => {
                 let mask = self.near(world, circuit);
-                moves.push(Move::Occupy(mask, self.lasting(ground)));
+                self.occupy(world, mask, moves);
             }
             8 => {
                 let mask = self.some(ground);
-                moves.push(Move::Occupy(mask, self.lasting(ground)));
+                self.occupy(world, mask, moves);
             }
             9 => {
                 if let Some(train) = train {
@@ -195,32 +207,16 @@ impl Attacker {
         if self.arsenal.line == 0 || self.dice.once_in(2) {
             return;
         }
-        let busy = |line: &usize| world.trains.iter().any(|train| train.under & ground.lines[*line].mask != 0);
-        let lines: Vec<usize> = (0..ground.lines.len()).filter(busy).collect();
-        if let Some(line) = self.dice.pick(&lines) {
+        if let Some(line) = self.dice.pick(&busy_lines(world, ground)) {
             moves.push(Move::Consent(line, false));
-            self.later.push((unblock + 1, Move::Ask(Ask::Turn(line, false))));
-            for wait in [3, 10, ground.turn] {
-                let arrival = self.arrival(ground);
-                self.later.push((unblock + wait, Move::Send(line, arrival)));
+            for obeys in [unblock, unblock.max(world.truth.now + ground.start)] {
+                self.later.push((obeys + 1, Move::Ask(Ask::Turn(line, false))));
+                for wait in [3, 10, ground.turn] {
+                    let arrival = self.arrival(ground);
+                    self.later.push((obeys + wait, Move::Send(line, arrival)));
+                }
             }
         }
-    }
-
-    /// A route that somebody wants, or any.
-    fn route(&mut self, world: &World) -> usize {
-        let ground = world.ground;
-        if !self.dice.once_in(4)
-            && let Some(train) = world.trains.get(self.dice.below(world.trains.len()))
-        {
-            let here = bit(train.front_circuit(ground));
-            let wanted: Vec<usize> =
-                (0..ground.routes.len()).filter(|route| ground.routes[*route].approach & here != 0).collect();
-            if let Some(route) = self.dice.pick(&wanted) {
-                return route;
-            }
-        }
-        self.dice.below(ground.routes.len())
     }
 
     fn line(&mut self, ground: &Ground) -> Option<usize> {
@@ -230,12 +226,13 @@ impl Attacker {
     fn on_line(&mut self, world: &World, moves: &mut Vec<Move>) {
         let Some(line) = self.line(world.ground) else { return };
         let ways = world.ground.lines[line].ways;
-        let drawn = self.dice.below(7);
+        let drawn = if self.dice.once_in(4) { self.dice.below(7) } else { self.as_agreed(world, line) };
         match drawn {
             0 | 1 if ways[0] => moves.push(Move::Ask(Ask::Turn(line, false))),
             2 if ways[1] => moves.push(Move::Ask(Ask::Turn(line, true))),
             3 if ways[1] => moves.push(Move::Consent(line, true)),
             4 => moves.push(Move::Consent(line, false)),
+            7 => moves.push(Move::NeighbourWork(line, true)),
             _ if ways[0] => {
                 let arrival = self.arrival(world.ground);
                 if world.trains.len() < 5 && world.neighbours[line].is_permitted(world.ground) {
@@ -243,6 +240,36 @@ impl Attacker {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// What serves what the two stations have agreed on: turns that are taken back at once bring no train.
+    fn as_agreed(&mut self, world: &World, line: usize) -> usize {
+        let kinds: &[usize] = match agree(world, line, self.agreed, self.arsenal) {
+            Agreed::In => &[0, 4, 5, 5],
+            Agreed::Out => &[2, 3],
+            Agreed::Work => &[4, 7],
+        };
+        self.dice.pick(kinds).unwrap_or(0)
+    }
+
+    fn occupy(&mut self, world: &World, mask: Mask, moves: &mut Vec<Move>) {
+        let lasts = self.lasting(world.ground);
+        moves.push(Move::Occupy(mask, lasts));
+        self.drive_after(world, lasts);
+    }
+
+    /// Points are driven once a false occupancy is over: what a train has left need not be locked any more.
+    fn drive_after(&mut self, world: &World, lasts: i64) {
+        let asked: Vec<usize> = (0..world.ground.routes.len()).filter(|route| world.truth.asked[*route].0).collect();
+        let Some(route) = self.dice.pick(&asked).filter(|_| self.arsenal.point > 0 && !self.dice.once_in(3)) else {
+            return;
+        };
+        if let Some((point, reverse)) = self.dice.pick(&world.ground.routes[route].points) {
+            for wait in [1, 4, 12] {
+                let when = world.truth.now + lasts + world.ground.clear + wait;
+                self.later.push((when, Move::Ask(Ask::Drive(point, !reverse))));
+            }
         }
     }
 
@@ -308,17 +335,39 @@ impl Attacker {
             let about = (next_to(ground, train) | train.under) & all(ground);
             let circuits: Vec<usize> = members(about).collect();
             if let Some(circuit) = self.dice.pick(&circuits) {
-                moves.push(Move::Occupy(bit(circuit), self.lasting(ground)));
+                self.occupy(world, bit(circuit), moves);
             }
         } else if drawn < one + many {
             let mask = self.some(ground);
-            moves.push(Move::Occupy(mask, self.lasting(ground)));
+            self.occupy(world, mask, moves);
         } else {
             let circuits: Vec<usize> = members((train.under | next_to(ground, train)) & all(ground)).collect();
             if let Some(circuit) = self.dice.pick(&circuits) {
                 moves.push(Move::Lose(circuit, self.dice.within(1, ground.loss.max(1))));
             }
         }
+    }
+}
+
+/// What two stations have agreed on for a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Agreed {
+    /// The neighbour sends.
+    In,
+    /// This station sends.
+    Out,
+    /// Nobody sends: the neighbour's workers want the line, and this station is not told to turn it.
+    Work,
+}
+
+/// What they have agreed on now; it changes every `lasts` cycles.
+fn agree(world: &World, line: usize, lasts: i64, arsenal: Arsenal) -> Agreed {
+    let begun = usize::try_from(world.truth.now / lasts).unwrap_or(0) + line;
+    match world.ground.lines[line].ways {
+        [_, true] if arsenal.neighbour_work > 0 && begun % 4 == 2 => Agreed::Work,
+        [true, false] => Agreed::In,
+        [true, true] if begun.is_multiple_of(2) => Agreed::In,
+        _ => Agreed::Out,
     }
 }
 

@@ -129,6 +129,10 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight 
                 None => return sight,
             }
         }
+        // Who changed ends between signals has none ahead of him that was set for him: he waits until he is told to move.
+        if train.about && !on_line && route.is_none() {
+            return Sight { distance: 0, ..sight };
+        }
         let Some(next) = ground.across(joint, piece) else { return sight };
         let to = ground.pieces[next].circuit;
         // Onto plain line, and off it where no signal stands, he keeps to the telegram.

@@ -120,6 +120,8 @@ pub struct Ground {
     pub life: i64,
     /// The time that passes before a line turns.
     pub turn: i64,
+    /// The time after a start in which the device moves nothing.
+    pub start: i64,
     /// The deceleration that every train has, in mm/s².
     pub brake: i64,
     /// The speed of each code.
@@ -173,6 +175,7 @@ impl Ground {
             loss: cycles(station.times.shunt_loss_ms.value).min(i64::from(model.values.clear) - 2).max(0),
             life: cycles(model.values.telegram_age_ms),
             turn: i64::from(model.values.turn.0),
+            start: i64::from(model.values.start.0),
             brake: i64::from(station.braking.deceleration_mm_s2.value),
             codes: model.values.speeds_kmh.iter().map(|kmh| mm_s(i64::from(*kmh))).collect(),
             reverse: 0,

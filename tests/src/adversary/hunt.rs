@@ -4,6 +4,7 @@ use super::arsenal::Arsenal;
 use super::attacker::Attacker;
 use super::conditions::{Measured, broken};
 use super::device::Device;
+use super::dispatcher::is_at_rest;
 use super::ground::Ground;
 use super::judge::{Accident, Family};
 use super::moves::Move;
@@ -32,6 +33,9 @@ pub struct Scenario {
     /// The moves, each with its cycle.
     pub moves: Vec<(i64, Move)>,
 }
+
+/// How long nothing moves in an episode, besides the turn time, and once the time after a start is over.
+const REST: i64 = 1000;
 
 /// An accident and how it came about.
 #[derive(Clone, Debug)]
@@ -77,13 +81,16 @@ pub fn hunt(device: &mut dyn Device, ground: &Ground, hunt: &Hunt) -> (Option<Fi
         device.restart();
         let (mut moves, mut now) = (Vec::new(), Vec::new());
         let mut accident = None;
-        while accident.is_none() && world.truth.now < hunt.episode {
+        let mut rest = 0;
+        // An episode in which nothing has moved for longer than anything takes is over.
+        while accident.is_none() && world.truth.now < hunt.episode && rest < REST + ground.turn {
             now.clear();
             attacker.draw(&world, &mut now);
             moves.extend(now.iter().map(|it| (world.truth.now, *it)));
             accident = world.cycle(device, &now, &hunt.sought);
             tally.cycles += 1;
             tally.routes_set += u64::from(world.has_set());
+            rest = if is_at_rest(&world) && world.truth.now > ground.start { rest + 1 } else { 0 };
         }
         tally.episodes += 1;
         tally.trains += u64::try_from(world.arrived()).unwrap_or(0);

@@ -170,14 +170,19 @@ fn inside(ground: &Ground) -> Mask {
 }
 
 fn unasked(ground: &Ground, train: &Train, truth: &Truth) -> Option<String> {
-    let mut left = (train.heard.hold | train.first_ahead) & inside(ground);
-    if train.driver == Driver::Signals || train.authority == 0 || left == 0 {
+    if train.driver == Driver::Signals || train.authority == 0 {
         return None;
     }
-    for (route, (asked, withdrawn)) in ground.routes.iter().zip(&truth.asked) {
-        if *asked || truth.now - withdrawn <= ground.life + 2 {
-            left &= !route.mask;
-        }
+    let counts = |route: usize| truth.asked[route].0 || truth.now - truth.asked[route].1 <= ground.life + 2;
+    let told = train.heard.hold | train.first_ahead;
+    let mut left = told & inside(ground);
+    if left != 0 {
+        let asked = (0..ground.routes.len()).filter(|route| counts(*route));
+        left = asked.fold(left, |left, route| left & !ground.routes[route].mask);
+    } else if !train.about && !train.heard.neighbour && bit(train.front_circuit(ground)) & inside(ground) != 0 {
+        // From the throat it is led onto plain line by the route whose signal it has passed. Who changed ends there has passed none.
+        let out = train.route.filter(|route| counts(*route)).and_then(|route| ground.routes[route].lines[1]);
+        left = told & !out.map_or(0, |line| ground.lines[line].mask);
     }
     let circuit = members(left).next()?;
     let speed = train.heard.speed * 36 / KMH;

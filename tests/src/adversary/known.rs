@@ -1,7 +1,9 @@
 //! The faults that were found in the kernel of November 22 (the sessions of the same names), each with the weapons that are enough to
-//! find it and the accident that it ends in. While a fault is there the adversary must find it; once it is mended it must not.
+//! find it and the accident that it ends in. All are mended. The adversary must find each with the old rule put back
+//! (`proofs/runner/tests/old_rules.rs`), and none in the kernel as it is (`tests/tests/adversary.rs`); and so must a model of `models/`.
 
 use super::arsenal::Arsenal;
+use super::hunt::Hunt;
 use super::judge::Family;
 
 /// A fault.
@@ -19,11 +21,27 @@ pub struct Fault {
     pub ends_in: &'static [Family],
     /// The station on which it is looked for.
     pub layout: &'static str,
-    /// A seed with which it was found soon.
+    /// The old rule, as mutants of `proofs/mutants.toml` that together put it back.
+    pub old_rule: &'static [&'static str],
+    /// A seed with which it is found soon while the old rule is there.
     pub seed: u64,
-    /// Whether the rules are mended: then it is found no more.
-    pub mended: bool,
+    /// The model of `models/` that is red with the old rule, and green without.
+    pub model: &'static str,
 }
+
+impl Fault {
+    /// The hunt for it.
+    pub fn hunt(&self) -> Hunt {
+        let sought = self.ends_in.to_vec();
+        Hunt { seed: self.seed, cycles: CYCLES, episode: EPISODE, arsenal: self.arsenal, sought }
+    }
+}
+
+/// The cycles in which each of them is found.
+pub const CYCLES: u64 = 150_000;
+
+/// The cycles of an episode.
+pub const EPISODE: i64 = 12_000;
 
 const TELEGRAMS: Arsenal = Arsenal { drivers: [true, false], ..Arsenal::RUNNING };
 const LOOP: &str = "passing-loop";
@@ -37,21 +55,23 @@ pub const KNOWN: &[Fault] = &[
         name: "release by false occupancy",
         session: "release-by-false-occupancy",
         must: "circuits that are falsely occupied, any number at once, cost availability and never safety",
-        arsenal: Arsenal { many: 12, point: 12, ..TELEGRAMS },
+        arsenal: Arsenal { many: 3, point: 12, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
+        old_rule: &["ilk-release-without-rear"],
         seed: 18,
-        mended: true,
+        model: "interlocking-loop-falsely-occupied",
     },
     Fault {
         name: "bobbing circuit",
         session: "bobbing-circuit",
         must: "one circuit that is falsely occupied costs availability and never safety",
-        arsenal: Arsenal { one: 16, point: 12, ..TELEGRAMS },
+        arsenal: Arsenal { one: 6, point: 12, pace: 6, ..TELEGRAMS },
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 38,
-        mended: true,
+        old_rule: &["ilk-release-without-rear"],
+        seed: 15,
+        model: "interlocking-loop-falsely-occupied",
     },
     Fault {
         name: "withdrawn route grants again",
@@ -60,8 +80,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { withdraw: 10, ..TELEGRAMS },
         ends_in: &[Family::Unasked],
         layout: LOOP,
+        old_rule: &["ilk-withdrawn-in-use-again"],
         seed: 11,
-        mended: true,
+        model: "interlocking-terminus-telegrams",
     },
     Fault {
         name: "point leaves after an individual command",
@@ -70,8 +91,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { point: 30, deaf: 10, slow_points: true, ..TELEGRAMS },
         ends_in: &[Family::Derailment],
         layout: LOOP,
+        old_rule: &["point-settles-at-once"],
         seed: 6,
-        mended: true,
+        model: "interlocking-loop-settling",
     },
     Fault {
         name: "speed of the tail",
@@ -80,8 +102,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: TELEGRAMS,
         ends_in: &[Family::Speed],
         layout: LOOP,
+        old_rule: &["speed-of-the-front"],
         seed: 40,
-        mended: true,
+        model: "interlocking-terminus-telegrams",
     },
     Fault {
         name: "restriction under the tail",
@@ -90,8 +113,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { restrict: 6, ..TELEGRAMS },
         ends_in: &[Family::Restriction],
         layout: LOOP,
+        old_rule: &["speed-of-the-front"],
         seed: 4,
-        mended: true,
+        model: "interlocking-loop-restricted",
     },
     Fault {
         name: "consent ended",
@@ -100,8 +124,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { neighbour_work: 10, line: 40, ..TELEGRAMS },
         ends_in: &[Family::Worker, Family::Collision, Family::Authority],
         layout: LOOP,
+        old_rule: &["line-set-without-consent", "line-proceed-without-consent", "line-granted-without-consent"],
         seed: 20,
-        mended: true,
+        model: "interlocking-loop-line-blocked-own",
     },
     Fault {
         name: "turned while occupied after a restart",
@@ -110,8 +135,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { line: 60, restart: 8, ..TELEGRAMS },
         ends_in: &[Family::Collision, Family::Authority],
         layout: LOOP,
-        seed: 27,
-        mended: true,
+        old_rule: &["line-occupied-given", "heading-of-the-line"],
+        seed: 74,
+        model: "interlocking-line-start",
     },
     Fault {
         name: "restart forgets the approach",
@@ -120,8 +146,9 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { restart: 20, point: 20, ..TELEGRAMS },
         ends_in: &[Family::Derailment],
         layout: LOOP,
+        old_rule: &["start-moves"],
         seed: 1,
-        mended: true,
+        model: "interlocking-loop-start",
     },
     Fault {
         name: "telegram against the direction",
@@ -130,7 +157,20 @@ pub const KNOWN: &[Fault] = &[
         arsenal: Arsenal { face: 10, ..TELEGRAMS },
         ends_in: &[Family::Unasked, Family::Derailment],
         layout: LOOP,
+        old_rule: &["heading-of-a-route"],
         seed: 1,
-        mended: true,
+        model: "interlocking-terminus-telegrams",
+    },
+    Fault {
+        name: "granted from the throat",
+        session: "none: a second reader found it",
+        must: "a train in the throat is granted the line only if a route out has led it there",
+        arsenal: Arsenal { withdraw: 20, pace: 10, ..TELEGRAMS },
+        ends_in: &[Family::Unasked],
+        layout: LOOP,
+        // The second takes away a short cut that would hide the first: nobody looks for what begins in the throat.
+        old_rule: &["out-whoever", "telegram-to-nobody"],
+        seed: 3,
+        model: "interlocking-loop-following",
     },
 ];

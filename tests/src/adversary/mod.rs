@@ -3,7 +3,8 @@
 //!
 //! * [`ground`], [`train`], [`point`], [`driver`], [`neighbour`]: the truth, on millimetres, from the tracks of the layout file.
 //! * [`device`]: the only file that knows the kernel.
-//! * [`moves`], [`arsenal`], [`attacker`]: what the adversary may do, and how it draws that from a seed.
+//! * [`moves`], [`arsenal`], [`attacker`]: what the adversary may do, and how it draws that from a seed. [`dispatcher`]: what
+//!   keeps traffic going meanwhile.
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
@@ -13,6 +14,7 @@ pub mod attacker;
 pub mod conditions;
 pub mod device;
 pub mod dice;
+pub mod dispatcher;
 pub mod driver;
 pub mod ground;
 pub mod hunt;

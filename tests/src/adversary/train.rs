@@ -78,6 +78,8 @@ pub struct Train {
     pub heard: Heard,
     /// The route that it runs on, as it lay when the front passed its signal.
     pub route: Option<usize>,
+    /// Its driver has changed ends, and it has passed no signal since.
+    pub about: bool,
     /// It has passed a signal at stop and stands, or will.
     pub slid: bool,
     /// How far it may run as its driver sees it, on its own odometer.
@@ -172,6 +174,7 @@ impl Train {
         } else if self.route.is_some_and(|route| ground.routes[route].mask & bit(circuit) == 0) {
             self.route = None;
         }
+        self.about &= !ground.routes.iter().any(begins);
         self.legs.push(leg(ground, points, piece, from.exit, self.route));
     }
 
@@ -186,6 +189,8 @@ impl Train {
         self.heard = Heard::STOP;
         self.target = self.run;
         self.slid = false;
+        self.about = true;
+        self.route = None;
         self.next = 0;
     }
 }

@@ -1,8 +1,11 @@
 //! Hunts for accidents: see `atc_tests::adversary`.
 //!
-//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N]`
+//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N] [--small yes|no]`
+//! `adversary --known`
 //!
-//! With `--fault` it takes the weapons of that fault of `known.rs`; without, all of them. Exit code 1 if an accident was found.
+//! With `--fault` it hunts as the table in `known.rs` has it for that fault, but for what the options behind it say; without, with all weapons.
+//! The scenario is told as small as it gets, with `--small no` as it was found. `--known` lists the table.
+//! Exit code 1 if an accident was found.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -15,13 +18,19 @@ use atc_tests::adversary::{device, known, stations, words};
 struct Wanted {
     layout: Option<String>,
     random: Option<u64>,
-    fault: Option<String>,
     hunt: Hunt,
+    small: bool,
 }
 
 fn wanted() -> Result<Wanted, String> {
-    let hunt = Hunt { seed: 1, cycles: 1_000_000, episode: 3000, arsenal: Arsenal::ALL, sought: Family::ALL.to_vec() };
-    let mut wanted = Wanted { layout: None, random: None, fault: None, hunt };
+    let hunt = Hunt {
+        seed: 1,
+        cycles: 1_000_000,
+        episode: known::EPISODE,
+        arsenal: Arsenal::ALL,
+        sought: Family::ALL.to_vec(),
+    };
+    let mut wanted = Wanted { layout: None, random: None, hunt, small: true };
     let mut arguments = std::env::args().skip(1);
     while let Some(option) = arguments.next() {
         let value = arguments.next().ok_or(format!("{option} needs a value"))?;
@@ -32,7 +41,15 @@ fn wanted() -> Result<Wanted, String> {
             "--cycles" => wanted.hunt.cycles = number()?,
             "--seed" => wanted.hunt.seed = number()?,
             "--episode" => wanted.hunt.episode = i64::try_from(number()?).unwrap_or(i64::MAX),
-            "--fault" => wanted.fault = Some(value),
+            "--fault" => {
+                let fault = known::KNOWN.iter().find(|fault| fault.name == value).ok_or_else(|| {
+                    let names: Vec<&str> = known::KNOWN.iter().map(|fault| fault.name).collect();
+                    format!("--fault: {value} is none of {}", names.join(", "))
+                })?;
+                wanted.hunt = fault.hunt();
+                wanted.layout = Some(format!("layouts/{}.toml", fault.layout));
+            }
+            "--small" => wanted.small = value != "no",
             "--family" => {
                 let named = |name: &str| Family::ALL.into_iter().find(|family| family.name() == name);
                 let all: Option<Vec<Family>> = value.split(',').map(named).collect();
@@ -43,14 +60,6 @@ fn wanted() -> Result<Wanted, String> {
             }
             _ => return Err(format!("there is no option {option}")),
         }
-    }
-    if let Some(name) = &wanted.fault {
-        let fault = known::KNOWN.iter().find(|fault| fault.name == name);
-        let fault = fault.ok_or_else(|| {
-            let names: Vec<&str> = known::KNOWN.iter().map(|fault| fault.name).collect();
-            format!("--fault: {name} is none of {}", names.join(", "))
-        })?;
-        (wanted.hunt.arsenal, wanted.hunt.sought) = (fault.arsenal, fault.ends_in.to_vec());
     }
     Ok(wanted)
 }
@@ -65,7 +74,18 @@ fn main() -> ExitCode {
     }
 }
 
+/// The table of the known faults, for programs: what is in a line stands between tabulators.
+fn list() {
+    for fault in known::KNOWN {
+        println!("{}\t{}\t{}\t{}", fault.name, fault.old_rule.join(","), known::CYCLES, fault.model);
+    }
+}
+
 fn run() -> Result<ExitCode, String> {
+    if std::env::args().skip(1).eq(["--known"]) {
+        list();
+        return Ok(ExitCode::SUCCESS);
+    }
     let wanted = wanted()?;
     let description = match (wanted.random, &wanted.layout) {
         (Some(number), _) => stations::random(number),
@@ -93,8 +113,12 @@ fn run() -> Result<ExitCode, String> {
         println!("no accident");
         return Ok(ExitCode::SUCCESS);
     };
-    println!("an accident after {} cycles; the scenario made small:", find.after);
-    let small = minimise(&mut *device, &ground, &find);
+    let (small, what) = if wanted.small {
+        (minimise(&mut *device, &ground, &find), "the scenario made small")
+    } else {
+        (find.clone(), "the scenario")
+    };
+    println!("an accident after {} cycles; {what}:", find.after);
     print!("{}", words::tell(&mut *device, &ground, &small));
     Ok(ExitCode::FAILURE)
 }

@@ -17,8 +17,17 @@ pub(super) fn entries() -> Vec<Entry> {
     let model = |name, statement: &str, conditions, turn, (neighbour, view), purpose| {
         Entry::new(
             about(name, statement, words, &["ILK-19"], conditions),
-            Pair { turn, life: LIFE, neighbour, view, purpose },
+            Pair { turn, life: LIFE, neighbour, view, found: false, purpose },
         )
+    };
+    let turn = u16::from(LIFE) + 1;
+    let started = Pair {
+        turn,
+        life: LIFE,
+        neighbour: Neighbour::Alike,
+        view: View::Adjoining,
+        found: true,
+        purpose: Purpose::Safe,
     };
     vec![
         model(
@@ -44,6 +53,17 @@ pub(super) fn entries() -> Vec<Entry> {
             u16::from(LIFE) + 1,
             (Neighbour::Alike, View::Adjoining),
             Purpose::Safe,
+        ),
+        Entry::new(
+            about(
+                "interlocking-line-start",
+                "The first station starts, or both do, with a train on the line, which may stand in the half that the other does not see: the line is given \
+                 to nobody against it.",
+                words,
+                &["ILK-25"],
+                SOUND,
+            ),
+            started,
         ),
         model(
             "interlocking-line-apart",

@@ -5,6 +5,8 @@ use super::{Environment, Purpose, Sight};
 use crate::check::Entry;
 use crate::interlocking::environment::{Drives, Obey};
 use crate::interlocking::stations::{crossing, junction, rest, siding, terminus};
+use crate::interlocking::yard::RESTRICTED;
+use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::Travel;
 
 /// Trains from both ways into the junction.
@@ -97,12 +99,15 @@ pub(super) fn entries() -> Vec<Entry> {
         yard(
             about(
                 "interlocking-terminus-telegrams",
-                "The same with trains that keep to their telegrams.",
+                "The same with trains that keep to their telegrams; one route in is slow, also for a train that goes out again with its tail there.",
                 "routes are set and withdrawn and the line turned in any cycle; trains move, stand and turn round in any cycle",
                 ROUTES,
                 SOUND,
             ),
-            terminus(),
+            terminus().with(|plan| {
+                plan.routes[0].speed = RESTRICTED;
+                plan.braking[2] = Metres(100);
+            }),
             Environment { obey: Obey::Telegrams, residual: 1, ..reversing(2) },
             Purpose::Finishes(&[Sight::Arrived, Sight::Turned, Sight::Telegram]),
         ),

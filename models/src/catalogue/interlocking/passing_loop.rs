@@ -7,7 +7,8 @@ use super::{Environment, Purpose, Sight};
 use crate::check::Entry;
 use crate::interlocking::environment::{Detection, Drives, Obey};
 use crate::interlocking::ground::Heading;
-use crate::interlocking::stations::{Overlaps, passing, passing_loop};
+use crate::interlocking::stations::{Overlaps, loop_route, passing, passing_loop};
+use atc_kernel::distance::Metres;
 use atc_kernel::time::Ticks;
 
 pub(super) fn entries() -> Vec<Entry> {
@@ -15,6 +16,7 @@ pub(super) fn entries() -> Vec<Entry> {
     entries.extend(points_and_followers());
     entries.extend(lost_and_sliding());
     entries.extend(staff_and_line());
+    entries.extend(false_occupancy_and_start());
     entries
 }
 
@@ -216,13 +218,14 @@ fn staff_and_line() -> Vec<Entry> {
             about(
                 "interlocking-loop-line-blocked-own",
                 "Plain line is blocked in front of a train that goes out and still runs on its telegram: the block is confirmed only when nothing can \
-                 come any more.",
-                "the same; the circuit E is blocked and unblocked in any cycle",
+                 come any more; and where the neighbour ends its consent instead, nobody is sent out any more to its staff.",
+                "the same; the circuit E is blocked and unblocked in any cycle; the neighbour consents in any cycle or not, and its staff step onto the \
+                 line when it has not for as long as a train still runs, and the line is clear",
                 &["ILK-6", "ILK-7", "ILK-16"],
                 SOUND,
             ),
             station.clone(),
-            Environment { blocks: 1 << passing::E, ..following(1) },
+            Environment { blocks: 1 << passing::E, staff_beyond: Some(2), ..following(1) },
             Purpose::Safe(&[Sight::Arrived, Sight::BlockedUnderTrain, Sight::ConfirmedAhead]),
         ),
         yard(
@@ -242,14 +245,71 @@ fn staff_and_line() -> Vec<Entry> {
             about(
                 "interlocking-loop-restricted",
                 "The western throat and the second platform are restricted in any cycle, also under trains: the restriction is in the telegrams of the \
-                 same cycle.",
+                 same cycle, also while only the tail is there.",
                 "the same; two circuits are restricted and restrictions lifted in any cycle; trains keep to the telegrams",
                 &["ILK-15", "ATC-4"],
                 SOUND,
             ),
-            station,
+            station.with(|plan| plan.braking[2] = Metres(100)),
             Environment { obey: Obey::Telegrams, residual: 1, ..works(0, 1 << passing::WEST | 1 << passing::TWO) },
             Purpose::Safe(&[Sight::Arrived, Sight::Restricted]),
+        ),
+    ]
+}
+
+/// Circuits that are reported without a train, points that leave late, and trains that a device finds when it starts.
+fn false_occupancy_and_start() -> Vec<Entry> {
+    let station = passing_loop(Overlaps::Throat);
+    let all = 1 << passing::WEST | 1 << passing::ONE | 1 << passing::EAST | 1 << passing::E;
+    let one = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE];
+    vec![
+        yard(
+            about(
+                "interlocking-loop-falsely-occupied",
+                "Circuits are reported without a train, any of them together: no place is released in front of the train that may still come, and no \
+                 point moves under it.",
+                "routes over one platform are set, and a point driven by individual commands, in any cycle; four circuits are reported without a train in \
+                 any cycle, each or together",
+                &["ILK-9", "ILK-10", "ILK-21", "ILK-22"],
+                SOUND,
+            ),
+            station.clone(),
+            Environment { falsely: all, requests: [sets(&one), drives(1)].concat(), ..following(1) },
+            Purpose::Safe(&[Sight::Arrived]),
+        ),
+        yard(
+            about(
+                "interlocking-loop-settling",
+                "Points leave one cycle after their drive has ended: where they count as detected only after two cycles at rest, none is run over that \
+                 moves.",
+                "routes are set and withdrawn and a point is driven by individual commands in any cycle; points leave one cycle after the drive has ended",
+                &["ILK-23"],
+                SOUND,
+            ),
+            station.with(|plan| plan.settle = 2),
+            Environment {
+                drives: Drives::AfterTheDrive,
+                requests: [following(1).requests, drives(0)].concat(),
+                ..following(1)
+            },
+            Purpose::Safe(&[Sight::Arrived]),
+        ),
+        yard(
+            about(
+                "interlocking-loop-start",
+                "A device starts with a train before a signal that showed proceed: nothing moves until the train has passed it or stands.",
+                "routes are set and withdrawn, segments turned and a point driven by individual commands in any cycle; the train passes the signal for as \
+                 long as the residual running",
+                &["ILK-24", "ILK-25"],
+                SOUND,
+            ),
+            station.with(|plan| plan.start = Ticks(3)),
+            Environment {
+                found: true,
+                requests: [dispatch(&PASSING), turns(&[0, 1]), drives(0)].concat(),
+                ..Environment::usual(vec![UP])
+            },
+            Purpose::Safe(&[Sight::Arrived]),
         ),
     ]
 }

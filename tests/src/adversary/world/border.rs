@@ -80,6 +80,7 @@ impl World<'_> {
             deaf: 0,
             heard: Heard::STOP,
             route: None,
+            about: false,
             slid: false,
             target: 0,
             authority: 0,

@@ -1,0 +1,303 @@
+//! Old rules put back: the adversary and the models on a kernel that is wrong in a named way.
+//!
+//! A copy of the sources below `target/old-rules/` has every mutant of the interlocking in it whose change can be selected (`schemata.rs`).
+//! It is compiled once, into two programs; which mutants they run with is named in the environment when they start. With none named they
+//! run the kernel as it is.
+
+use crate::mutants::{is_together, list};
+use crate::process::only_run;
+use crate::schemata::{Change, instrument, with_cells};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What the programs are compiled from.
+const FOLDERS: [&str; 8] = ["arithmetic", "kernel", "layout", "layouts", "models", "oracle", "tests", "waveform"];
+
+/// The names of the mutants to select, with commas.
+const VARIABLE: &str = "ATC_OLD_RULES";
+
+/// What stands before the version of the copied packages: 0.1.0 becomes 90.1.0.
+const VERSION: &str = "9";
+
+/// A program that is compiled from the copy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// The adversary of `tests/`.
+    Adversary,
+    /// The command of `models/`.
+    Models,
+}
+
+impl Program {
+    const ALL: [Self; 2] = [Self::Adversary, Self::Models];
+
+    /// Its name in the checkout, the manifest that has it, and its source.
+    const fn is(self) -> [&'static str; 3] {
+        match self {
+            Self::Adversary => ["adversary", "tests/Cargo.toml", "tests/src/bin/adversary.rs"],
+            Self::Models => ["models", "models/Cargo.toml", "models/src/main.rs"],
+        }
+    }
+
+    /// Its name here: beside the program of the checkout, and never in its place.
+    pub fn name(self) -> String {
+        format!("old-rules-{}", self.is()[0])
+    }
+}
+
+/// The programs, compiled.
+#[derive(Clone, Debug)]
+pub struct Programs {
+    root: PathBuf,
+    folder: PathBuf,
+    mutants: BTreeSet<String>,
+}
+
+impl Programs {
+    /// The program, to be run with these mutants.
+    ///
+    /// # Errors
+    /// A mutant that is not in it.
+    pub fn with(&self, program: Program, mutants: &[&str]) -> Result<Command, String> {
+        if let Some(name) = mutants.iter().find(|name| !self.mutants.contains(**name)) {
+            return Err(format!("`{name}` is no mutant of the interlocking that can be selected"));
+        }
+        let mut command = Command::new(self.folder.join(program.name()));
+        command.env(VARIABLE, mutants.join(","));
+        Ok(command)
+    }
+
+    /// The faults that the adversary knows, each with the mutants that put the old rule back: `tests/src/adversary/known.rs`.
+    ///
+    /// # Errors
+    /// The adversary does not say them, or one of the mutants is not in it.
+    pub fn known(&self) -> Result<Vec<Fault>, String> {
+        let said = said(self.with(Program::Adversary, &[])?.arg("--known"))?.1;
+        let all = said.lines().map(|line| {
+            let [name, mutants, cycles, model] = line.split('\t').collect::<Vec<_>>()[..] else {
+                return Err(format!("the adversary knows `{line}`"));
+            };
+            let mutants: Vec<String> = mutants.split(',').map(ToOwned::to_owned).collect();
+            self.with(Program::Adversary, &mutants.iter().map(String::as_str).collect::<Vec<_>>())?;
+            let cycles = cycles.parse().map_err(|error| format!("{name}: {cycles}: {error}"))?;
+            Ok(Fault { name: name.to_owned(), mutants, cycles, model: model.to_owned() })
+        });
+        all.collect()
+    }
+
+    /// Hunts as the adversary does for the fault, with these mutants, for as many cycles as it is found in.
+    ///
+    /// # Errors
+    /// The adversary fails, or breaks a condition.
+    pub fn hunt(&self, fault: &Fault, mutants: &[String]) -> Result<Hunted, String> {
+        let mut adversary = self.with(Program::Adversary, &mutants.iter().map(String::as_str).collect::<Vec<_>>())?;
+        adversary.args(["--fault", &fault.name, "--cycles", &fault.cycles.to_string(), "--small", "no"]);
+        let (code, said) = said(adversary.current_dir(&self.root))?;
+        let number = |line: &str| line.strip_prefix("an accident after ")?.split(' ').next()?.parse().ok();
+        let accident = said.lines().find_map(|line| line.split("ACCIDENT: ").nth(1)).map(ToOwned::to_owned);
+        let found = said.lines().find_map(number).zip(accident);
+        let is_sound = said.contains("; 0 accidents under a broken condition") && !said.contains("BROKEN");
+        if !is_sound || code != i32::from(found.is_some()) {
+            return Err(format!("{}: the adversary's own fault: {said}", fault.name));
+        }
+        Ok(Hunted { found })
+    }
+
+    /// What of the model is not as expected with these mutants: the names of its claims.
+    ///
+    /// # Errors
+    /// It does not say so.
+    pub fn unexpected(&self, model: &str, mutants: &[String]) -> Result<Vec<String>, String> {
+        let mut models = self.with(Program::Models, &mutants.iter().map(String::as_str).collect::<Vec<_>>())?;
+        match said(models.args(["check", "--jobs", "1", model]))? {
+            (0, _) => Ok(Vec::new()),
+            (1, said) if said.contains("NOT AS EXPECTED") => {
+                let claims = said.lines().filter_map(|line| line.strip_prefix("    ")?.split(" (").next());
+                Ok(claims.map(ToOwned::to_owned).collect())
+            }
+            (code, said) => Err(format!("{model}: exit code {code}: {said}")),
+        }
+    }
+}
+
+/// A fault that was found once: the mutants that put the old rule back, and what finds it then.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// Its name.
+    pub name: String,
+    /// The mutants.
+    pub mutants: Vec<String>,
+    /// Cycles in which the adversary finds it.
+    pub cycles: u64,
+    /// The model that finds it.
+    pub model: String,
+}
+
+/// What a hunt came to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hunted {
+    /// The cycles until the accident, and the accident.
+    pub found: Option<(u64, String)>,
+}
+
+/// What the program prints, and its exit code.
+fn said(command: &mut Command) -> Result<(i32, String), String> {
+    let name = command.get_program().to_string_lossy().into_owned();
+    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
+    let code = output.status.code().filter(|code| (0..2).contains(code));
+    let errors = || String::from_utf8_lossy(&output.stderr).into_owned();
+    let code = code.ok_or_else(|| format!("{name}: {}: {}", output.status, errors()))?;
+    Ok((code, String::from_utf8_lossy(&output.stdout).into_owned()))
+}
+
+/// Compiles the programs, in the profile of this one. What is there and still right is kept.
+///
+/// # Errors
+/// A broken `proofs/mutants.toml`, sources that are not as they are expected to be, or what the compiler said.
+pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
+    let folder = root.join("target").join("old-rules");
+    let _lock = only_run(&folder)?;
+    let sources = folder.join("sources");
+    let mut files = BTreeMap::new();
+    for name in FOLDERS {
+        read(root, &PathBuf::from(name), &mut files)?;
+    }
+    for name in ["Cargo.toml", "Cargo.lock"] {
+        files.insert(PathBuf::from(name), text(&root.join(name))?.into_bytes());
+    }
+    let mutants = put_in(root, &mut files)?;
+    settle(&sources, &files)?;
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(&sources).args(["build", "--offline", "--quiet", "--profile", profile]);
+    cargo.arg("--target-dir").arg(root.join("target"));
+    // Nothing here runs it, and optimised it takes a minute to compile.
+    cargo.arg("--config").arg(format!("profile.{profile}.package.atc-waveform.opt-level=0"));
+    for program in programs {
+        cargo.args(["--bin", &program.name()]);
+    }
+    let said = cargo.output().map_err(|error| format!("cargo: {error}"))?;
+    if !said.status.success() {
+        let errors = String::from_utf8_lossy(&said.stderr);
+        let first: Vec<&str> = errors.lines().skip_while(|line| !line.starts_with("error")).take(12).collect();
+        return Err(format!("the kernel with old rules does not compile:\n{}", first.join("\n")));
+    }
+    let built = if profile == "dev" { "debug" } else { profile };
+    Ok(Programs { root: root.to_owned(), folder: root.join("target").join(built), mutants })
+}
+
+/// Files by their path from the checkout.
+type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+fn text(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// All files below a folder.
+fn read(root: &Path, folder: &Path, files: &mut Files) -> Result<(), String> {
+    let from = root.join(folder);
+    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
+    for entry in std::fs::read_dir(&from).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let path = folder.join(entry.file_name());
+        if !entry.path().is_dir() {
+            files.insert(path, std::fs::read(entry.path()).map_err(failed)?);
+        } else if entry.file_name() != "target" {
+            read(root, &path, files)?;
+        }
+    }
+    Ok(())
+}
+
+/// Puts the mutants in, and what selects them. Their names.
+fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
+    let all = list(root)?;
+    let is_wanted = |path: &str| path.starts_with("kernel/src/interlocking/");
+    let chosen: Vec<_> =
+        all.iter().filter(|mutant| is_wanted(&mutant.path()) && !mutant.alone && is_together(root, mutant)).collect();
+    let mut changes: BTreeMap<String, Vec<Change>> = BTreeMap::new();
+    for (number, mutant) in chosen.iter().enumerate() {
+        let change = Change { number, find: &mutant.find, replace: &mutant.replace };
+        changes.entry(mutant.path()).or_default().push(change);
+    }
+    for (path, changes) in changes {
+        rewrite(files, &path, |text| instrument(text, &changes))?;
+    }
+    let names: Vec<&str> = chosen.iter().map(|mutant| mutant.name.as_str()).collect();
+    rewrite(files, "kernel/src/lib.rs", |text| with_cells(text, names.len(), &selector(&names)))?;
+    let members = FOLDERS.iter().filter(|folder| **folder != "layouts").map(|folder| format!("\"{folder}\""));
+    let members = format!("members = [{}]", members.collect::<Vec<_>>().join(", "));
+    rewrite(files, "Cargo.toml", |text| {
+        let old = text.lines().find(|line| line.starts_with("members = ")).ok_or("no members")?;
+        let exclude = text.lines().find(|line| line.starts_with("exclude = ")).ok_or("no exclude")?;
+        let text = text.replacen(old, &members, 1).replacen(exclude, "", 1);
+        // Cargo tells packages apart by name and version, not by where the workspace is: without another version these crates would
+        // stand in the place of the checkout's in `target/`.
+        let begins = "[workspace.package]\nversion = \"";
+        once(&text, begins, &format!("{begins}{VERSION}"))
+    })?;
+    for program in Program::ALL {
+        let [name, manifest, main] = program.is();
+        let new = program.name();
+        rewrite(files, manifest, |text| {
+            once(text, &format!("[[bin]]\nname = \"{name}\""), &format!("[[bin]]\nname = \"{new}\""))
+        })?;
+        let begins = "fn main() -> ExitCode {\n";
+        rewrite(files, main, |text| once(text, begins, &format!("{begins}    atc_kernel::select();\n")))?;
+    }
+    Ok(names.into_iter().map(ToOwned::to_owned).collect())
+}
+
+/// What a program calls before anything else.
+fn selector(names: &[&str]) -> String {
+    let mut written = format!(
+        "extern crate std;
+         /// Selects the mutants that the environment names.
+         pub fn select() {{
+             let names = std::env::var({VARIABLE:?}).unwrap_or_default();
+             for name in names.split(',').filter(|name| !name.is_empty()) {{
+                 let number = match name {{\n"
+    );
+    for (number, name) in names.iter().enumerate() {
+        let _ = writeln!(written, "{name:?} => {number},");
+    }
+    written.push_str("_ => panic!(\"there is no mutant {name}\") };\nunsafe { SELECTED[number] = 1; }\n} }\n");
+    written
+}
+
+fn rewrite(files: &mut Files, path: &str, change: impl FnOnce(&str) -> Result<String, String>) -> Result<(), String> {
+    let file = files.get_mut(Path::new(path)).ok_or_else(|| format!("{path} is not there"))?;
+    let text = std::str::from_utf8(file).map_err(|error| format!("{path}: {error}"))?;
+    *file = change(text).map_err(|error| format!("{path}: {error}"))?.into_bytes();
+    Ok(())
+}
+
+fn once(text: &str, find: &str, replace: &str) -> Result<String, String> {
+    match text.matches(find).count() {
+        1 => Ok(text.replacen(find, replace, 1)),
+        count => Err(format!("`{find}` stands there {count} times, not once")),
+    }
+}
+
+/// Makes the folder hold these files and no other. One that is right already stays as it is, so that it is not compiled again.
+fn settle(folder: &Path, files: &Files) -> Result<(), String> {
+    let failed = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
+    let mut there = Files::new();
+    if folder.exists() {
+        read(folder, Path::new(""), &mut there)?;
+    }
+    for path in there.keys().filter(|path| !files.contains_key(*path)) {
+        let path = folder.join(path);
+        std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
+    }
+    for (path, bytes) in files.iter().filter(|(path, bytes)| there.get(*path) != Some(bytes)) {
+        let path = folder.join(path);
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(|error| failed(&path, error))?;
+        }
+        std::fs::write(&path, bytes).map_err(|error| failed(&path, error))?;
+    }
+    Ok(())
+}
