@@ -69,13 +69,12 @@ impl Engine for Native<'_> {
     fn choose(&mut self, what: &'static str, cases: usize) -> usize {
         let last = u16::try_from(cases).unwrap_or(u16::MAX).saturating_sub(1);
         self.run.picked = Some(self.run.drawn.len());
-        let value = match self.source {
-            Source::Proved(case, _) => case,
-            _ => {
-                let value = self.word(what, 0..=last);
-                self.run.drawn.pop();
-                value
-            }
+        let value = if let Source::Proved(case, _) = self.source {
+            case
+        } else {
+            let value = self.word(what, 0..=last);
+            self.run.drawn.pop();
+            value
         };
         let value = value.min(last);
         self.run.drawn.push((what, value));
