@@ -112,10 +112,15 @@ pub fn replay_case(harness: &Harness, case: usize, values: &[u16]) -> Run {
     run(harness, Source::Proved(u16::try_from(case).unwrap_or(u16::MAX), values.iter()))
 }
 
-/// So many runs on drawn values, always the same ones.
+/// So many runs on drawn values, always the same ones; and behind them some that meet the assumptions, where there are few.
 pub fn drawn(harness: &Harness, runs: usize) -> Vec<Run> {
+    const ACCEPTED: usize = 64;
     let mut random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    (0..runs).map(|_| run(harness, Source::Random(&mut random))).collect()
+    let mut all: Vec<_> = (0..runs).map(|_| run(harness, Source::Random(&mut random))).collect();
+    let few = ACCEPTED.saturating_sub(all.iter().filter(|run| run.accepted).count());
+    let more = (0..runs.saturating_mul(200)).map(|_| run(harness, Source::Random(&mut random)));
+    all.extend(more.filter(|run| run.accepted).take(few));
+    all
 }
 
 /// Draws values until `accepted` runs have met the harness's assumptions (or 200 times as many were drawn), always

@@ -118,7 +118,7 @@ mod tests {
         let harnesses = crate::select(&SAMPLE.map(ToOwned::to_owned)).unwrap();
         for twins in twins(&Options::default(), &harnesses, 4096, &|_| ()).unwrap() {
             let (runs, accepted) = twins.outcome.unwrap();
-            assert!(runs == 4096 && accepted > 0, "{}: {accepted} of {runs} runs say something", twins.name);
+            assert!(runs >= 4096 && accepted > 0, "{}: {accepted} of {runs} runs say something", twins.name);
         }
         // A jump that is forgotten, in each of the two texts.
         let harness = harnesses[1];
