@@ -126,7 +126,7 @@ mod tests {
         for source in SOURCES {
             let path = folder.join(source);
             let right = std::fs::read_to_string(&path).unwrap();
-            let wrong = right.replace("if (var_i0) {goto ", "if (0) {goto ");
+            let wrong = right.replace(") {goto ", " && 0) {goto ");
             assert_ne!(right, wrong, "{source} has no such jump");
             crate::compile::write(&path, &wrong).unwrap();
             let said = compare(&tools, &folder, harness, &drawn(harness, 4096));
