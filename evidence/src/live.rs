@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// The page is written at most this often.
 const PAGE: Duration = Duration::from_secs(10);
 /// And so that writing it takes at most one part of so many of the time.
-const SHARE: u32 = 20;
+const SHARE: u32 = 50;
 
 /// The results of a run that goes on.
 #[derive(Debug)]
