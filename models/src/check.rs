@@ -4,6 +4,7 @@
 //! from either. So nothing is taken from it on trust: every expanded state is counted here, and a search is complete
 //! only if as many states were expanded as exist.
 
+use crate::explorer::{self, Explored};
 use crate::outcome::{CutSet, Expectation, FailureMode, Found, Outcome, PropertyOutcome, Trace, Verdict};
 use crate::spin::Twin;
 use stateright::{Checker, Model, Property};
@@ -13,6 +14,7 @@ use std::hash::Hash;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::ops::Deref;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -317,13 +319,13 @@ pub struct Entry {
     /// The same model in Promela, if it is written there too.
     pub twin: Option<Twin>,
     search: Box<dyn Fn(usize, Limits) -> Search + Send + Sync>,
-    explore: Box<dyn Fn(SocketAddr) + Send + Sync>,
+    pub(crate) explored: Arc<dyn Explored>,
 }
 
 impl Entry {
     /// The model `subject`, and what it is about.
     pub fn new<S: Subject>(about: About, subject: S) -> Self {
-        let explored = subject.clone();
+        let explored = Arc::new(Checked::new(subject.clone(), None, Limits::default()));
         let parameters = format!("{}; {}", subject.parameters(), about.environment);
         Self {
             name: about.name,
@@ -334,9 +336,7 @@ impl Entry {
             lifted: about.lifted,
             twin: subject.twin(),
             search: Box::new(move |threads, limits| search(&subject, threads, limits)),
-            explore: Box::new(move |address| {
-                let _ = Checked::new(explored.clone(), None, Limits::default()).checker().serve(address);
-            }),
+            explored,
         }
     }
 }
@@ -369,6 +369,6 @@ pub fn check_within(entry: &Entry, threads: usize, limits: Limits) -> Outcome {
 pub fn explore(entry: &Entry, address: SocketAddr) -> io::Result<()> {
     // The server itself panics on an address that is taken.
     drop(TcpListener::bind(address)?);
-    (entry.explore)(address);
+    explorer::serve(&entry.explored, address);
     Ok(())
 }

@@ -3,7 +3,6 @@
 //! Nothing is shared with the Stateright model but the specification: not the kernel's code, not the environment's, not the search.
 //! The two agree only if they count the same states *and* the same steps, and say the same of every property.
 
-use crate::catalogue::catalogue;
 use crate::check::{Entry, check};
 use crate::outcome::{Expectation, Outcome, PropertyOutcome, Verdict};
 use crate::pool::in_parallel;
@@ -71,15 +70,8 @@ impl SecondOpinion {
     }
 }
 
-/// SPIN's opinion on every model of the catalogue that has a twin in Promela, in the catalogue's order; `threads` models at the same
-/// time. Each is searched here too, to compare.
-pub fn second_opinions(threads: usize) -> Vec<SecondOpinion> {
-    let mut twins = catalogue();
-    twins.retain(|entry| entry.twin.is_some());
-    opinions_on(&twins, threads, |_| {})
-}
-
-/// The same on these models; those without a twin have none. `done` sees each as soon as it is there, with our own outcome.
+/// SPIN's opinion on each of these models that has a twin in Promela, in their order; `threads` models at the same time. Each is searched here
+/// too, to compare. `done` sees each as soon as it is there, with our own outcome.
 pub fn opinions_on(
     entries: &[Entry],
     threads: usize,

@@ -136,21 +136,24 @@ impl Device for Wrong {
     }
 }
 
+/// Each of these devices breaks its property, and the kernel breaks none in the same model.
 #[track_caller]
-fn red(device: Wrong, station: &Station, environment: &Environment, property: &str) {
+fn red(station: &Station, environment: &Environment, devices: &[(Wrong, &str)]) {
     let purpose = Purpose::Finishes(&[]);
     let sound = outcome(Yard::new(Real, station.clone(), environment.clone(), purpose));
-    assert!(sound.ok(), "{device:?}, {property}: the kernel in the same model");
-    let outcome = outcome(Yard::new(device, station.clone(), environment.clone(), purpose));
-    let verdicts: Vec<_> = outcome.properties.iter().map(|p| (p.name.as_str(), p.verdict)).collect();
-    let found = outcome.properties.iter().find(|p| p.name == property).expect("a property of the model");
-    assert!(outcome.complete && found.verdict == Verdict::Failed, "{device:?}, {property}: {verdicts:?}");
+    assert!(sound.ok(), "{devices:?}: the kernel in the same model");
+    for (device, property) in devices {
+        let outcome = outcome(Yard::new(*device, station.clone(), environment.clone(), purpose));
+        let verdicts: Vec<_> = outcome.properties.iter().map(|p| (p.name.as_str(), p.verdict)).collect();
+        let found = outcome.properties.iter().find(|p| p.name == *property).expect("a property of the model");
+        assert!(outcome.complete && found.verdict == Verdict::Failed, "{device:?}, {property}: {verdicts:?}");
+    }
 }
 
 /// Everything that a device does in a model is safe, and yet not every train can arrive.
 #[track_caller]
 fn only_progress(device: Wrong, station: &Station, environment: &Environment) {
-    red(device, station, environment, "all-can-arrive");
+    red(station, environment, &[(device, "all-can-arrive")]);
     let outcome =
         outcome(Yard::new(device, station.clone(), environment.clone(), Purpose::Finishes(&[Sight::Arrived])));
     let failed: Vec<_> = outcome.properties.iter().filter(|p| !p.ok()).map(|p| p.name.as_str()).collect();
@@ -174,39 +177,54 @@ fn what_only_progress_catches() {
 }
 
 #[test]
-fn wrong_devices_turn_red() {
+fn wrong_devices_turn_red_where_two_trains_meet() {
+    let station = passing_loop(Overlaps::Throat);
+    let wrong = [
+        (Wrong::NoReleaseTime, "no-derailment"),
+        (Wrong::ProceedInUse, "proceed-over-clear"),
+        (Wrong::DetectionIgnored, "proceed-over-clear"),
+    ];
+    red(&station, &meeting(), &wrong);
+    let blocks = Environment { blocks: 1 << passing::ONE, ..meeting() };
+    red(&station, &blocks, &[(Wrong::ConfirmedAtOnce, "no-staff-hit")]);
+}
+
+#[test]
+fn wrong_devices_turn_red_where_trains_act_on_telegrams() {
     let station = passing_loop(Overlaps::Throat);
     let telegrams = Environment { obey: Obey::Telegrams, residual: 1, ..meeting() };
-    red(Wrong::NoReleaseTime, &station, &meeting(), "no-derailment");
-    red(Wrong::ProceedInUse, &station, &meeting(), "proceed-over-clear");
-    red(Wrong::DetectionIgnored, &station, &meeting(), "proceed-over-clear");
-    let following = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE];
     let alone = Environment {
         before: vec![turn(0, Travel::Toward), turn(1, Travel::Away)],
-        requests: dispatch(&following),
+        requests: dispatch(&FOLLOWING),
         trains: vec![UP],
         ..telegrams.clone()
     };
-    red(Wrong::GrantsWhenWithdrawn, &station, &alone, "authority-asked-for");
-    red(Wrong::GrantsWithoutProceed, &station, &alone, "no-overrun");
+    let wrong = [(Wrong::GrantsWhenWithdrawn, "authority-asked-for"), (Wrong::GrantsWithoutProceed, "no-overrun")];
+    red(&station, &alone, &wrong);
     let slow = station.with(|plan| {
         plan.routes[usize::from(loop_route::UP_IN_ONE)].speed = RESTRICTED;
         plan.braking[2] = Metres(100);
     });
-    red(Wrong::Unrestricted, &slow, &alone, "limit-under-train");
-    let blocks = Environment { blocks: 1 << passing::ONE, ..meeting() };
-    red(Wrong::ConfirmedAtOnce, &station, &blocks, "no-staff-hit");
+    red(&slow, &alone, &[(Wrong::Unrestricted, "limit-under-train")]);
     let restricts = Environment { restricts: 1 << passing::ONE, ..telegrams };
-    red(Wrong::Unrestricted, &station, &restricts, "restricted");
+    red(&station, &restricts, &[(Wrong::Unrestricted, "restricted")]);
+}
+
+#[test]
+fn a_device_that_believes_a_flicker_turns_red() {
     let flicker = Environment {
         unheard: 1,
         residual: 0,
         before: vec![turn(0, Travel::Toward), turn(1, Travel::Away)],
-        requests: dispatch(&following),
+        requests: dispatch(&FOLLOWING),
         ..Environment::usual(vec![UP, UP])
     };
-    red(Wrong::NoFilter, &station.with(|plan| plan.clear = 3), &flicker, "proceed-over-clear");
+    let station = passing_loop(Overlaps::Throat).with(|plan| plan.clear = 3);
+    red(&station, &flicker, &[(Wrong::NoFilter, "proceed-over-clear")]);
 }
+
+/// Into the loop and out of it.
+const FOLLOWING: [u8; 2] = [loop_route::UP_IN_ONE, loop_route::UP_OUT_ONE];
 
 #[test]
 fn an_overlap_that_is_not_held_turns_red() {

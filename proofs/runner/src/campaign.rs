@@ -278,7 +278,7 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
 }
 
 /// `work(0)`, …, `work(count - 1)` on `jobs` threads, the results in order.
-pub(crate) fn in_parallel<T: Send>(jobs: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub fn in_parallel<T: Send>(jobs: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let results: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(count));
     std::thread::scope(|scope| {

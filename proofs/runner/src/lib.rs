@@ -29,7 +29,7 @@ pub mod unwound;
 
 use std::path::{Path, PathBuf};
 
-pub use campaign::{Options, campaign};
+pub use campaign::{Options, campaign, in_parallel};
 pub use cbmc::{Answer, Solver, parse as parse_cbmc};
 pub use control::is_smaller;
 pub use mutants::mutants;

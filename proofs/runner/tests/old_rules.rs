@@ -3,7 +3,7 @@
 //! What the models say of each is slower to compile, and not looked at here: `cargo run -p atc-prover -- old-rules --table`.
 
 use atc_prover::old_rules::{Program, build};
-use atc_prover::root;
+use atc_prover::{in_parallel, root};
 use std::time::Instant;
 
 #[test]
@@ -11,13 +11,14 @@ fn each_known_fault_is_found_when_the_old_rule_is_put_back_and_not_without() {
     let programs = build(&root(), &[Program::Adversary]).expect("the kernel with old rules compiles");
     let known = programs.known().expect("the adversary knows faults");
     assert!(known.len() >= 11, "only {} faults", known.len());
-    for fault in known {
+    in_parallel(2, known.len(), |number| {
+        let fault = &known[number];
         let started = Instant::now();
-        let found = programs.hunt(&fault, &fault.mutants).expect("the adversary runs").found;
+        let found = programs.hunt(fault, &fault.mutants).expect("the adversary runs").found;
         let (after, accident) = found.unwrap_or_else(|| panic!("{}: not found with {:?}", fault.name, fault.mutants));
         let seconds = started.elapsed().as_secs_f64();
         println!("{}: {:?}: after {after} cycles, {seconds:.1} s: {accident}", fault.name, fault.mutants);
-        let control = programs.hunt(&fault, &[]).expect("the adversary runs").found;
+        let control = programs.hunt(fault, &[]).expect("the adversary runs").found;
         assert_eq!(control, None, "{}: found in the kernel as it is, too", fault.name);
-    }
+    });
 }
