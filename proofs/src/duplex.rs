@@ -34,6 +34,10 @@ harness! {
     theorem "DUP-1";
     requirements ["DUP-1"];
     assumptions ["single-fault", "same-input"];
+    built_in &[
+        ("single-fault", "one bit of one channel is flipped, before the cycle"),
+        ("same-input", "both channels step with one input"),
+    ];
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -148,7 +152,11 @@ harness! {
     dup_1_any(e)
     theorem "DUP-1";
     requirements ["DUP-1"];
-    assumptions ["same-input"];
+    assumptions ["single-fault", "same-input"];
+    built_in &[
+        ("single-fault", "no bit is flipped, or one of one channel once it is tripped"),
+        ("same-input", "both channels step as one machine does"),
+    ];
     bound "";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;

@@ -12,8 +12,16 @@ pub trait Engine {
     /// constant, which is much less work where the value is an index.
     fn choose(&mut self, what: &'static str, cases: usize) -> usize;
 
-    /// Goes on only with the values for which this holds.
+    /// Goes on only with valid values: what a constructor accepts, a state that is valid (GEN-1), a number in its range, and what the theorem itself
+    /// says of its case. Nothing about the world.
     fn assume(&mut self, holds: bool);
+
+    /// Goes on only with values for which this holds of the world: of trains, neighbours, detectors, odometers, times. `id` is that of an assumption in
+    /// `spec/assumptions.toml`, and the harness lists it. No prover looks at it.
+    #[inline(always)]
+    fn suppose(&mut self, _id: &'static str, holds: bool) {
+        self.assume(holds);
+    }
 
     /// Claim number `number` of the harness: must hold for all values.
     fn claim(&mut self, number: u32, holds: bool);

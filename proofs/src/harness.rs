@@ -13,8 +13,10 @@ pub struct Harness {
     pub statement: &'static str,
     /// The requirements that it proves, as in `spec/`.
     pub requirements: &'static [&'static str],
-    /// What it assumes, by the ids of `spec/assumptions.toml`.
+    /// What it assumes, by the ids of `spec/assumptions.toml`: what its run supposes, what is built in, and what carries its bound.
     pub assumptions: &'static [&'static str],
+    /// Those of the assumptions that no line supposes, each with how they come in: the scene has nothing else, or a claim begins with them.
+    pub built_in: &'static [(&'static str, &'static str)],
     /// The bound of the proof in words; empty if there is none.
     pub bound: &'static str,
     /// The same as far as Kani proves it, which may be less.
@@ -46,9 +48,14 @@ pub struct Point {
     pub text: &'static str,
 }
 
+/// Nothing is built in.
+pub(crate) const NOTHING: &[(&str, &str)] = &[];
+
 /// Defines a harness as a module with `run` (its body), `HARNESS` and, for the provers, an entry point.
 ///
 /// Claims and cover points are enums: one that the body never names is a compiler warning (an error in `ci/test`).
+///
+/// `assumptions` has every assumption about the world: the ids that the body supposes ([`Engine::suppose`]), and those that are `built_in`.
 ///
 /// For Kani: `unwind 17 = 1 + SECTIONS;` is how often it unwinds loops. It works on MIR, where every loop over an array is one, and every
 /// comparison of arrays of numbers is one over their bytes. `solver kissat;` is a solver that is known to be better than the default one,
@@ -61,6 +68,7 @@ macro_rules! harness {
         theorem $theorem:literal;
         requirements [$($requirement:literal),* $(,)?];
         assumptions [$($assumption:literal),* $(,)?];
+        $(built_in $built_in:expr;)?
         bound $bound:expr;
         cases $cases:expr;
         unwind $unwind:literal = $derived:expr;
@@ -96,6 +104,10 @@ macro_rules! harness {
                     statement: concat!($($statement),+),
                     requirements: &[$($requirement),*],
                     assumptions: &[$($assumption),*],
+                    built_in: {
+                        let built_in = [$crate::harness::NOTHING $(, $built_in)?];
+                        built_in[built_in.len() - 1]
+                    },
                     bound: $bound,
                     bound_kani: {
                         let bounds = [$bound $(, $bound_kani)?];

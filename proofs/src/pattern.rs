@@ -114,6 +114,7 @@ harness! {
     theorem "T-PAT-2";
     requirements ["PAT-2"];
     assumptions ["gravity"];
+    built_in &[("gravity", "the claims have the acceleration of gravity in their numbers")];
     bound "";
     cases 1;
     unwind 13 = 1 + crate::pattern::HALVINGS;

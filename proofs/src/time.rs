@@ -37,7 +37,7 @@ harness! {
     {
         // Drawn, so that the compiler leaves the division to the prover, which knows it better than its bit tricks.
         let cycle_ms = u32::from(e.word("cycle (ms)", 10..=10));
-        e.assume(cycle_ms == CYCLE_MS);
+        e.suppose("cycle-10ms", cycle_ms == CYCLE_MS);
         let Some(cycle) = Cycle::new(Millis(cycle_ms)) else { return e.assume(false) };
         let asked = any_u32(e, "time (ms)", 0..=2000);
         let most = 60_000 * CYCLE_MS;

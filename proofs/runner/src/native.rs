@@ -4,6 +4,7 @@ use crate::report::{ClaimResult, CoverResult, HarnessResult, Verdict};
 use atc_proofs::{Engine, Harness};
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::time::Instant;
 
@@ -12,6 +13,8 @@ use std::time::Instant;
 pub struct Run {
     /// Every value that was drawn: what it is, and the value.
     pub drawn: Vec<(&'static str, u16)>,
+    /// The assumptions about the world that were met, held or not.
+    pub supposed: BTreeSet<&'static str>,
     /// Whether all assumptions held. If not, claims and cover points say nothing.
     pub accepted: bool,
     /// Claims that were made: number and whether it held.
@@ -85,6 +88,11 @@ impl Engine for Native<'_> {
         self.run.accepted &= holds;
     }
 
+    fn suppose(&mut self, id: &'static str, holds: bool) {
+        self.run.supposed.insert(id);
+        self.assume(holds);
+    }
+
     fn claim(&mut self, number: u32, holds: bool) {
         self.run.claims.push((number, holds));
     }
@@ -121,6 +129,16 @@ pub fn drawn(harness: &Harness, runs: usize) -> Vec<Run> {
     let more = (0..runs.saturating_mul(200)).map(|_| run(harness, Source::Random(&mut random)));
     all.extend(more.filter(|run| run.accepted).take(few));
     all
+}
+
+/// The assumptions about the world that `runs` runs on drawn values meet, always on the same ones.
+pub fn supposed(harness: &Harness, runs: usize) -> BTreeSet<&'static str> {
+    let mut random = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut supposed = BTreeSet::new();
+    for _ in 0..runs {
+        supposed.extend(run(harness, Source::Random(&mut random)).supposed);
+    }
+    supposed
 }
 
 /// Draws values until `accepted` runs have met the harness's assumptions (or 200 times as many were drawn), always

@@ -1,6 +1,6 @@
 //! T-ACC-2, T-ACC-3 and T-ACC-7: what bounds the display from above, and how long a lost aspect stands.
 
-use super::{BOUND, Cycle, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
+use super::{BOUND, HEARD, Cycle, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
 use crate::ASPECTS;
 use atc_kernel::aspect::State;
 
@@ -10,6 +10,7 @@ harness! {
     theorem "T-ACC-2";
     requirements ["ACC-2"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -41,6 +42,7 @@ harness! {
     theorem "T-ACC-3";
     requirements ["ACC-3", "ACC-6"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -97,6 +99,7 @@ harness! {
     theorem "T-ACC-7";
     requirements ["ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-6", "ACC-7", "ACC-9"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;

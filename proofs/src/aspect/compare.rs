@@ -1,6 +1,6 @@
 //! T-ACC-5 and T-ACC-6: two runs of the machine side by side, and the relation between them.
 
-use super::{Asked, BOUND, any_parts, any_set, any_times, has, satisfied};
+use super::{Asked, BOUND, HEARD, any_parts, any_set, any_times, has, satisfied};
 use crate::{ASPECTS, Engine};
 use atc_kernel::aspect::{AspectSet, Parts, State, step};
 
@@ -38,6 +38,7 @@ harness! {
     theorem "T-ACC-5";
     requirements ["ACC-8", "ACC-9"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -110,6 +111,7 @@ harness! {
     theorem "T-ACC-6";
     requirements ["ACC-2", "ACC-7", "ACC-8", "ACC-9"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases ASPECTS;
     unwind 33 = 1 + crate::aspect::LONGEST;

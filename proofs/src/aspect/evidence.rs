@@ -1,6 +1,6 @@
 //! T-ACC-1: nothing is accepted, and nothing rises, without evidence.
 
-use super::{Asked, BOUND, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
+use super::{Asked, BOUND, HEARD, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
 use crate::ASPECTS;
 
 /// What an observer writes down who sees one aspect's detections and acceptances, and nothing else.
@@ -60,6 +60,7 @@ harness! {
     theorem "T-ACC-1";
     requirements ["ACC-1", "ACC-8"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -118,6 +119,7 @@ harness! {
     theorem "T-ACC-1";
     requirements ["ACC-9"];
     assumptions ["detected-throughout"];
+    built_in HEARD;
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;

@@ -42,6 +42,10 @@ harness! {
     theorem "T-ACC-4";
     requirements ["ACC-1", "ACC-4", "ACC-6", "ACC-8"];
     assumptions ["alone-on-the-line", "detected-throughout"];
+    built_in &[
+        ("alone-on-the-line", "the machine has one aspect"),
+        ("detected-throughout", "the aspect is heard in a cycle or it is not: never for a part of one"),
+    ];
     bound "";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -149,6 +153,7 @@ harness! {
     theorem "T-ACC-4";
     requirements ["ACC-8"];
     assumptions ["alone-on-the-line"];
+    built_in &[("alone-on-the-line", "nothing is heard of the other 15 aspects, and they are idle")];
     bound "";
     cases MAX_ASPECTS;
     unwind 33 = 1 + crate::aspect::LONGEST;

@@ -49,6 +49,10 @@ pub const ALL: &[Harness] = &[
 /// The longest loop: two arrays of a 16-bit number for each aspect are compared byte by byte.
 pub(crate) const LONGEST: usize = 2 * MAX_ASPECTS;
 
+/// What is heard of an aspect in a cycle.
+pub(crate) const HEARD: &[(&str, &str)] =
+    &[("detected-throughout", "an aspect is heard in a cycle or it is not: none is heard for a part of one")];
+
 /// What the harnesses of size [`ASPECTS`] say of their bound.
 pub(crate) const BOUND: &str = crate::bound(ASPECTS);
 

@@ -63,7 +63,9 @@ harness! {
     t_blk_3(e)
     theorem "T-BLK-3";
     requirements ["BLK-3", "BLK-7"];
-    assumptions ["entries-apart", "check-in-fail-safe", "check-out-not-spurious", "verified-reset"];
+    assumptions [
+        "entries-apart", "check-in-fail-safe", "live-transmitter", "check-out-not-spurious", "verified-reset", "no-reversing-over-exit",
+    ];
     bound "";
     cases 1;
     unwind 18 = 1 + crate::block::LONGEST;
@@ -95,13 +97,18 @@ harness! {
         let enters = any_flag(e, "a train enters (odd: yes)");
         let leaves = any_flag(e, "a train leaves (odd: yes)");
         let rises_out = input.check_out && !before.check_out;
-        e.assume(!enters || input.check_in && since + 1 >= u32::from(cycle.block.pass().0));
-        e.assume(!leaves || trains > 0);
-        e.assume(!rises_out || leaves);
-        let trains_after = (trains + u32::from(enters)).saturating_sub(u32::from(leaves));
+        e.suppose("entries-apart", !enters || since + 1 >= u32::from(cycle.block.pass().0));
+        let dead = any_flag(e, "its transmitter is dead (odd: yes)");
+        e.suppose("live-transmitter", !enters || !dead);
+        e.suppose("check-in-fail-safe", !enters || dead || input.check_in);
+        e.assume(!leaves || trains > 0 || enters);
+        e.suppose("check-out-not-spurious", !rises_out || leaves);
+        let back = any_flag(e, "a train comes back over the exit (odd: yes)");
+        e.suppose("no-reversing-over-exit", !back);
+        let trains_after = (trains + u32::from(enters) + u32::from(back)).saturating_sub(u32::from(leaves));
         // Everything from the pass time on is alike.
         let since_after = if enters { 0 } else { (since + 1).min(0xFFFF) };
-        e.assume(input.reset.is_none_or(|verified| u32::from(verified.0) == trains_after));
+        e.suppose("verified-reset", input.reset.is_none_or(|verified| u32::from(verified.0) == trains_after));
 
         let bad = cycle.counts() && under(after.count, after.pending, after.check_in_for, trains_after, since_after);
         e.claim(Claim::NeverUnder as u32, !bad);

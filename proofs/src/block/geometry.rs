@@ -28,7 +28,13 @@ harness! {
     t_blk_4_geometry(e)
     theorem "T-BLK-4";
     requirements ["BLK-9"];
-    assumptions ["hold-covers-train", "nose-antenna"];
+    assumptions ["hold-covers-train", "nose-antenna", "train-whole", "line-end-asks"];
+    built_in &[
+        ("hold-covers-train", "the longest train of the line's data is the longest that there is"),
+        ("nose-antenna", "the section of the head is that of the nose"),
+        ("train-whole", "a train ends its length behind its nose"),
+        ("line-end-asks", "of a train that reaches over the entry of the line nothing is claimed"),
+    ];
     bound "2 to 4 sections in two blocks";
     cases GEOMETRIES;
     unwind 18 = 1 + crate::block::LONGEST;

@@ -1,6 +1,8 @@
 //! Lines: borders (T-BLK-3), tails across them (T-BLK-4), and what a line makes of its blocks (T-BLK-5).
 
-use super::{all, any_byte, any_flag, any_hold, any_parts, any_reset, has, ones};
+use super::{
+    all, any_byte, any_flag, any_hold, any_parts, any_reset, has, ones, suppose_count, suppose_no_phantom,
+};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::block::{
@@ -120,9 +122,9 @@ fn any_cycle<E: Engine + ?Sized>(e: &mut E) -> Option<Cycle> {
         }
     }
     let hold = any_hold(e, "tail hold (sections)", 4)?;
-    let pass = Ticks(e.word("pass time (cycles)", 1..=3));
     let mut any_block = |sections: u8| {
         let max_trains = any_byte(e, "highest number of trains", 1..=u16::from(sections));
+        let pass = Ticks(e.word("pass time (cycles)", 1..=3));
         let block = Block::new(sections, max_trains, hold, pass).ok();
         e.assume(block.is_some());
         block
@@ -269,7 +271,10 @@ harness! {
     t_blk_4_line(e)
     theorem "T-BLK-4";
     requirements ["BLK-5"];
-    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions [
+        "no-phantom", "heard-by-one", "loops-overlap", "entries-apart", "check-in-fail-safe", "live-transmitter", "check-out-not-spurious",
+        "verified-reset", "no-reversing-over-exit",
+    ];
     bound BOUND;
     cases SIZES.len();
     unwind 20 = 2 + LENGTHS;
@@ -289,8 +294,8 @@ harness! {
         let (behind, ahead) = (cycle.report(BEHIND), cycle.report(AHEAD));
         let heads = e.word("sections ahead with a head (bits)", 0..=7) & all(cycle.blocks[AHEAD].sections());
         let detected = cycle.oriented(AHEAD, cycle.detections[AHEAD].present).bits();
-        e.assume(detected & all(cycle.blocks[AHEAD].sections()) & !heads == 0);
-        e.assume(u32::from(ahead.count.0) >= ones(heads));
+        suppose_no_phantom(e, detected & all(cycle.blocks[AHEAD].sections()), heads);
+        suppose_count(e, !cycle.counts(AHEAD) || u32::from(ahead.count.0) >= ones(heads));
         let head = any_byte(e, "a head's section ahead", 0..=2);
         let distance = any_byte(e, "sections behind", 1..=4);
         let hold = cycle.blocks[AHEAD].hold().sections();
@@ -332,8 +337,10 @@ harness! {
     }
     {
         let Some(hold) = any_hold(e, "tail hold (sections)", 4) else { return };
-        let pass = Ticks(e.word("pass time (cycles)", 1..=3));
-        let made = [2u8, 1, 2].map(|sections| Block::new(sections, any_byte(e, "highest number of trains", 1..=u16::from(sections)), hold, pass));
+        let made = [2u8, 1, 2].map(|sections| {
+            let max_trains = any_byte(e, "highest number of trains", 1..=u16::from(sections));
+            Block::new(sections, max_trains, hold, Ticks(e.word("pass time (cycles)", 1..=3)))
+        });
         let [Ok(first), Ok(second), Ok(third)] = made else { return e.assume(false) };
         let blocks = [first, second, third];
         let down = any_flag(e, "direction (odd: down)");

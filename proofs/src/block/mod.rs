@@ -162,6 +162,25 @@ fn any_trains<E: Engine + ?Sized>(e: &mut E, block: Block) -> Trains {
     Trains { heads, number: ones(heads) + u32::from(more) }
 }
 
+/// Nothing is detected where no head is: no detector hears what is not there, none hears a head that its neighbour hears too, and none at a border
+/// hears one that its block has not counted yet, or has let go.
+fn suppose_no_phantom<E: Engine + ?Sized>(e: &mut E, detected: u16, heads: u16) {
+    let only_heads = detected & !heads == 0;
+    e.suppose("no-phantom", only_heads);
+    e.suppose("heard-by-one", only_heads);
+    e.suppose("loops-overlap", only_heads);
+}
+
+/// The count is not under the trains, if it is in force: by T-BLK-3, and so by all that it supposes.
+fn suppose_count<E: Engine + ?Sized>(e: &mut E, not_under: bool) {
+    e.suppose("entries-apart", not_under);
+    e.suppose("check-in-fail-safe", not_under);
+    e.suppose("live-transmitter", not_under);
+    e.suppose("check-out-not-spurious", not_under);
+    e.suppose("verified-reset", not_under);
+    e.suppose("no-reversing-over-exit", not_under);
+}
+
 /// A bit for each of the first `count` sections, found the slow way.
 fn all(count: u8) -> u16 {
     let mut bits = 0;

@@ -1,6 +1,6 @@
 //! What is reported: T-BLK-1, T-BLK-4 (the machine's half), T-BLK-5 (exactness of the report) and T-BLK-6.
 
-use super::{all, any_byte, any_cycle, any_trains, has, ones};
+use super::{all, any_byte, any_cycle, any_trains, has, ones, suppose_count, suppose_no_phantom};
 
 harness! {
     /// With a count that is not under the trains, and no detector that hears a train where there is none, every section with
@@ -8,7 +8,10 @@ harness! {
     t_blk_1(e)
     theorem "T-BLK-1";
     requirements ["BLK-1", "BLK-2"];
-    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions [
+        "no-phantom", "heard-by-one", "loops-overlap", "entries-apart", "check-in-fail-safe", "live-transmitter", "check-out-not-spurious",
+        "verified-reset", "no-reversing-over-exit",
+    ];
     bound "";
     cases 1;
     unwind 18 = 1 + crate::block::LONGEST;
@@ -25,8 +28,8 @@ harness! {
         let Some(cycle) = any_cycle(e) else { return };
         let trains = any_trains(e, cycle.block);
         let (heads, detected) = (trains.heads, cycle.detected());
-        e.assume(detected & !heads == 0);
-        e.assume(u32::from(cycle.output.count.0) >= trains.number);
+        suppose_no_phantom(e, detected, heads);
+        suppose_count(e, !cycle.counts() || u32::from(cycle.output.count.0) >= trains.number);
         e.claim(Claim::Occupied as u32, heads & !cycle.output.occupied.bits() == 0);
         e.cover(Cover::Missed as u32, detected != heads);
         e.cover(Cover::Free as u32, heads != 0 && cycle.output.occupied.bits() != all(cycle.sections()));
@@ -41,7 +44,10 @@ harness! {
     t_blk_4(e)
     theorem "T-BLK-4";
     requirements ["BLK-5"];
-    assumptions ["no-phantom", "heard-by-one", "loops-overlap", "check-in-fail-safe", "check-out-not-spurious", "entries-apart", "verified-reset"];
+    assumptions [
+        "no-phantom", "heard-by-one", "loops-overlap", "entries-apart", "check-in-fail-safe", "live-transmitter", "check-out-not-spurious",
+        "verified-reset", "no-reversing-over-exit",
+    ];
     bound "";
     cases 1;
     unwind 18 = 1 + crate::block::LONGEST;
@@ -59,8 +65,8 @@ harness! {
     {
         let Some(cycle) = any_cycle(e) else { return };
         let trains = any_trains(e, cycle.block);
-        e.assume(cycle.detected() & !trains.heads == 0);
-        e.assume(u32::from(cycle.output.count.0) >= trains.number);
+        suppose_no_phantom(e, cycle.detected(), trains.heads);
+        suppose_count(e, !cycle.counts() || u32::from(cycle.output.count.0) >= trains.number);
         let (hold, ahead) = (cycle.block.hold().sections(), cycle.input.ahead_hold.sections());
         let head = any_byte(e, "a head's section", 0..=5);
         let distance = any_byte(e, "sections behind", 1..=3);

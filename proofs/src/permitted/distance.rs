@@ -1,15 +1,15 @@
 //! How far the stopping point is: PER-4.
 
 use super::{any_cycle, knows_main};
-use crate::{Engine, any_u32};
+use crate::{Engine, any_flag, any_u32};
 use atc_kernel::distance::{Metres, Millimetres};
 
-/// An arbitrary true distance in millimetres, negative behind the train, of which `bound` is a sound bound.
+/// An arbitrary true distance in millimetres, negative behind the train, of which `bound` is a sound bound; up to 2 147 km where that says nothing.
 fn any_truth<E: Engine + ?Sized>(e: &mut E, what: &'static str, bound: Option<Millimetres>) -> i64 {
-    let more = i64::from(any_u32(e, what, 0..=5000));
+    let more = any_u32(e, what, 0..=5000);
     match bound {
-        Some(Millimetres(bound)) if bound > 0 => i64::from(bound) + more,
-        _ => more - (1 << 20),
+        Some(Millimetres(bound)) if bound > 0 => i64::from(bound) + i64::from(more),
+        _ => i64::from(i32::from_le_bytes(more.to_le_bytes())),
     }
 }
 
@@ -24,7 +24,9 @@ harness! {
     t_per_4(e)
     theorem "T-PER-4";
     requirements ["PER-4", "PER-10"];
-    assumptions ["four-speeds", "odometer-bound", "fix-sound", "one-section-at-a-time", "margin-covers-the-crossing"];
+    assumptions [
+        "four-speeds", "odometer-bound", "fix-sound", "one-section-at-a-time", "fix-of-the-section-heard", "margin-covers-the-crossing",
+    ];
     bound "tables of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -47,11 +49,15 @@ harness! {
         let exit = any_truth(e, "true distance to the exit of the fix (mm more)", before.fix);
         // In the cycle the train moves forward by no more than the odometer says.
         let moved = i64::from(any_u32(e, "true movement (mm)", 0..=1000));
-        e.assume(moved <= i64::from(heard.moved.0));
+        e.suppose("odometer-bound", moved <= i64::from(heard.moved.0));
         let (stop, exit) = (stop - moved, exit - moved);
         // After it: the exit of the section that is heard now, and of the section of the main telegram.
-        let here = any_truth(e, "true distance to this exit (mm more)", heard.to_exit);
+        let too_long = i64::from(any_u32(e, "measured too long by (mm)", 0..=0));
+        let here = any_truth(e, "true distance to this exit (mm more)", heard.to_exit) - too_long;
+        e.suppose("fix-sound", heard.to_exit.is_none_or(|measured| sound(measured, here)));
         let told = i64::from(any_u32(e, "true distance to the telegram's exit (mm more than before it)", 0..=5000)) - moved;
+        let other = i64::from(any_u32(e, "it is another point's by (mm)", 0..=0));
+        let ahead = any_flag(e, "the fix was to the exit of the section ahead (odd: yes)");
         let (mut now, mut again) = (stop, false);
         if let Some(main) = cycle.used_main {
             let beyond = main.route.beyond_exit();
@@ -61,14 +67,17 @@ harness! {
             // Two telegrams of one section in a row: in between the train was in that section, and so was the fix measured.
             let between = before.main_stream.last.is_some_and(|last| last.section == main.section);
             let fixed = between && before.fix.is_some();
+            // Likely, so that drawn values meet what is supposed.
             let told = match (again, fixed) {
-                (true, _) => stop - further,
-                (false, true) => exit,
+                (true, _) => stop - further + other,
+                (false, true) => exit + other,
                 (false, false) => told,
             };
-            e.assume(!fixed || told == exit);
+            e.suppose("one-section-at-a-time", !again || told + further == stop);
+            e.suppose("fix-of-the-section-heard", !fixed || !ahead);
+            e.suppose("one-section-at-a-time", !fixed || ahead || told == exit);
             // A telegram of a section is heard in it; since then the train moved for a part of this cycle.
-            e.assume(told + moved >= 0);
+            e.suppose("margin-covers-the-crossing", told + moved >= 0);
             now = told + further;
         }
         e.claim(Claim::Stop as u32, after.target.is_none_or(|target| sound(target.to_stop, now)));

@@ -16,7 +16,7 @@ harness! {
     t_per_2(e)
     theorem "T-PER-2";
     requirements ["PER-2"];
-    assumptions ["four-speeds", "line-is-told"];
+    assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -107,7 +107,7 @@ harness! {
     t_per_6(e)
     theorem "T-PER-6";
     requirements ["PER-6", "PER-11"];
-    assumptions ["four-speeds", "cycle-on-time"];
+    assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -126,13 +126,12 @@ harness! {
         let Some(cycle) = any_cycle(e) else { return };
         let life = cycle.line.settings.life.0;
         let ghost = any_u32(e, "age of the last telegram that was used (cycles)", 0..=7);
-        e.assume(ghost < u32::MAX);
         let counted = |state: &State, ghost: u32| match state.target {
             Some(target) => u32::from(target.age.0) == ghost,
             None => ghost > u32::from(life),
         };
         e.assume(counted(&cycle.before, ghost));
-        let now = if cycle.used_main.is_some() { u32::from(cycle.before.main_stream.age.0) + 1 } else { ghost + 1 };
+        let now = if cycle.used_main.is_some() { u32::from(cycle.before.main_stream.age.0) + 1 } else { ghost.saturating_add(1) };
         e.claim(Claim::Counted as u32, counted(&cycle.after, now));
         let lost = |state: &State| matches!(state.telegrams(&cycle.line.permitted), Telegrams::Lost);
         e.claim(Claim::Ended as u32, now <= u32::from(life) || lost(&cycle.after));
@@ -224,7 +223,7 @@ harness! {
     t_per_8(e)
     theorem "T-PER-8";
     requirements ["PER-8", "PER-12", "PER-15", "GEN-1"];
-    assumptions ["four-speeds", "stop-point-life"];
+    assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;

@@ -103,9 +103,9 @@ fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
 }
 
 fn any_distance<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Millimetres {
-    // The likely half is metres, so that drawn distances are of every size.
-    let metres = e.word(what, 0..=400);
-    Millimetres(u32::from(metres) << 10 | u32::from(e.word(what, 0..=1023) & 1023))
+    // The likely half is of 65 m, so that drawn distances are of every size.
+    let high = e.word(what, 0..=6);
+    Millimetres(u32::from(high) << 16 | u32::from(e.word(what, 0..=u16::MAX)))
 }
 
 /// An arbitrary limit; of what a telegram said once.
@@ -118,7 +118,7 @@ fn any_target<E: Engine + ?Sized>(e: &mut E) -> Target {
         section: SectionId(e.word("target: section", 1..=2)),
         beyond: Metres(e.word("target: beyond the exit (m)", 0..=2)),
         limit: any_speed(e, "target: speed (0.1 km/h)"),
-        to_stop: any_distance(e, "target: distance (1024 mm, mm)"),
+        to_stop: any_distance(e, "target: distance (65 536 mm, mm)"),
         age: Ticks(e.word("target: age (cycles)", 0..=6)),
     }
 }
@@ -138,7 +138,7 @@ fn any_kind<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> LineKind {
 
 /// An arbitrary state, valid or not.
 fn any_parts<E: Engine + ?Sized>(e: &mut E) -> State {
-    let fix = any_distance(e, "fix (1024 mm, mm)");
+    let fix = any_distance(e, "fix (65 536 mm, mm)");
     let (target, behind, newest, other) = (any_target(e), any_target(e), any_fixed(e), any_fixed(e));
     State {
         line: any_kind(e, "line (odd: digital)"),
@@ -167,7 +167,7 @@ fn any_code<E: Engine + ?Sized>(e: &mut E) -> Option<KmhTenths> {
 fn any_heard<E: Engine + ?Sized>(e: &mut E) -> Option<Heard> {
     let told = any_kind(e, "line that begins (odd: digital)");
     let (main, sub) = (any_main(e)?, any_sub(e)?);
-    let to_exit = any_distance(e, "distance to the exit (1024 mm, mm)");
+    let to_exit = any_distance(e, "distance to the exit (65 536 mm, mm)");
     Some(Heard {
         line: any_flag(e, "a line begins (odd: yes)").then_some(told),
         analog: any_code(e),

@@ -101,7 +101,7 @@ harness! {
     t_per_5(e)
     theorem "T-PER-5";
     requirements ["PER-5", "PER-6"];
-    assumptions ["four-speeds", "sub-data-worst"];
+    assumptions ["four-speeds"];
     bound "tables of 4 speeds";
     cases 3;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -209,7 +209,7 @@ harness! {
     theorem "T-PER-5";
     requirements ["PER-15"];
     assumptions ["limits-reach-over-the-border", "sub-data-worst", "printed-sizes"];
-    bound "distances of 0, 1, 100 and 3000 m, of 300 m behind a border";
+    bound "distances of 0, 1, 100 and 3000 m, of 300 m behind a border, one deceleration";
     cases 4;
     unwind 33 = 1 + crate::aspect::LONGEST;
     apart [0 1 2 3];
@@ -244,7 +244,8 @@ harness! {
         e.claim(Claim::Own as u32, speed <= without_limit && speed <= own.ground);
         e.claim(Claim::Behind as u32, speed <= own.section || (behind.is_some() && speed <= carried));
         let truth = any_speed(e, "true limit under the train (0.1 km/h)");
-        e.assume(truth >= own.section && behind.is_none_or(|behind| truth >= behind.section));
+        e.suppose("sub-data-worst", truth >= own.section);
+        e.suppose("limits-reach-over-the-border", behind.is_none_or(|behind| truth >= behind.section));
         e.claim(Claim::Truth as u32, speed <= truth);
         e.claim(Claim::Least as u32, alone <= speed);
         e.cover(Cover::Carried as u32, speed > own.section && speed == carried);
@@ -261,7 +262,7 @@ harness! {
     theorem "T-PER-5";
     requirements ["PER-1", "PER-5", "PER-6", "PER-15"];
     assumptions ["four-speeds", "printed-sizes"];
-    bound "tables of 4 speeds, distances of 0, 1, 100 and 3000 m, of 300 m behind a border";
+    bound "tables of 4 speeds, distances of 0, 1, 100 and 3000 m, of 300 m behind a border, one deceleration, one margin";
     cases 4;
     unwind 33 = 1 + crate::aspect::LONGEST;
     apart [0 1 2 3];
@@ -347,7 +348,7 @@ harness! {
     {
         let Some(brake) = any_brake(e) else { return };
         let deceleration = brake.on(any_gradient(e, "gradient (‰, two's complement)"));
-        let distance = any_distance(e, "distance (1024 mm, mm)");
+        let distance = any_distance(e, "distance (65 536 mm, mm)");
         let (ground, section) = (any_speed(e, "ground's speed (0.1 km/h)"), any_speed(e, "section's limit (0.1 km/h)"));
         // That metres are rounded down is T-PER-4's, what the pattern is T-PAT-1's.
         let curve = pattern(deceleration, distance.whole_metres());

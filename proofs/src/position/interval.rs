@@ -18,7 +18,7 @@ harness! {
     t_pos_1(e)
     theorem "T-POS-1";
     requirements ["POS-1"];
-    assumptions ["calibration-covers-the-weather"];
+    assumptions ["calibration-covers-the-weather", "levels-within-tolerance"];
     bound "";
     cases SPANS;
     unwind 35 = 1 + 2 * crate::position::KNOTS;
@@ -39,9 +39,11 @@ harness! {
         let high = [curves.highest[span], curves.highest[span + 1]].map(i32::from);
         // Between straight lines the difference is above one of the lowest ends, or equal, and below one of the highest, or equal.
         let truly = i32::from(signed(e.word("true difference (mB)", 0..=160)));
-        e.assume((low[0] <= truly || low[1] <= truly) && (truly <= high[0] || truly <= high[1]));
+        let between = (low[0] <= truly || low[1] <= truly) && (truly <= high[0] || truly <= high[1]);
+        e.suppose("calibration-covers-the-weather", between);
         let [least, most] = ["least difference (mB)", "greatest difference (mB)"].map(|what| signed(e.word(what, 0..=170)).into());
-        e.assume(least <= truly && truly <= most);
+        // What `t_pos_1_levels` makes of levels.
+        e.suppose("levels-within-tolerance", least <= truly && truly <= most);
         let told = table.spans(least, most);
         e.claim(Claim::Inside as u32, told.is_none_or(|told| told.nearest.number <= span && span <= told.farthest.number));
         e.claim(Claim::Nearest as u32, told.is_none_or(|told| {
@@ -62,7 +64,7 @@ harness! {
     t_pos_1_levels(e)
     theorem "T-POS-1";
     requirements ["POS-1", "POS-2"];
-    assumptions ["levels-within-tolerance"];
+    assumptions ["levels-within-tolerance", "calibration-covers-the-weather"];
     bound "";
     cases 1;
     unwind 35 = 1 + 2 * crate::position::KNOTS;
@@ -70,6 +72,7 @@ harness! {
         Least: "the least is the first level less the second, less twice the tolerance, and the least correction more",
         Most: "the greatest is the first level less the second, twice the tolerance and the greatest correction more",
         Nothing: "there are bounds if and only if both levels are there and neither is under the floor",
+        Inside: "the true difference, corrected, is between them",
     }
     covers {
         Off: "there is a tolerance, and bounds on either side",
@@ -94,6 +97,15 @@ harness! {
         let (from, to) = (i32::from(least) - 2 * i32::from(tolerance), 2 * i32::from(tolerance) + i32::from(most));
         e.claim(Claim::Least as u32, bounds.is_none_or(|(least, _)| least == difference + from));
         e.claim(Claim::Most as u32, bounds.is_none_or(|(_, most)| most == difference + to));
+        // The truth: the two levels, and what the correction stands for.
+        let mut off = |what| i32::from(signed(e.word(what, 0..=1)));
+        let (first_off, second_off) = (off("first level measured too high by (mB)"), off("second level measured too high by (mB)"));
+        let within = |off: i32| -i32::from(tolerance) <= off && off <= i32::from(tolerance);
+        let correction = i32::from(signed(e.word("true correction (mB)", 1..=1)));
+        e.suppose("levels-within-tolerance", within(first_off) && within(second_off));
+        e.suppose("calibration-covers-the-weather", i32::from(least) <= correction && correction <= i32::from(most));
+        let truly = difference - first_off + second_off + correction;
+        e.claim(Claim::Inside as u32, bounds.is_none_or(|(least, most)| least <= truly && truly <= most));
         e.cover(Cover::Off as u32, bounds.is_some() && tolerance > 0 && from < 0 && to > 0);
         e.cover(Cover::Weak as u32, heard == [true, true] && first < floor && second >= floor);
     }
@@ -129,7 +141,7 @@ harness! {
             rises &= curves.lowest[knot] < curves.lowest[knot + 1] && curves.highest[knot] < curves.highest[knot + 1];
         }
         let [least, most] = ["least difference (mB)", "greatest difference (mB)"].map(|what| i32::from(signed(e.word(what, 0..=170))));
-        e.assume(rises && least <= most && i32::from(curves.highest[SPANS]) >= least);
+        e.assume(rises && least <= most);
         let told = table.spans(least, most);
         let known = most < i32::from(curves.lowest[SPANS]) && most >= i32::from(curves.lowest[0]);
         let first = i32::from(curves.highest[span + 1]) >= least && (span == 0 || i32::from(curves.highest[span]) < least);
@@ -202,7 +214,7 @@ harness! {
     t_pos_1_step(e)
     theorem "T-POS-1";
     requirements ["POS-1", "POS-2", "POS-7"];
-    assumptions ["printed-sizes", "levels-within-tolerance"];
+    assumptions ["printed-sizes"];
     bound "one table";
     cases 1;
     unwind 35 = 1 + 2 * crate::position::KNOTS;

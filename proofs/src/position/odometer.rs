@@ -11,7 +11,7 @@ harness! {
     t_pos_3(e)
     theorem "T-POS-3";
     requirements ["POS-4"];
-    assumptions ["odometer-bound", "levels-of-one-section"];
+    assumptions ["printed-sizes", "odometer-bound", "levels-of-one-section", "levels-within-tolerance", "calibration-covers-the-weather"];
     bound "one table, distances up to 2 147 km";
     cases 1;
     unwind 35 = 1 + 2 * crate::position::KNOTS;
@@ -31,7 +31,7 @@ harness! {
         let level = Some(Millibels(signed(e.word("first level (mB)", 0..=255))));
         let heard = |moved| Measured { first: level, second: Some(Millibels(0)), moved };
         let near = any_u32(e, "nearest before (mm)", 0..=9000) & 0x7FFF_FFFF;
-        let wide = u32::from(e.word("width before (mm)", 0..=9000));
+        let wide = any_u32(e, "width before (mm)", 0..=9000) & 0x7FFF_FFFF;
         let far = near + wide;
         let [least, most] = ["least movement (mm)", "most movement (mm)"].map(|what| signed(e.word(what, 0..=9000)));
         let (Some(before), Some(moved)) = (Interval::new(Millimetres(near), Millimetres(far)), Moved::new(least, most)) else {
@@ -40,9 +40,10 @@ harness! {
         let alone = step(&position, None, heard(moved));
         let found = step(&position, Some(before), heard(moved));
         // The truth: before, the movement, and after. Past the transmitter the distance is that to the next one.
-        let was = near + u32::from(e.word("train before, beyond the nearest (mm)", 0..=9000));
+        let was = near + (any_u32(e, "train before, beyond the nearest (mm)", 0..=9000) & 0x7FFF_FFFF);
         let by = signed(e.word("true movement (mm)", 0..=9000));
-        e.assume(was <= far && least <= by && by <= most);
+        e.assume(was <= far);
+        e.suppose("odometer-bound", least <= by && by <= most);
         let ahead = i64::from(was) - i64::from(by);
         let next = any_u32(e, "distance to the next transmitter (mm)", 0..=20_000);
         let now = if ahead > 0 { ahead } else { i64::from(next) };
@@ -50,7 +51,7 @@ harness! {
             interval.is_none_or(|found| i64::from(found.nearest().0) <= now && now <= i64::from(found.farthest().0))
         };
         let sound = inside(alone);
-        e.claim(Claim::Inside as u32, !sound || inside(found));
+        e.cover(Cover::Contradicted as u32, alone.is_some() && found.is_none());
         e.claim(Claim::Within as u32, found.is_none_or(|found| {
             alone.is_some_and(|alone| alone.nearest() <= found.nearest() && found.farthest() <= alone.farthest())
         }));
@@ -59,8 +60,12 @@ harness! {
             i64::from(found.nearest().0) >= i64::from(near) - i64::from(most) && i64::from(found.farthest().0) <= i64::from(far) - i64::from(least)
         }));
         e.claim(Claim::Alone as u32, !reached || found == alone);
-        e.cover(Cover::Narrowed as u32, sound && found.is_some() && found != alone);
-        e.cover(Cover::Passed as u32, sound && ahead <= 0 && found.is_some());
-        e.cover(Cover::Contradicted as u32, alone.is_some() && found.is_none());
+        // What T-POS-1 makes of levels, before the transmitter and behind it.
+        e.suppose("levels-of-one-section", sound);
+        e.suppose("levels-within-tolerance", sound);
+        e.suppose("calibration-covers-the-weather", sound);
+        e.claim(Claim::Inside as u32, inside(found));
+        e.cover(Cover::Narrowed as u32, found.is_some() && found != alone);
+        e.cover(Cover::Passed as u32, ahead <= 0 && found.is_some());
     }
 }

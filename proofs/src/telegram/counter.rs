@@ -68,7 +68,6 @@ harness! {
         // Ghosts: the observer's count of proper advances in a row, and the time since the last telegram.
         let advances = e.word("advances in a row, all of them", 0..=3);
         let silent = e.word("cycles since the last telegram", 0..=6);
-        e.assume(advances < u16::MAX && silent < u16::MAX);
         let run = u16::from(sequence.run());
         let up_to_run = |advances: u16| if advances < run { advances } else { run };
         let knows = |stream: &Stream, advances: u16, silent: u16| match stream.last {
@@ -79,7 +78,8 @@ harness! {
         let heard = any_heard(e);
         let (after, judgement) = sequence.step(before, heard);
 
-        let now = silent + 1;
+        // Everything from the greatest number on is alike.
+        let now = silent.saturating_add(1);
         let (mut advances_after, mut silent_after) = (advances, now);
         let mut proper = false;
         if let Some(header) = heard {
@@ -87,7 +87,7 @@ harness! {
                 let ahead = (i32::from(header.counter.0) - i32::from(last.counter.0)).rem_euclid(256);
                 proper = header.section == last.section && 1 <= ahead && ahead <= i32::from(sequence.window());
             }
-            advances_after = if proper { advances + 1 } else { 0 };
+            advances_after = if proper { advances.saturating_add(1) } else { 0 };
             silent_after = 0;
         }
         e.claim(Claim::Used as u32, (judgement == Judgement::Accepted) == (heard.is_some() && advances_after >= run));
@@ -113,7 +113,8 @@ harness! {
     t_tel_6_repeated(e)
     theorem "T-TEL-6";
     requirements ["TEL-6"];
-    assumptions ["counter-reach"];
+    assumptions ["counter-reach", "telegrams-numbered"];
+    built_in &[("counter-reach", "of a telegram that was sent 256 less the window before the last one, or more, it is claimed only what becomes of it")];
     bound "";
     cases 1;
     unwind 17 = 1 + size_of::<u128>();
@@ -139,7 +140,7 @@ harness! {
         let (mut repeated, mut beyond, mut same, mut first) = (false, false, false, true);
         if let Some(last) = before.last {
             same = header == last;
-            e.assume(header.section != last.section || u32::from(last.counter.0) == (u32::from(header.counter.0) + earlier % 256) % 256);
+            e.suppose("telegrams-numbered", header.section != last.section || u32::from(last.counter.0) == (u32::from(header.counter.0) + earlier % 256) % 256);
             repeated = header.section == last.section && earlier < 256 - window;
             let remembered = u32::from(before.age.0) + 1 < u32::from(sequence.memory().0);
             beyond = remembered && header.section == last.section && (256 - window..256).contains(&earlier);
