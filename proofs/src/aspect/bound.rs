@@ -1,6 +1,6 @@
 //! T-ACC-2, T-ACC-3 and T-ACC-7: what bounds the display from above, and how long a lost aspect stands.
 
-use super::{BOUND, HEARD, Cycle, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
+use super::{BOUND, Cycle, HEARD, Lane, any_cycle, any_rank, at_or_above, evident, has, lane, lowest, satisfied};
 use crate::ASPECTS;
 use atc_kernel::aspect::State;
 

@@ -1,8 +1,6 @@
 //! Lines: borders (T-BLK-3), tails across them (T-BLK-4), and what a line makes of its blocks (T-BLK-5).
 
-use super::{
-    all, any_byte, any_flag, any_hold, any_parts, any_reset, has, ones, suppose_count, suppose_no_phantom,
-};
+use super::{all, any_byte, any_flag, any_hold, any_parts, any_reset, has, ones, suppose_count, suppose_no_phantom};
 use crate::Engine;
 use atc_kernel::Machine;
 use atc_kernel::block::{

@@ -3,13 +3,26 @@
 //! The accidents: a train runs over a point that moves, or lies the other way; a train runs into a circuit whose block was confirmed.
 //! The train is that of T-ILK-10 ([`super::train`]), with all that may happen around it.
 
-use super::train::{BOUND, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
+use super::train::{BOUND, BUILT_IN, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use super::{any_circuits, any_settling, bit};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{CircuitSet, Element, PointSet, Positions, Settling};
 
 const POINTS: usize = 2;
+
+/// How the train and the blades are, by construction.
+const POINTS_BUILT_IN: &[(&str, &str)] = &[
+    BUILT_IN[0],
+    BUILT_IN[1],
+    BUILT_IN[2],
+    BUILT_IN[3],
+    BUILT_IN[4],
+    (
+        "points-leave-while-driven",
+        "a stroke begins within the settling time after a drive, or never; nothing else moves a point",
+    ),
+];
 
 /// What the route has prepared for the train that is still ahead of it, or under it.
 fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train) -> Element {
@@ -92,7 +105,12 @@ harness! {
     t_ilk_train_points(e)
     theorem "T-ILK-4";
     requirements ["ILK-3", "ILK-7", "ILK-8", "ILK-23", "ATC-1"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding", "points-detect-truly", "points-leave-while-driven"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+        "points-detect-truly", "points-leave-while-driven",
+    ];
+    built_in POINTS_BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -126,7 +144,7 @@ harness! {
         e.assume(counted(&still, count(&device.points)) && serves(&still, &scene.earlier));
         let blades = still.moves(e);
         let (normal, reverse) = (has(scene.input.detected.normal), has(scene.input.detected.reverse));
-        e.assume(blades.may_read(normal, reverse));
+        e.suppose("points-detect-truly", blades.may_read(normal, reverse));
         let driven = has(scene.output.drives.points());
         let later = blades.driven(e, settle);
         let later = if driven { later } else { blades };
@@ -149,7 +167,11 @@ harness! {
     t_ilk_train_worker(e)
     theorem "T-ILK-8";
     requirements ["ILK-7", "ILK-15", "ILK-16", "ATC-1"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+    ];
+    built_in BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;

@@ -1,7 +1,7 @@
 //! ATC (T-ATC-1, T-ATC-2, T-ATC-4): from what is granted to one telegram.
 //!
-//! What a route grants is proven elsewhere (T-ATC-1, ATC-1.1) and assumed here: circuits of its path that follow each other and are free
-//! and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
+//! What a route grants is proven elsewhere (T-ATC-1) and supposed here (`held-routes-compatible`): circuits of its path that follow each other and
+//! are free and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
 
 use super::{any_circuits, any_heading, bit};
 use crate::engine::{any_byte, any_flag};
@@ -86,7 +86,7 @@ fn any_grant<E: crate::Engine + ?Sized>(e: &mut E, route: &Route<PATH>) -> Grant
         end = if place < route.length { circuit } else { end };
     }
     let apart = grant.circuits.bits() & train.bits() == 0;
-    e.assume(apart);
+    e.suppose("held-routes-compatible", apart);
     if grant.circuits.bits() != 0 {
         grant
     } else if complete && !route.to.is_empty() && !end.is_empty() {
@@ -100,7 +100,7 @@ fn any_grant<E: crate::Engine + ?Sized>(e: &mut E, route: &Route<PATH>) -> Grant
 /// Any contents that the interlocking may write for the ATC, by what is proven of grants.
 pub(super) fn any_contents<E: crate::Engine + ?Sized>(e: &mut E, line: &Line) -> Contents<ROUTES> {
     let grants = [any_grant(e, &line.plan().routes[0]), any_grant(e, &line.plan().routes[1])];
-    e.assume(grants[0].circuits.bits() & grants[1].circuits.bits() == 0);
+    e.suppose("held-routes-compatible", !grants[0].circuits.meets(grants[1].circuits));
     let granted = grants[0].circuits.or(grants[1].circuits);
     let toward = any_byte(e, "toward (segments)", 0..=3) & 3;
     let away = any_byte(e, "away (segments)", 0..=3) & 3 & !toward;
@@ -185,7 +185,7 @@ harness! {
     t_atc_1_connect(e)
     theorem "T-ATC-1";
     requirements ["ATC-2", "ATC-3"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -259,7 +259,7 @@ harness! {
     t_atc_1_apart(e)
     theorem "T-ATC-1";
     requirements ["ATC-2", "ATC-3"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -302,7 +302,7 @@ harness! {
     t_atc_2(e)
     theorem "T-ATC-2";
     requirements ["ATC-4"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -399,7 +399,8 @@ harness! {
     t_atc_2_train(e)
     theorem "T-ATC-2";
     requirements ["ATC-4", "ATC-8"];
-    assumptions [];
+    assumptions ["held-routes-compatible", "path-complete"];
+    built_in &[("path-complete", "a train stands only in circuits that are joined: it comes into a path from its entry")];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -452,7 +453,7 @@ harness! {
     t_atc_4(e)
     theorem "T-ATC-4";
     requirements ["ATC-7"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -515,7 +516,7 @@ harness! {
     t_atc_4_each(e)
     theorem "T-ATC-4";
     requirements ["ATC-7"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;

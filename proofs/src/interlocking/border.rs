@@ -14,7 +14,11 @@ harness! {
     t_atc_6(e)
     theorem "T-ATC-6";
     requirements ["ATC-12"];
-    assumptions [];
+    assumptions ["held-routes-compatible", "routes-lead-off-the-line", "trains-know-facing", "views-of-a-line-meet"];
+    built_in &[
+        ("trains-know-facing", "left and right are the same for the train as for the layout"),
+        ("views-of-a-line-meet", "the neighbour's device sees the circuits that the layout says, and speaks there"),
+    ];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -46,9 +50,9 @@ harness! {
                     both_see = true;
                     inward = contents.toward.bits() >> number & 1 == 1;
                     away = segment.outward == faces;
-                    // A route that begins on a line leads away from it: a rule of layouts.
                     for grant in contents.grants {
-                        e.assume(grant.circuits.bits() == 0 || grant.train != it || grant.heading != segment.outward);
+                        let inward = grant.circuits.bits() == 0 || grant.train != it || grant.heading != segment.outward;
+                        e.suppose("routes-lead-off-the-line", inward);
                     }
                 }
             }

@@ -14,7 +14,8 @@ harness! {
     t_atc_5(e)
     theorem "T-ATC-5";
     requirements ["ATC-10", "ATC-11"];
-    assumptions [];
+    assumptions ["held-routes-compatible", "trains-know-facing"];
+    built_in &[("trains-know-facing", "left and right are the same for the train as for the layout; it takes a telegram for its own facing only")];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;

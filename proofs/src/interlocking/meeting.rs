@@ -4,13 +4,28 @@
 //! The train that goes out is that of T-ILK-10 ([`super::train`]). What comes in is seen when it is reported on the line, and not before.
 
 use super::any_circuits;
-use super::train::{BOUND, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
+use super::train::{BOUND, BUILT_IN, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Directions, Plan, SegmentSet, State};
 use atc_kernel::time::Ticks;
 
 const SEGMENTS: usize = 1;
+
+/// How the two trains are, by construction.
+const LINE_BUILT_IN: &[(&str, &str)] = &[
+    BUILT_IN[0],
+    BUILT_IN[1],
+    BUILT_IN[2],
+    BUILT_IN[3],
+    BUILT_IN[4],
+    ("turn-outlasts-telegrams", "a permission that was withdrawn is counted on for no longer than the turn time"),
+    ("neighbour-turns-alike", "the neighbour sends only while it may count on this station's permission"),
+    (
+        "views-of-a-line-meet",
+        "a train that has left this station's view of the line is looked at no more: the neighbour sees it",
+    ),
+];
 
 /// The trains of the neighbour, as far as they may be on their way in.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +123,12 @@ harness! {
     t_ilk_train_line(e)
     theorem "T-ILK-9";
     requirements ["ILK-16", "ILK-17", "ILK-18", "ILK-19", "ILK-20", "ILK-25", "ILK-26"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding", "turn-outlasts-telegrams", "neighbour-turns-alike"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+        "turn-outlasts-telegrams", "neighbour-turns-alike", "views-of-a-line-meet",
+    ];
+    built_in LINE_BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -146,8 +166,8 @@ harness! {
         let (line, throat) = (line(&scene), segment.throat);
         // Beyond its route the train is reported on the line.
         let beyond = out && !left && scene.train.seen().0 >= ground.over;
-        e.assume(!beyond || occupied.meets(line));
-        e.assume(!inbound.on || occupied.meets(line.or(throat)));
+        e.suppose("loss-of-shunt-within-clear", !beyond || occupied.meets(line));
+        e.suppose("loss-of-shunt-within-clear", !inbound.on || occupied.meets(line.or(throat)));
         let permitted = scene.output.permits.bits() & 1 == 1;
         let later = Inbound { coming: if permitted { scene.plan.turn.0 } else { inbound.coming }, ..inbound };
         let after = goes_out(&scene, &scene.informed, left);

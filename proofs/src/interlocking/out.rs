@@ -14,7 +14,8 @@ harness! {
     t_atc_7(e)
     theorem "T-ATC-7";
     requirements ["ATC-13"];
-    assumptions [];
+    assumptions ["held-routes-compatible", "path-complete"];
+    built_in &[("path-complete", "from the end of a route the tracks lead to the line that the layout says")];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;

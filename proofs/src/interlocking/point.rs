@@ -9,7 +9,7 @@ const ROUTES: usize = 2;
 const PATH: usize = if cfg!(small) { 2 } else { 4 };
 const POINTS: usize = if cfg!(small) { 2 } else { 16 };
 
-pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 16 points, no segment";
+pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 16 points of which 4 may have stood, no segment";
 
 harness! {
     /// A point is driven only while a provisional route or an accepted command wants it elsewhere than it is detected; never under a train, never where

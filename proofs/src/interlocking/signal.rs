@@ -248,7 +248,7 @@ harness! {
     t_atc_1_overlap(e)
     theorem "T-ATC-1";
     requirements ["LAY-1"];
-    assumptions [];
+    assumptions ["held-routes-compatible"];
     bound "2 routes of up to 4 circuits, 32 circuits";
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -273,7 +273,7 @@ harness! {
         let under = kept(&routes[0], states[0]).circuits.bits();
         let path = held(&routes[1], states[1]).circuits.bits();
         // What T-ILK-1 says of any two routes that are held.
-        e.assume(under & path == 0 || routes[0].continuing.bits() & 2 != 0);
+        e.suppose("held-routes-compatible", under & path == 0 || routes[0].continuing.bits() & 2 != 0);
         let given = grant(&routes[1], states[1], view);
         let over = valid && given.circuits.bits() & under != 0 && states[1].phase == Phase::Set;
         let mut last = 0;

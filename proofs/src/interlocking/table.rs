@@ -240,7 +240,7 @@ harness! {
     }
     {
         let Some(scene) = any_scene(e) else { return };
-        let damage = u64::from(e.word("difference of the check", 0..=1));
+        let damage = any_set(e, "difference of the check (bits)").bits();
         if damage == 0 {
             return e.assume(false);
         }

@@ -32,6 +32,15 @@ pub const BOUND: &str = match ROUTES {
     _ => ALONE,
 };
 
+/// How the train of a scene is, by construction.
+pub const BUILT_IN: &[(&str, &str)] = &[
+    ("release-covers-residual-running", "without authority the train runs on for no longer than the residual running"),
+    ("path-complete", "its front goes from the approach to the entry, and from there from place to place of the path"),
+    ("train-whole", "it is one train from front to tail, and reported in every circuit between"),
+    ("no-setting-back", "neither its front nor its tail ever goes back"),
+    ("start-outlasts-running", "the device has been running for longer than its time after a start"),
+];
+
 /// Where an end of the train is: outside is 0; the places of the path are `FIRST`, `FIRST` + 1, and so on.
 /// On the approach, but not at the entry.
 pub const APPROACH: u8 = 1;
@@ -167,14 +176,13 @@ impl Train {
         let (on, up) = (any_flag(e, "its front goes on (odd: yes)"), any_flag(e, "its tail goes on (odd: yes)"));
         let onward = any_flag(e, "it has authority beyond the route (odd: yes)");
         let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
-        e.assume(late <= ground.loss);
+        e.suppose("loss-of-shunt-within-clear", late <= ground.loss);
         let slides = (self.tail < ground.last || self.moving > 0) && !ground.overlap.is_empty();
-        let may = match self.front {
-            ENTRY => self.is_live(),
-            front => front <= ground.over && (front != ground.last || onward || slides),
-        };
+        e.suppose("trains-obey-signals", !on || self.front != ENTRY || self.is_live());
+        e.suppose("overlap-covers-sliding", !on || self.front != ground.last || onward || slides);
+        e.suppose("loss-of-shunt-within-clear", !on || self.late == 0);
         let whole = self.tail == ground.last && self.front == ground.last;
-        if on && may && self.late == 0 {
+        if on && self.front <= ground.over {
             self.slid |= self.front == ground.last && !onward;
             self.front += 1;
             self.late = late;
@@ -201,9 +209,12 @@ impl Train {
     /// What it learns at the end of the cycle: `lets_in` if the route's signal or telegram lets in who heeds it.
     fn informed<E: Engine + ?Sized>(mut self, e: &mut E, ground: &Ground, lets_in: bool, occupied: CircuitSet) -> Self {
         let heeds = any_flag(e, "it heeds the signal (odd: yes)");
-        let telegram = !ground.cab || !occupied.meets(ground.entry);
-        let near = self.front == ENTRY || self.front == APPROACH && !ground.approach.is_empty() && telegram;
-        let authority = lets_in && heeds && near && self.late == 0;
+        // In the path the signal at its beginning says nothing to it any more.
+        let authority = lets_in && heeds && self.front <= ENTRY;
+        let near = self.front == ENTRY || self.front == APPROACH && !ground.approach.is_empty();
+        e.suppose("approach-covers-braking", !authority || near && self.late == 0);
+        let by_signal = authority && self.front == APPROACH && occupied.meets(ground.entry);
+        e.suppose("all-cab-signalled", !by_signal || !ground.cab);
         self.run = if authority {
             0
         } else if self.authority {
@@ -367,7 +378,7 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
     let orders = input.orders;
     let restricted = device.works.restrictions.parts()[usize::from(SLOW)].without(orders.restrict.or(orders.lift));
     let slow = restricted.or(plan.line.parts()[usize::from(SLOW)]);
-    e.assume(train.is_reported(&ground, input.occupied));
+    e.suppose("loss-of-shunt-within-clear", train.is_reported(&ground, input.occupied));
     let (end, output) = layout.interlock(device, input);
     let (_, _, contents) = output.table.parts();
     let grant = contents.grants.first()?;
@@ -395,7 +406,11 @@ harness! {
     t_ilk_train_release(e)
     theorem "T-ILK-10";
     requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-21", "ILK-22"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+    ];
+    built_in BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -434,7 +449,11 @@ harness! {
     t_ilk_train_overlap(e)
     theorem "T-ILK-10";
     requirements ["ILK-14"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+    ];
+    built_in BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -464,7 +483,11 @@ harness! {
     t_ilk_train(e)
     theorem "T-ILK-10";
     requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-14", "ILK-21", "ILK-22"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running", "overlap-covers-sliding"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+    ];
+    built_in BUILT_IN;
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -495,7 +518,11 @@ harness! {
     t_ilk_train_body(e)
     theorem "T-ATC-2";
     requirements ["ATC-8", "ATC-9"];
-    assumptions ["loss-of-shunt-within-clear", "release-covers-residual-running"];
+    assumptions [
+        "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
+        "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
+    ];
+    built_in BUILT_IN;
     bound ALONE;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;

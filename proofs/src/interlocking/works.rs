@@ -12,7 +12,8 @@ pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 1 s
 
 harness! {
     /// A circuit is blocked or restricted by command only, and always by command. A block is confirmed only where no route holds the circuit
-    /// and no train is on it, and on plain line only while nobody may be on the way to it; what makes it protection lasts.
+    /// and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and the neighbour has not been
+    /// permitted to send for the turn time; what makes it protection lasts.
     t_ilk_8(e)
     theorem "T-ILK-8";
     requirements ["ILK-15", "ILK-16"];
