@@ -115,7 +115,7 @@ harness! {
         Ended: "after a main telegram with known ranks there is no fix",
         First: "without one, a fix stays the same, less the movement; without a fix, the measured distance becomes it",
         Used: "a target's distance is at most the one of before, or the fix of before and the distance beyond the exit; never what was measured in its own cycle",
-        Exact: "that distance is the fix of before, 0 if there is none, and the distance beyond the exit, less the movement; or the one of before to the same point, less the movement, if that is longer",
+        Exact: "that distance is the fix of before, 0 if there is none, and the distance beyond the exit, 4294 km at most, less the movement; or the one of before to the same point, less the movement, if that is longer",
     }
     covers {
         Kept: "a fix is kept although another distance is measured",
@@ -143,7 +143,8 @@ harness! {
             (Some(after), Some(main)) => {
                 let beyond = main.route.beyond_exit();
                 let less = |length: i64| if length > i64::from(heard.moved.0) { length - i64::from(heard.moved.0) } else { 0 };
-                let measured = less(i64::from(before.fix.map_or(0, |fix| fix.0)) + i64::from(beyond.0) * 1000);
+                let sum = i64::from(before.fix.map_or(0, |fix| fix.0)) + i64::from(beyond.0) * 1000;
+                let measured = less(if sum < 1 << 32 { sum } else { i64::from(u32::MAX) });
                 let again = before.target.filter(|target| {
                     let old = target.age.0 >= cycle.line.settings.life.0;
                     !old && target.section == main.section && target.beyond == beyond

@@ -332,8 +332,8 @@ harness! {
     t_per_5_speed(e)
     theorem "T-PER-5";
     requirements ["PER-5"];
-    assumptions [];
-    bound "";
+    assumptions ["printed-sizes"];
+    bound "distances up to 67 km";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -348,7 +348,7 @@ harness! {
     {
         let Some(brake) = any_brake(e) else { return };
         let deceleration = brake.on(any_gradient(e, "gradient (‰, two's complement)"));
-        let distance = any_distance(e, "distance (65 536 mm, mm)");
+        let distance = Millimetres(any_distance(e, "distance (65 536 mm, mm)").0 & 0x3FF_FFFF);
         let (ground, section) = (any_speed(e, "ground's speed (0.1 km/h)"), any_speed(e, "section's limit (0.1 km/h)"));
         // That metres are rounded down is T-PER-4's, what the pattern is T-PAT-1's.
         let curve = pattern(deceleration, distance.whole_metres());
