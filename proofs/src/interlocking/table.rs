@@ -83,7 +83,7 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Fresh: "a table that was written in this cycle is read as written",
-        Stale: "a table that was written in another cycle is refused",
+        Stale: "a table that was written in a cycle of another number is refused",
         Damaged: "a table with one wrong bit is refused in every cycle",
         Unreadable: "the table of the safe output is refused in every cycle",
     }

@@ -47,8 +47,9 @@ harness! {
         // Before the cycle, in the truth: the target's point, and the exit of the section of the fix.
         let stop = any_truth(e, "true distance to the stop (mm more)", before.target.map(|target| target.to_stop));
         let exit = any_truth(e, "true distance to the exit of the fix (mm more)", before.fix);
-        // In the cycle the train moves forward by no more than the odometer says.
-        let moved = i64::from(any_u32(e, "true movement (mm)", 0..=1000));
+        // In the cycle the train moves forward by no more than the odometer says, or back.
+        let forward = i64::from(any_u32(e, "true movement (mm)", 0..=1000));
+        let moved = forward - i64::from(any_u32(e, "true movement back (mm)", 0..=0));
         e.suppose("odometer-bound", moved <= i64::from(heard.moved.0));
         let (stop, exit) = (stop - moved, exit - moved);
         // After it: the exit of the section that is heard now, and of the section of the main telegram.
@@ -77,7 +78,7 @@ harness! {
             e.suppose("fix-of-the-section-heard", !fixed || !ahead);
             e.suppose("one-section-at-a-time", !fixed || ahead || told == exit);
             // A telegram of a section is heard in it; since then the train moved for a part of this cycle.
-            e.suppose("margin-covers-the-crossing", told + moved >= 0);
+            e.suppose("margin-covers-the-crossing", told >= 0 || told + moved >= 0);
             now = told + further;
         }
         e.claim(Claim::Stop as u32, after.target.is_none_or(|target| sound(target.to_stop, now)));
