@@ -153,8 +153,7 @@ fn goes_together(root: &Path, mutant: &Mutant) -> bool {
 pub(crate) fn is_together(root: &Path, mutant: &Mutant) -> bool {
     let change = Change { number: 1, find: &mutant.find, replace: &mutant.replace };
     let text = std::fs::read_to_string(root.join(mutant.path())).unwrap_or_default();
-    // The selector is in the kernel, which its arithmetic does not know.
-    mutant.path().starts_with("kernel/") && is_selectable(&text, &change)
+    is_selectable(&text, &change)
 }
 
 /// What the harnesses have said of the mutants so far.

@@ -55,20 +55,20 @@ pub fn is_selectable(text: &str, change: &Change) -> bool {
     parts(text).and_then(|parts| choice(text, &parts, change)).is_ok()
 }
 
-/// The kernel's root with a cell for each of `most` mutants, which says whether it is selected, and with `rest`, which fills them.
+/// A crate's root with a cell for each of `most` mutants, which says whether it is selected, and with `rest`, which fills them.
 ///
 /// # Errors
 /// The root is not as it is expected to be.
 pub fn with_cells(text: &str, most: usize, rest: &str) -> Result<String, String> {
     const FORBIDS: &str = "#![forbid(unsafe_code)]";
     if text.matches(FORBIDS).count() != 1 {
-        return Err(format!("the kernel's lib.rs does not have `{FORBIDS}` once"));
+        return Err(format!("lib.rs does not have `{FORBIDS}` once"));
     }
     let text = text.replacen(FORBIDS, "", 1);
     Ok(format!(
         "{text}\nstatic mut SELECTED: [u32; {most}] = [0; {most}];
          #[inline(always)]
-         pub(crate) const fn selected(number: usize) -> bool {{ unsafe {{ SELECTED[number] != 0 }} }}
+         pub const fn selected(number: usize) -> bool {{ unsafe {{ SELECTED[number] != 0 }} }}
          {rest}"
     ))
 }

@@ -150,21 +150,29 @@ pub fn judge(
 fn build(tools: &Tools, root: &Path, folder: &Path, options: &Options, group: &Group) -> Result<Compiled, String> {
     let sources = folder.join("sources");
     copy(root, &sources)?;
-    let mut files: BTreeMap<&str, Vec<Change>> = BTreeMap::new();
+    let mut files: BTreeMap<String, Vec<Change>> = BTreeMap::new();
     for (number, (_, mutant)) in &group.mutants {
         let change = Change { number: *number, find: &mutant.find, replace: &mutant.replace };
-        files.entry(&mutant.file).or_default().push(change);
+        files.entry(mutant.path()).or_default().push(change);
     }
     for (file, changes) in files {
-        let path = sources.join("kernel/src").join(file);
-        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        write(&path, &instrument(&text, &changes)?)?;
+        rewrite(&sources.join(file), |text| instrument(text, &changes))?;
     }
-    let library = sources.join("kernel/src/lib.rs");
-    let text = std::fs::read_to_string(&library).map_err(|error| format!("{}: {error}", library.display()))?;
-    write(&library, &with_selector(&text, group.mutants.keys().copied())?)?;
+    // The selector is in the kernel's arithmetic, and the kernel has it from there: both ask `crate::selected`.
+    let numbers = group.mutants.keys().copied();
+    rewrite(&sources.join("arithmetic/src/lib.rs"), |text| with_selector(text, numbers))?;
+    rewrite(&sources.join("kernel/src/lib.rs"), |text| Ok(format!("{text}\n{FROM_ARITHMETIC}")))?;
     let names: Vec<_> = group.harnesses.iter().map(|harness| harness.name.to_owned()).collect();
     compile(tools, &sources, &folder.join("build"), options.aspects, &names, Kernel::WithMutants)
+}
+
+/// What the kernel has from its arithmetic where it has mutants.
+const FROM_ARITHMETIC: &str =
+    "pub use atc_arithmetic::select;\n#[allow(unused_imports)]\npub(crate) use atc_arithmetic::selected;\n";
+
+fn rewrite(path: &Path, change: impl FnOnce(&str) -> Result<String, String>) -> Result<(), String> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    write(path, &change(&text)?)
 }
 
 /// The crate's root with what its mutants ask: a cell for each, which the prover fills before the harness begins.
