@@ -18,7 +18,7 @@ pub trait Engine {
 
     /// Goes on only with values for which this holds of the world: of trains, neighbours, detectors, odometers, times. `id` is that of an assumption in
     /// `spec/assumptions.toml`, and the harness lists it. No prover looks at it.
-    #[inline(always)]
+    #[inline]
     fn suppose(&mut self, _id: &'static str, holds: bool) {
         self.assume(holds);
     }

@@ -334,15 +334,17 @@ impl<'a> Visit<'a> for Found {
 
     fn visit_macro(&mut self, called: &'a Macro) {
         // The body of a harness, and those of macros that make harnesses.
-        if let Some(TokenTree::Group(body)) = called.tokens.clone().into_iter().last() {
-            if called.path.is_ident("harness") {
-                self.names.clear();
-                let body = Block::parse_within.parse2(body.stream()).unwrap();
-                // The trees live as long as the call: what is kept of them is copied.
-                let mut inside = Self { names: BTreeMap::new(), ..std::mem::take(self) };
-                body.iter().for_each(|statement| inside.visit_stmt(statement));
-                *self = inside;
+        if let Some(TokenTree::Group(body)) = called.tokens.clone().into_iter().last()
+            && called.path.is_ident("harness")
+        {
+            self.names.clear();
+            let body = Block::parse_within.parse2(body.stream()).unwrap();
+            // The trees live as long as the call: what is kept of them is copied.
+            let mut inside = Self { names: BTreeMap::new(), ..std::mem::take(self) };
+            for statement in &body {
+                inside.visit_stmt(statement);
             }
+            *self = inside;
         }
     }
 
@@ -372,12 +374,12 @@ impl<'a> Visit<'a> for Found {
     fn visit_expr_binary(&mut self, binary: &'a ExprBinary) {
         visit::visit_expr_binary(self, binary);
         let name = |path: &syn::ExprPath| path.path.get_ident().map(ToString::to_string);
-        if let (BinOp::BitAndAssign(_), Expr::Path(path)) = (&binary.op, &*binary.left) {
-            if let Some((name, before)) = name(path).and_then(|name| self.names.remove_entry(&name)) {
-                let op = BinOp::And(Token![&&](binary.span()));
-                let (left, right) = (Box::new(before), binary.right.clone());
-                self.names.insert(name, Expr::Binary(ExprBinary { attrs: Vec::new(), left, op, right }));
-            }
+        if let (BinOp::BitAndAssign(_), Expr::Path(path)) = (&binary.op, &*binary.left)
+            && let Some((name, before)) = name(path).and_then(|name| self.names.remove_entry(&name))
+        {
+            let op = BinOp::And(Token![&&](binary.span()));
+            let (left, right) = (Box::new(before), binary.right.clone());
+            self.names.insert(name, Expr::Binary(ExprBinary { attrs: Vec::new(), left, op, right }));
         }
     }
 
