@@ -96,6 +96,11 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         without: "A phantom makes up for a train that is missed, which is then reported free.",
     },
     Assumption {
+        id: "line-end-asks",
+        text: "What lies beyond the exit of a counted line has the sections held in which tails may still be.",
+        without: "A tail is reported free as soon as its front has left the line: the next train runs into it.",
+    },
+    Assumption {
         id: "check-in-fail-safe",
         text: "A check-in never misses a train: it fails to the state on.",
         without: "With one missed detection a train that was not counted is reported free.",

@@ -14,8 +14,10 @@
 //! | `progress` | the states from which not every train can arrive any more |
 //! | `trace` | a path as a run of the kernel |
 //! | [`neighbours`] | two stations that turn the line between them |
+//! | [`counted`] | a station whose line is counted: block counting in front of the interlocking |
 
 mod claims;
+pub mod counted;
 pub mod device;
 pub mod environment;
 pub mod ground;

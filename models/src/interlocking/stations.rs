@@ -9,13 +9,15 @@
 //! terminus    L ──▷ throat ═══ one                     point 0 in throat; normal leads to one
 //!                          ╲══ two
 //! siding      L ──▷ throat ─── first ─── second
+//! counted     far ─── near ──▷ throat ═══ one          point 0 in throat; normal leads to one
+//!                                     ╲══ two
 //! ```
 //!
 //! W, E, M, B, A, X, Y and L are plain line of one circuit each.
 
 mod others;
 
-pub use others::{BRANCH, MAIN, crossing, diamond, end, fork, junction, rest, siding, terminus};
+pub use others::{BRANCH, MAIN, counted, counted_line, crossing, diamond, end, fork, junction, rest, siding, terminus};
 
 use super::ground::{Edge, Ground, Heading, Signal, Station};
 use atc_kernel::distance::Metres;

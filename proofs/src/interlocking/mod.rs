@@ -16,6 +16,7 @@ mod pair;
 mod point;
 mod route;
 mod signal;
+mod start;
 mod table;
 mod track;
 mod train;
@@ -113,6 +114,7 @@ pub const ALL: &[Harness] = &[
     ahead::t_ilk_train_points::HARNESS,
     ahead::t_ilk_train_worker::HARNESS,
     meeting::t_ilk_train_line::HARNESS,
+    start::t_ilk_train_start::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.

@@ -1,4 +1,4 @@
-//! The junction, the crossing, the terminus and the siding.
+//! The junction, the crossing, the terminus, the siding and the station with a counted line.
 
 use super::{alone, both, checked, circuits, edge, over, plan, positions, route, routes, segment, signal};
 use crate::interlocking::ground::{Edge, Ground, Heading, Signal, Station};
@@ -163,4 +163,49 @@ pub fn siding() -> Station {
     plan.routes[0] = Route { from: alone(0), ..route(L, &path, 1 << FIRST) };
     plan.segments[0] = segment(L, 1 << THROAT);
     checked("siding", ground, &plan)
+}
+
+/// Circuits of the station with a counted line. The first two are the sections of the line.
+pub mod counted {
+    /// The section where trains come in.
+    pub const FAR: u8 = 0;
+    /// The section at the station.
+    pub const NEAR: u8 = 1;
+    /// The throat, with point 0.
+    pub const THROAT: u8 = 2;
+    /// The first platform, where trains end.
+    pub const ONE: u8 = 3;
+    /// The second platform, where trains end.
+    pub const TWO: u8 = 4;
+}
+
+/// A line of two sections, and two platforms where trains end. Routes 0 and 1 lead into platforms one and two.
+pub fn counted_line() -> Station {
+    use counted::{FAR, NEAR, ONE, THROAT, TWO};
+    let ground = Ground {
+        circuits: &["far", "near", "throat", "one", "two"],
+        edges: vec![
+            edge(FAR, NEAR, Up),
+            edge(NEAR, THROAT, Up),
+            over(THROAT, ONE, Up, 0, Normal),
+            over(THROAT, TWO, Up, 0, Reverse),
+        ],
+        signals: vec![signal(NEAR, Up, 0b11)],
+        points_in: [THROAT, THROAT],
+        fouls: Vec::new(),
+        line: 1 << FAR | 1 << NEAR,
+        ends: vec![(ONE, Up), (TWO, Up)],
+        turning: 0,
+        catching: 0,
+    };
+    let mut plan = plan(5);
+    for (number, platform, way) in [(0, ONE, positions(1, 0)), (1, TWO, positions(0, 1))] {
+        let path = [(THROAT, way), (platform, Positions::NONE)];
+        plan.routes[number] = Route { from: alone(0), ..route(NEAR, &path, 1 << THROAT) };
+    }
+    plan.points[0] = Point { detectors: circuits(1 << THROAT) };
+    let mut line = segment(NEAR, 1 << THROAT);
+    (line.circuits[1], line.length) = (circuits(1 << FAR), 2);
+    plan.segments[0] = line;
+    checked("counted line", ground, &plan)
 }
