@@ -164,6 +164,8 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("interlocking/point.rs", "count(counted) <= stood", AGAIN),
     ("interlocking/route.rs", "before.phase != Phase::Idle", CASE),
     ("interlocking/signal.rs", "state.phase != Phase::Idle", CASE),
+    ("interlocking/start.rs", "!(on_line && given)", AGAIN),
+    ("interlocking/start.rs", "before.works.confirmed.bits() & under.bits() == 0", AGAIN),
     ("interlocking/table.rs", "damage == 0", CASE),
     ("interlocking/table.rs", "written == scene.now", CASE),
     ("interlocking/track.rs", "clear == 0", "what the constructor accepts"),

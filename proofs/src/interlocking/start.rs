@@ -21,8 +21,8 @@ harness! {
         Still: "while it may still run no route is held, no signal shows proceed, nobody is granted a circuit, no point is driven, no block is confirmed, and no segment is turned or permitted",
         LetIn: "where it stands no signal lets another one in, and nobody is granted its circuits",
         Under: "no point is driven under it",
-        Staff: "no block is confirmed where it stands",
-        Against: "plain line where it stands is given to nobody",
+        Staff: "no block is confirmed where it stands, or will stand",
+        Against: "plain line where it stands, or will stand, is given to nobody",
     }
     covers {
         Runs: "it may still run, and a route is refused because of the start",
@@ -35,8 +35,8 @@ harness! {
         let plan = layout.plan();
         let start = plan.start.0;
         let run = e.word("it may run for (cycles)", 0..=1);
-        let under = any_circuits(e, "circuits in which it stands (bits)", 1..=8);
-        // What is so of it in every cycle: when it runs no more it is where it is reported.
+        let under = any_circuits(e, "circuits in which it stands, or will (bits)", 1..=8);
+        // What is so in every cycle, from the first one of a start on (T-ILK-1, `t_ilk_1_start`): the time, and what is claimed again behind the cycle.
         let in_time = |run: u16, started: u16| run == 0 || u32::from(run) + u32::from(started) <= u32::from(start);
         e.suppose("start-outlasts-running", in_time(run, before.started.0));
         let runs = run > 0;
@@ -50,7 +50,8 @@ harness! {
         let its = |set: atc_kernel::interlocking::SegmentSet| u64::from(set.bits()) & bit(0) != 0;
         let directions = before.directions;
         let given = its(directions.toward) || its(directions.away) || its(directions.came);
-        e.assume(runs || before.works.confirmed.bits() & under.bits() == 0 && !(on_line && given));
+        let invariant = before.works.confirmed.bits() & under.bits() == 0 && !(on_line && given);
+        e.assume(invariant);
 
         let (after, output) = layout.interlock(before, input);
         let left = run.saturating_sub(1);
@@ -73,10 +74,10 @@ harness! {
         e.claim(Claim::LetIn as u32, runs || !(in_path && shown) && granted & under.bits() == 0);
         let over_point = plan.points[0].detectors.bits() & under.bits() != 0;
         e.claim(Claim::Under as u32, runs || !(over_point && drives & 1 == 1));
-        e.claim(Claim::Staff as u32, runs || confirmed & under.bits() == 0);
+        e.claim(Claim::Staff as u32, confirmed & under.bits() == 0);
         let to = after.directions;
         let given = its(to.toward) || its(to.away) || its(to.came) || its(output.permits);
-        e.claim(Claim::Against as u32, runs || !(on_line && given));
+        e.claim(Claim::Against as u32, !(on_line && given));
 
         let refused = |why| matches!(input.request, Some(Request::Set(_))) && output.answer == Some(Err(why));
         e.cover(Cover::Runs as u32, runs && refused(Refusal::Starting));
