@@ -183,7 +183,7 @@ fn of_part(plan: &Plan, part: &str) -> Chosen {
     Chosen { ids, tests: Tests::Some(mine.filter_map(|(_, at)| target(at)).collect()) }
 }
 
-/// Package and test target of `models/tests/block.rs:7`; nothing for a file that is no target of its own.
+/// Package and test target of `models/tests/spin.rs:7`; nothing for a file that is no target of its own.
 fn target(at: &str) -> Option<(String, String)> {
     let path = Path::new(at.rsplit_once(':').map_or(at, |(path, _)| path));
     let mut names = path.iter().map(|name| name.to_string_lossy());

@@ -1,6 +1,6 @@
 //! A model without its types, for Stateright's Explorer: the server in it is compiled once, and not once a model.
 
-use crate::check::{Checked, Subject};
+use crate::check::{Checked, Entry, Subject};
 use crate::outcome::Expectation;
 use stateright::{Model, Property};
 use std::any::Any;
@@ -11,10 +11,11 @@ use std::sync::Arc;
 
 /// A state or an action of any model.
 #[derive(Clone)]
-pub(crate) struct Thing {
+pub struct Thing {
     value: Arc<dyn Any + Send + Sync>,
     show: fn(&dyn Any, &mut fmt::Formatter) -> fmt::Result,
-    hash: u64,
+    /// Equal for equal things.
+    pub hash: u64,
 }
 
 impl Thing {
@@ -55,7 +56,7 @@ impl PartialEq for Thing {
 }
 
 /// A [`Subject`] of any type. What belongs to another subject has no actions, no next state, and no claim holds of it.
-pub(crate) trait Explored: Send + Sync {
+pub trait Explored: Send + Sync {
     fn initial(&self) -> Vec<Thing>;
     fn actions(&self, state: &Thing) -> Vec<Thing>;
     fn next(&self, state: &Thing, action: &Thing) -> Option<Thing>;
@@ -91,7 +92,7 @@ impl<S: Subject> Explored for Checked<S> {
 }
 
 /// What Stateright is given.
-struct Shown(Arc<dyn Explored>);
+pub struct Shown(pub Arc<dyn Explored>);
 
 /// Stateright takes a bare function for each property: one for each number that a claim can have.
 macro_rules! numbered {
@@ -129,53 +130,12 @@ impl Model for Shown {
     }
 }
 
+/// A model of the catalogue, as the Explorer has it.
+pub fn shown(entry: &Entry) -> Shown {
+    Shown(Arc::clone(&entry.explored))
+}
+
 /// Serves the Explorer for one model, until the process ends.
 pub(crate) fn serve(model: &Arc<dyn Explored>, address: SocketAddr) {
     let _ = Shown(Arc::clone(model)).checker().serve(address);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{catalogue, check};
-    use std::collections::HashSet;
-
-    /// Every state that is reached, in the order in which it is reached first.
-    fn visited(shown: &Shown) -> Vec<Thing> {
-        let (mut states, mut seen) = (shown.init_states(), HashSet::new());
-        states.retain(|state| seen.insert(state.hash));
-        let mut next = 0;
-        while let Some(state) = states.get(next).cloned() {
-            states.extend(shown.next_states(&state).into_iter().filter(|state| seen.insert(state.hash)));
-            next += 1;
-        }
-        states
-    }
-
-    #[test]
-    fn the_explorer_has_every_claim() {
-        for entry in catalogue() {
-            let shown = Shown(Arc::clone(&entry.explored));
-            assert_eq!(shown.properties().len(), shown.0.claims().len(), "{}", entry.name);
-        }
-    }
-
-    #[test]
-    fn the_explorer_sees_the_states_and_judges_the_claims_of_the_search() {
-        const SMALL: [&str; 3] = ["interlocking-line", "interlocking-siding-flicker", "interlocking-path-left-out"];
-        let mut small = catalogue();
-        small.retain(|entry| SMALL.contains(&entry.name));
-        assert_eq!(small.len(), SMALL.len());
-        for entry in small {
-            let outcome = check(&entry, 1);
-            let shown = Shown(Arc::clone(&entry.explored));
-            let states: HashSet<u64> = visited(&shown).iter().map(|state| state.hash).collect();
-            assert_eq!(states.len(), outcome.unique_states, "{}", entry.name);
-            for (number, property) in outcome.properties.iter().enumerate() {
-                let wanted = property.expectation != Expectation::AlwaysHolds;
-                let found = visited(&shown).iter().any(|state| shown.0.holds(number, state) == wanted);
-                assert_eq!(found, property.trace.is_some(), "{}: {}", entry.name, property.name);
-            }
-        }
-    }
 }

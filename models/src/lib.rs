@@ -40,6 +40,13 @@ pub mod replay;
 pub mod spin;
 pub mod train;
 
+/// What the tests look at. A test of the library itself would compile all models once more.
+#[doc(hidden)]
+pub mod inside {
+    pub use crate::explorer::{Shown, Thing, shown};
+    pub use crate::spin::{Counted, counted, difference, refuted};
+}
+
 pub use catalogue::catalogue;
 pub use check::{About, Checked, Claim, Entry, Limits, Subject, Visit, check, check_within, explore, visit};
 pub use outcome::{CutSet, Expectation, FailureMode, Outcome, PropertyOutcome, Step, Trace, Verdict};

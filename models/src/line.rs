@@ -100,19 +100,3 @@ const fn ms(operate: u32, recovery: u32, mask: u32, interruption: u32, shortened
         shortened_operate: Millis(shortened_operate),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_line_is_accepted_and_is_what_it_says() {
-        let credited = |line: Line| (credited_gap(line.ticks()), line.ticks().interruption().0);
-        assert_eq!(DEFAULT.ticks().tolerated_interruption().0, 70);
-        assert_eq!(COARSE.ticks().tolerated_interruption().0, 7);
-        assert_eq!(credited(FINE), (14, 15));
-        assert_eq!(credited(LATE), (3, 4));
-        assert_eq!(credited(EARLY), (2, 2));
-        assert_eq!(credited(SHORTEST), (0, 0));
-    }
-}

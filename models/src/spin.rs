@@ -14,7 +14,8 @@ mod tool;
 
 use tool::CHECKER;
 pub use tool::Spin;
-pub(crate) use tool::{COUNTER, Counted, Folder};
+pub(crate) use tool::{COUNTER, Folder};
+pub use tool::{Counted, counted, refuted};
 
 /// A model in Promela.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -123,7 +124,7 @@ fn formula(property: &PropertyOutcome) -> String {
 }
 
 /// In what the two differ, if they do.
-fn difference(twin: &Twin, outcome: &Outcome, counted: Counted, refuted: &[bool]) -> Option<String> {
+pub fn difference(twin: &Twin, outcome: &Outcome, counted: Counted, refuted: &[bool]) -> Option<String> {
     let mut differences = Vec::new();
     let count = |number: usize| u64::try_from(number).unwrap_or(u64::MAX);
     let (states, steps) = (count(outcome.unique_states), count(outcome.generated_states) + u64::from(twin.chooses));
@@ -153,6 +154,3 @@ fn difference(twin: &Twin, outcome: &Outcome, counted: Counted, refuted: &[bool]
     }
     if differences.is_empty() { None } else { Some(differences.join("; ")) }
 }
-
-#[cfg(test)]
-mod tests;

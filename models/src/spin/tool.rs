@@ -24,7 +24,7 @@ pub struct Spin {
 
 /// What a checker counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Counted {
+pub struct Counted {
     /// Stored states.
     pub states: u64,
     /// Steps, the way into the initial state included.
@@ -161,7 +161,11 @@ fn broken_off(said: &str) -> Option<String> {
     Some(format!("the search was broken off: {}", line.trim()))
 }
 
-fn counted(said: &str) -> Result<Counted, String> {
+/// What a checker that has searched everything says of states and steps.
+///
+/// # Errors
+/// The search is not complete, or its words are not known.
+pub fn counted(said: &str) -> Result<Counted, String> {
     if let Some(why) = broken_off(said) {
         return Err(why);
     }
@@ -176,7 +180,11 @@ fn counted(said: &str) -> Result<Counted, String> {
     }
 }
 
-fn refuted(said: &str, name: &str) -> Result<bool, String> {
+/// Whether a checker has refuted the property `name`.
+///
+/// # Errors
+/// The search is not complete, or its words are not known.
+pub fn refuted(said: &str, name: &str) -> Result<bool, String> {
     if !said.lines().any(|line| line == format!("pan: ltl formula {name}")) {
         return Err(format!("the property {name}: {}", first_error(said)));
     }
@@ -191,6 +199,3 @@ fn refuted(said: &str, name: &str) -> Result<bool, String> {
 fn figure<'a>(said: &'a str, of: impl Fn(&'a str) -> Option<&'a str>) -> Option<u64> {
     said.lines().map(str::trim).find_map(of)?.trim().parse().ok()
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,9 +1,8 @@
 //! Every model of the catalogue: its expectations, its size, its names and its traces.
 
-#[path = "common/large.rs"]
-mod large;
-mod unique_states;
-
+use crate::OUTCOMES;
+use crate::large::LARGE;
+use crate::unique_states::UNIQUE_STATES;
 use atc_kernel::aspect::{Acceptance, AspectSet, State, Times, TimesMs, step};
 use atc_kernel::time::Millis;
 use atc_models::assumptions::ASSUMPTIONS;
@@ -14,20 +13,10 @@ use atc_models::line::{ASPECTS_KM_H, COARSE, DEFAULT, EARLY, LATE};
 use atc_models::reception::claims::{Bound, Purpose};
 use atc_models::reception::{Environment, Ground, Longest, Reception};
 use atc_models::replay::Config;
-use atc_models::{Expectation, Limits, Outcome, Subject, Trace, Verdict, catalogue, check, check_within};
-use large::LARGE;
+use atc_models::{Expectation, Limits, Subject, Trace, Verdict, catalogue, check, check_within};
 use std::collections::{BTreeSet, HashSet};
 use std::hash::Hash;
-use std::sync::LazyLock;
 use std::time::Duration;
-use unique_states::UNIQUE_STATES;
-
-static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
-    let small = catalogue().into_iter().filter(|entry| !LARGE.contains(&entry.name));
-    let checks = small.map(|entry| std::thread::spawn(move || check(&entry, 1)));
-    let running: Vec<_> = checks.collect();
-    running.into_iter().map(|thread| thread.join().expect("a model does not panic")).collect()
-});
 
 #[test]
 fn every_expectation_is_met() {

@@ -1,7 +1,7 @@
 //! Block counting: the cut sets twice, what single faults do, traces, and wrong machines that must turn a claim red.
 
-mod common;
-
+use crate::common::outcome;
+use crate::outcomes;
 use atc_kernel::Machine;
 use atc_kernel::block::{
     Beyond as Exit, Block, Hold, Input, Line, LineInput, LineOutput, LineState, Output, Parts, SectionSet, State,
@@ -14,18 +14,10 @@ use atc_models::block::device::{Counting, Real};
 use atc_models::block::fault::{Faults, Kind};
 use atc_models::block::lines::{Lining, RealLine};
 use atc_models::block::single::{Beyond, Single};
-use atc_models::{Limits, Outcome, Subject, Trace, Verdict, catalogue, check};
-use common::outcome;
+use atc_models::{Limits, Outcome, Subject, Trace, Verdict, catalogue};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::sync::LazyLock;
 use std::time::Duration;
-
-static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
-    let entries = catalogue().into_iter().filter(|e| e.name.starts_with("block") || e.name.starts_with("border"));
-    let running: Vec<_> = entries.map(|entry| std::thread::spawn(move || check(&entry, 1))).collect();
-    running.into_iter().map(|thread| thread.join().expect("a model does not panic")).collect()
-});
 
 #[test]
 fn the_search_and_the_direct_evaluation_find_the_same_cut_sets() {
@@ -48,7 +40,7 @@ fn the_search_and_the_direct_evaluation_find_the_same_cut_sets() {
 
 #[test]
 fn the_cut_sets_of_the_catalogue_have_traces_and_owners() {
-    let listed: Vec<_> = OUTCOMES.iter().filter(|outcome| !outcome.cut_sets.is_empty()).collect();
+    let listed: Vec<_> = outcomes(&["block", "border"]).filter(|outcome| !outcome.cut_sets.is_empty()).collect();
     assert_eq!(listed.len(), 3);
     for outcome in listed {
         assert_eq!(outcome.cut_sets.len(), 4, "{}", outcome.model);
@@ -88,7 +80,7 @@ fn an_incomplete_search_lists_nothing_and_does_not_pass() {
 }
 
 fn traces() -> impl Iterator<Item = (&'static Outcome, &'static Trace)> {
-    OUTCOMES.iter().flat_map(|outcome| {
+    outcomes(&["block", "border"]).flat_map(|outcome| {
         let properties = outcome.properties.iter().filter_map(|property| property.trace.as_ref());
         properties.chain(outcome.cut_sets.iter().map(|cut| &cut.trace)).map(move |trace| (outcome, trace))
     })

@@ -1,7 +1,7 @@
 //! The permitted speed: wrong devices that must turn a claim red, traces that are runs of the kernel, and the ground truth.
 
-mod common;
-
+use crate::common::outcome;
+use crate::outcomes;
 use atc_kernel::Machine;
 use atc_kernel::aspect::AspectId;
 use atc_kernel::permitted::{Basis, Heard, LineKind, Permission, Permitted, Settings, State, step};
@@ -12,15 +12,8 @@ use atc_models::permitted::device::{Conventional, Device, FixOfAnyCycle, Real};
 use atc_models::permitted::layout::{BRAKE_MM_S2, CELL_M, Layout, SPEEDS, Section};
 use atc_models::permitted::ride::{Border, Changes, Delivery, Environment, Fix, Odometer, Ride, Small, Transmitter};
 use atc_models::permitted::{Purpose, Sight};
-use atc_models::{Expectation, Outcome, Subject, Verdict, catalogue, check};
-use common::outcome;
+use atc_models::{Expectation, Subject, Verdict};
 use std::collections::{BTreeSet, HashSet};
-use std::sync::LazyLock;
-
-static OUTCOMES: LazyLock<Vec<Outcome>> = LazyLock::new(|| {
-    let entries: Vec<_> = catalogue().into_iter().filter(|entry| entry.name.starts_with("permitted")).collect();
-    atc_models::in_parallel(&entries, 2, |entry| check(entry, 1), |_| ())
-});
 
 #[track_caller]
 fn red<D: Device>(model: Ride<D>, property: &str) {
@@ -243,7 +236,7 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
     ]
     .into();
     let mut excluding = BTreeSet::new();
-    for outcome in OUTCOMES.iter() {
+    for outcome in outcomes(&["permitted"]) {
         for property in outcome.properties.iter().filter(|p| p.expectation == Expectation::HazardFound) {
             let last = property.trace.as_ref().and_then(|trace| trace.steps.last()).expect("a trace");
             assert_eq!(last.words["hazard"], true, "{}", outcome.model);
@@ -256,7 +249,7 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
 #[test]
 fn a_trace_with_true_counters_is_what_the_model_saw_with_relative_ones() {
     let (mut steps, mut wraps) = (0, 0);
-    for outcome in OUTCOMES.iter() {
+    for outcome in outcomes(&["permitted"]) {
         let other = ["permitted-lines-conventional", "permitted-border-fix-of-any-cycle"];
         if other.contains(&outcome.model.as_str()) {
             continue;
@@ -291,7 +284,8 @@ fn reachable<D: Device>(model: &Ride<D>) -> usize {
 #[test]
 fn a_plain_search_counts_the_same_states() {
     let layout = Layout::digital(&[6, 3], &[7]);
-    let counted = |name: &str| OUTCOMES.iter().find(|o| o.model == name).expect("in the catalogue").unique_states;
+    let counted =
+        |name: &str| outcomes(&["permitted"]).find(|o| o.model == name).expect("in the catalogue").unique_states;
     let odometer = Environment { odometer: Odometer::Bounded, fix: Fix::Any, ..Environment::USUAL };
     let levels = Environment { fix: Fix::Levels, ..Environment::USUAL };
     for (name, environment) in [("permitted-odometer", odometer), ("permitted-position", levels)] {

@@ -1,6 +1,6 @@
 //! What is read from a checker's words, and what is not taken for a result.
 
-use super::{Counted, counted, refuted};
+use atc_models::inside::{Counted, counted, refuted};
 
 const COUNT: &str = "State-vector 36 byte, depth reached 450, errors: 0\n      101 states, stored\n      610 states, matched\n      \
                      711 transitions (= stored+matched)\n";

@@ -1,7 +1,8 @@
 //! What two checkers must have in common to agree.
 
-use super::{Counted, Twin, difference};
-use crate::outcome::{Expectation, Outcome, PropertyOutcome, Verdict};
+use atc_models::inside::{Counted, difference};
+use atc_models::spin::Twin;
+use atc_models::{Expectation, Outcome, PropertyOutcome, Verdict};
 
 fn property(expectation: Expectation, verdict: Verdict) -> PropertyOutcome {
     let name = format!("{expectation:?}").to_lowercase();
