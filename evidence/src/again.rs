@@ -40,6 +40,9 @@ pub fn kept(folder: &Path, now: &Provenance, scope: &Scope, provers: &BTreeMap<S
     let Some(old) = written(folder) else { return Kept::default() };
     let clean = |one: &Provenance| one.commit.is_some() && one.dirty == Some(false);
     let said = |name: &String, version: &String| old.provenance.tools.get(name) == Some(version);
+    // The provers bring a compiler of their own, which stands under the same name in what a run has written.
+    let mut tools = now.tools.clone();
+    tools.extend(provers.clone());
     let same = clean(now)
         && clean(&old.provenance)
         && now.commit == old.provenance.commit
@@ -47,7 +50,7 @@ pub fn kept(folder: &Path, now: &Provenance, scope: &Scope, provers: &BTreeMap<S
         && differences(&old.provenance, now).is_empty()
         && now.sources_sha256 == old.provenance.sources_sha256
         && now.aspects == old.provenance.aspects
-        && now.tools.iter().chain(provers).all(|(name, version)| said(name, version))
+        && tools.iter().all(|(name, version)| said(name, version))
         && *scope == old.scope
         && old.joined.is_empty();
     if same { concluded(old) } else { Kept::default() }
@@ -101,6 +104,7 @@ pub const TESTS: &str = "tests";
 #[cfg(test)]
 mod checks {
     use super::{Kept, Results, Scope, kept, results, sha256};
+    use crate::inputs::provenance::HOST;
     use crate::merge::checks::shard;
     use atc_prover::report::{MutantVerdict, Verdict};
     use std::collections::BTreeMap;
@@ -132,6 +136,28 @@ mod checks {
         assert!(["harness:holds", "mutant:m", super::TESTS].iter().all(|id| kept.has(id)) && kept.count() == 3);
         let left = kept.results.expect("kept");
         assert_eq!(left.campaigns[0].campaign.harnesses.len(), 1, "what had no answer is asked again");
+    }
+
+    /// The provers' compiler is seldom that of the machine.
+    #[test]
+    fn the_compiler_of_the_provers_is_theirs() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let (mut old, mut now) = (found(), found());
+        old.provenance.tools.insert("rustc".to_owned(), "1.85".to_owned());
+        for all in [&mut old, &mut now] {
+            all.provenance.tools.insert(HOST.to_owned(), "1.95".to_owned());
+        }
+        now.provenance.tools.insert("rustc".to_owned(), "1.95".to_owned());
+        write(folder.path(), &old);
+        let ask = |now: &Results, theirs: &str| {
+            let provers =
+                [("cbmc", "6"), ("rustc", theirs)].map(|(name, version)| (name.to_owned(), version.to_owned()));
+            kept(folder.path(), &now.provenance, &now.scope, &BTreeMap::from(provers)).count()
+        };
+        assert_eq!(ask(&now, "1.85"), 3);
+        assert_eq!(ask(&now, "1.86"), 0, "the provers have another one");
+        now.provenance.tools.insert(HOST.to_owned(), "1.96".to_owned());
+        assert_eq!(ask(&now, "1.85"), 0, "the machine has another one");
     }
 
     #[test]

@@ -49,6 +49,9 @@ pub fn collect(root: &Path, sources: String) -> Result<Provenance, Fault> {
             tools.insert(tool.to_owned(), version);
         }
     }
+    if let Some(version) = tools.get("rustc").cloned() {
+        tools.insert(HOST.to_owned(), version);
+    }
     Ok(Provenance {
         commit: answer(root, "git", &["rev-parse", "HEAD"]),
         dirty: answer(root, "git", &["status", "--porcelain"]).map(|changes| !changes.is_empty()),
@@ -60,6 +63,9 @@ pub fn collect(root: &Path, sources: String) -> Result<Provenance, Fault> {
         ..Provenance::default()
     })
 }
+
+/// The compiler of the machine, which makes tests and models. The provers' own takes its place under `rustc`.
+pub const HOST: &str = "rustc of this machine";
 
 /// The folders, and the lock file, in which two provenances differ.
 pub fn differences(one: &Provenance, other: &Provenance) -> Vec<String> {
