@@ -1,8 +1,10 @@
 //! The engines of a run, one after the other; every result is entered as it comes.
 //!
 //! The cheap theorems come first, so that the page says something soon; then the models, as a cut set that nobody owns ends
-//! the run; then the wrong kernels, and what takes long.
+//! the run; then the wrong kernels, and what takes long. Where the time is limited, what takes long comes before the wrong kernels: a
+//! theorem says more than that one more mutant is rejected by it.
 
+use super::budget::Budget;
 use super::{HERE, Run};
 use crate::again::{self, Kept};
 use crate::error::{Fault, read};
@@ -37,6 +39,9 @@ const MEASURED: &str = "measurements";
 const BENCH: &str = "waveform bench";
 const TESTS: &str = "tests";
 
+/// About how many seconds some of the tests take, where they are built.
+const PART_OF_TESTS: f64 = 20.0;
+
 /// A theorem that takes more seconds than an ordinary one belongs to the second pass.
 const LONG: f64 = 1.5;
 type Items = Vec<(String, f64)>;
@@ -61,6 +66,8 @@ pub struct Engines<'a> {
     pub sources: &'a str,
     /// What an earlier run has concluded.
     pub kept: &'a Kept,
+    /// The time that it has.
+    pub budget: Budget,
 }
 
 impl Engines<'_> {
@@ -119,10 +126,16 @@ impl Engines<'_> {
             self.models(live)?;
         }
         if !self.options.no_provers {
+            let limited = self.budget.is_limited();
+            if limited {
+                self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
+            }
             if !self.options.no_mutants {
                 self.wrong_kernels(live, &provers).map_err(one)?;
             }
-            self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
+            if !limited {
+                self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
+            }
         }
         self.measurements(live);
         self.suites(live).map_err(one)
@@ -143,6 +156,14 @@ impl Engines<'_> {
     fn open(&self, kind: &str, mut names: Vec<String>) -> Vec<String> {
         names.retain(|name| !self.kept.has(&format!("{kind}:{name}")));
         names
+    }
+
+    /// Those of them that end in the time that the run has.
+    fn in_time(&self, kind: &str, names: Vec<String>) -> Vec<String> {
+        let costs = &self.plan.data.costs;
+        let each =
+            |name: &String| if kind == "native" { costs.each.native } else { costs.of(&format!("{kind}:{name}")) };
+        self.budget.affordable(names, self.jobs, each)
     }
 
     fn native_names(&self) -> Vec<String> {
@@ -225,7 +246,7 @@ impl Engines<'_> {
     }
 
     fn native(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
-        let names = self.native_names();
+        let names = self.in_time("native", self.native_names());
         self.enter(live, "native", &[], None);
         if names.is_empty() {
             return Ok(());
@@ -246,6 +267,7 @@ impl Engines<'_> {
 
     fn theorems(&self, live: &Live, provers: &Options, name: &str, names: &[String]) -> Result<(), Fault> {
         self.enter(live, "cbmc", &[], None);
+        let names = &self.in_time("harness", names.to_vec());
         if names.is_empty() {
             return Ok(());
         }
@@ -261,7 +283,7 @@ impl Engines<'_> {
     }
 
     fn wrong_kernels(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
-        let names = self.mutants();
+        let names = self.in_time("mutant", self.mutants());
         if names.is_empty() {
             return Ok(());
         }
@@ -286,7 +308,8 @@ impl Engines<'_> {
 
     /// Searches every model, one after the other, each with all cores; then asks another checker.
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
-        let entries = self.entries("model");
+        let cost = |entry: &Entry| self.plan.data.costs.of(&format!("model:{}", entry.name));
+        let entries = self.budget.affordable(self.entries("model"), self.jobs, cost);
         let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
         let beside = self.is_beside();
         let searched = || {
@@ -391,6 +414,9 @@ impl Engines<'_> {
             Tests::Some(targets) => Some(targets),
             Tests::All => None,
         };
+        if self.budget.affordable(vec![()], self.jobs, |()| PART_OF_TESTS).is_empty() {
+            return Ok(());
+        }
         Self::phase(live, TESTS, || {
             let log = self.folder.stage().join("tests.log");
             live.progress.watch(&log);

@@ -1,5 +1,6 @@
 //! The commands.
 
+mod budget;
 mod engines;
 mod merge;
 mod render;
@@ -83,6 +84,9 @@ pub struct Run {
     /// Only this part of the railway (aspect, supervision, block, …): its theorems, wrong kernels, models and tests.
     #[arg(long, conflicts_with = "shard")]
     part: Option<String>,
+    /// Start nothing that would not end in so many seconds; the same command again goes on from there. A part has 170 by itself.
+    #[arg(long, value_name = "SECONDS")]
+    within: Option<u64>,
     /// Only this shard, such as 2/4; `safety-case merge` joins them.
     #[arg(long)]
     shard: Option<Shard>,
@@ -139,7 +143,15 @@ pub struct Run {
     root: Option<PathBuf>,
 }
 
+/// A part is for work on it: it ends within three minutes.
+const PART_SECONDS: u64 = 170;
+
 impl Run {
+    /// The seconds in which it is to end, if there is a limit.
+    fn limit(&self) -> Option<u64> {
+        self.within.or(self.part.is_some().then_some(PART_SECONDS))
+    }
+
     /// What it is about.
     fn scope(&self) -> Scope {
         match (&self.part, self.shard) {

@@ -1,5 +1,6 @@
 //! `safety-case run`.
 
+use super::budget::Budget;
 use super::engines::Engines;
 use super::{Run, checkout, planned, required};
 use crate::again::{self, Kept};
@@ -51,6 +52,7 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         jobs,
         sources: &sources,
         kept: &kept,
+        budget: Budget::new(options.limit(), start),
     };
     if kept.count() > 0 {
         eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.count());
@@ -60,6 +62,7 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let live = Live::begin(&plan, required(options.require), &folder, progress, nothing).map_err(one)?;
     eprintln!("the page, incomplete until the end: {}", out.join(PAGE).display());
     ticking(&live, || engines.run(&live))?;
+    live.with(|results| results.open.extend(engines.budget.open_item()));
     let mut results = live.end();
 
     // What changed while the engines ran is not what they saw.

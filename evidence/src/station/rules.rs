@@ -82,6 +82,8 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     StartTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     ResidualTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     SegmentOrder => (Asked::Engineering, Stage::Model, Scope::Segments);
+    RouteTwice => (Asked::Engineering, Stage::Model, Scope::Pairs);
+    NoRoute => (Asked::Form, Stage::Room, Scope::File);
     TooMany => (Asked::Form, Stage::Room, Scope::File);
 }
 
