@@ -123,6 +123,12 @@ pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
 }
 
 fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model, problems: &mut Vec<Problem>) {
+    if model.routes.is_empty() {
+        let what = "the layout has no route: nothing can be set";
+        let right =
+            "describe at least one; why those of an imported file were left out, its import says route by route";
+        problems.push(Problem::new(Rule::NoRoute, &(0..0), what, right));
+    }
     let counts = [
         ("track circuits", model.circuits.len(), MAX_CIRCUITS),
         ("points", model.points.len(), N.min(32)),

@@ -3,6 +3,7 @@
 //! * [`read`] and [`Description`]: a layout in the words of its file ([`form`]).
 //! * [`Description::compile`]: names become numbers, what the file leaves out is derived, every rule is checked ([`Rule`]), and the
 //!   kernel's plan comes out ([`Compiled`]).
+//! * [`compare`]: two layouts of one station, cell by cell.
 //! * [`border`]: what two stations see of the line between them, held against each other.
 //! * [`lives`]: what the ground counts on telegrams to live, held against what trains do.
 //! * [`Errors`]: every broken rule with its place in the file and what would be right.
@@ -10,6 +11,7 @@
 mod at;
 pub mod border;
 mod check;
+pub mod compare;
 mod compile;
 pub mod conflict;
 pub mod derive;

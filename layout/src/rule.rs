@@ -69,6 +69,10 @@ pub enum Rule {
     SegmentElsewhere,
     /// Circuits beyond the end of a route adjoin it.
     BeyondApart,
+    /// No two routes lead from one signal over one path.
+    RouteTwice,
+    /// There is a route: without one nothing can be set.
+    NoRoute,
     /// The layout fits the interlocking.
     TooMany,
     /// A rule of the kernel's plan.
@@ -131,6 +135,8 @@ impl Rule {
                 "a route comes from the segment that it enters from, and goes out to the one that follows its end"
             }
             Self::BeyondApart => "circuits beyond the end of a route adjoin it",
+            Self::RouteTwice => "no two routes lead from one signal over one path",
+            Self::NoRoute => "there is a route",
             Self::TooMany => "the layout fits the interlocking",
             Self::Plan(kernel) => of_plan(kernel),
         }

@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use atc_layout::import::{Imported, only, read_any};
-use atc_layout::{Description, Errors, draw, table};
+use atc_layout::import::{Imported, Report, only, read_any};
+use atc_layout::{Description, Errors, Problem, Rule, Source, draw, table};
 use clap::{Args, Subcommand, ValueEnum};
+use serde::Serialize;
 
 /// What is to be done with a layout.
 #[derive(Subcommand)]
@@ -17,6 +18,16 @@ pub enum LayoutCommand {
         /// Prints also what was derived, with its value
         #[arg(long)]
         derived: bool,
+        /// Prints what was found as JSON, also where rules are broken
+        #[arg(long, conflicts_with = "derived")]
+        json: bool,
+    },
+    /// Holds two descriptions of one station against each other, cell by cell; exit code 1 if they differ
+    Compare {
+        /// A layout in any form; `-` for standard input
+        one: PathBuf,
+        /// Another one. A railML file is also read a second time, by other code, and its routes held against the first
+        other: PathBuf,
     },
     /// Writes a railML 3 file or an OSRD infrastructure as a layout in TOML; the report goes to standard error
     Import {
@@ -59,7 +70,7 @@ pub enum LayoutCommand {
 /// A layout in any form.
 #[derive(Args)]
 pub struct LayoutFile {
-    /// The layout: .toml, railML 3 (.xml, .railml) or an OSRD infrastructure (.json)
+    /// The layout: .toml, railML 3 (.xml, .railml) or an OSRD infrastructure (.json); `-` for any of them from standard input
     file: PathBuf,
     /// Takes these routes alone, and what they need
     #[arg(long, value_name = "ROUTE", value_delimiter = ',')]
@@ -81,14 +92,31 @@ pub struct Done {
     pub output: Option<PathBuf>,
     /// Remarks.
     pub remarks: String,
+    /// That what was asked about is not as it should be; the text says it.
+    pub differs: bool,
 }
 
 /// Does what the command says. Nothing is written here.
 pub fn run(command: LayoutCommand) -> Result<Done, Errors> {
     let (text, output, remarks) = match command {
-        LayoutCommand::Check { layout, derived } => (check(&layout, derived)?, None, String::new()),
+        LayoutCommand::Check { layout, json: true, .. } => {
+            let Imported { description, report } = open(&layout)?;
+            let found = Checked::of(&layout, &description, report);
+            let differs = !found.problems.is_empty();
+            return Ok(Done { text: found.json(), output: None, remarks: String::new(), differs });
+        }
+        LayoutCommand::Compare { one, other } => {
+            let differing = compare(&one, &other)?;
+            let differs = !differing.is_empty();
+            let text = if differs { differing.join("\n") + "\n" } else { "no difference\n".to_owned() };
+            return Ok(Done { text, output: None, remarks: String::new(), differs });
+        }
+        LayoutCommand::Check { layout, derived, .. } => (check(&layout, derived)?, None, String::new()),
         LayoutCommand::Import { layout, output } => {
             let Imported { description, report } = open(&layout)?;
+            if description.station.routes.is_empty() {
+                return Err(nothing(&layout, &report));
+            }
             let remarks = format!("{report}{}", broken_rules(&description));
             (description.to_toml(), output, remarks)
         }
@@ -108,7 +136,7 @@ pub fn run(command: LayoutCommand) -> Result<Done, Errors> {
         LayoutCommand::Border { one, other } => (border(&one, &other)?, None, String::new()),
         LayoutCommand::Schema => (atc_layout::schema(), None, String::new()),
     };
-    Ok(Done { text, output, remarks })
+    Ok(Done { text, output, remarks, differs: false })
 }
 
 fn open(layout: &LayoutFile) -> Result<Imported, Errors> {
@@ -117,6 +145,82 @@ fn open(layout: &LayoutFile) -> Result<Imported, Errors> {
         imported.description = only(&imported.description, &layout.only)?;
     }
     Ok(imported)
+}
+
+/// What `check --json` says.
+#[derive(Serialize)]
+struct Checked {
+    file: String,
+    station: String,
+    routes: usize,
+    points: usize,
+    circuits: usize,
+    segments: usize,
+    /// The broken rules.
+    problems: Vec<Told>,
+    /// What an import took, assumed, lacked and left aside.
+    taken: Vec<String>,
+    defaulted: Vec<String>,
+    lacking: Vec<String>,
+    skipped: Vec<String>,
+}
+
+/// A broken rule.
+#[derive(Serialize)]
+struct Told {
+    rule: String,
+    line: Option<usize>,
+    column: Option<usize>,
+    what: String,
+    right: String,
+}
+
+impl Checked {
+    fn of(layout: &LayoutFile, description: &Description, report: Report) -> Self {
+        let problems = description.compile().err().map(|errors| errors.problems).unwrap_or_default();
+        let told = |problem: Problem| Told {
+            rule: problem.rule.name(),
+            line: problem.place.map(|place| place.line),
+            column: problem.place.map(|place| place.column),
+            what: problem.what,
+            right: problem.right,
+        };
+        let station = &description.station;
+        Self {
+            file: layout.file.display().to_string(),
+            station: station.name.clone(),
+            routes: station.routes.len(),
+            points: station.points.len(),
+            circuits: station.circuits.len(),
+            segments: station.segments.len(),
+            problems: problems.into_iter().map(told).collect(),
+            taken: report.taken,
+            defaulted: report.defaulted,
+            lacking: report.lacking,
+            skipped: report.skipped,
+        }
+    }
+
+    fn json(&self) -> String {
+        serde_json::to_string_pretty(self).map_or_else(|error| error.to_string(), |text| text + "\n")
+    }
+}
+
+/// Every cell of the control table and every value in which two layouts differ.
+fn compare(one: &Path, other: &Path) -> Result<Vec<String>, Errors> {
+    let of = |path: &Path| read_any(path).and_then(|read| Ok((read.description.model()?, read.description)));
+    let ((model, _), (other_model, _)) = (of(one)?, of(other)?);
+    Ok(atc_layout::compare::compare(&model, &other_model).iter().map(ToString::to_string).collect())
+}
+
+/// No route was imported: the reasons stand in the report, which is all that there is.
+fn nothing(layout: &LayoutFile, report: &Report) -> Errors {
+    let what = format!("no route was imported, and nothing is written\n{report}");
+    let right = "mend in the file what is told of each route, or describe the station in TOML";
+    Errors::one(
+        &Source { name: layout.file.display().to_string(), ..Source::default() },
+        Problem::new(Rule::NoRoute, &(0..0), what, right),
+    )
 }
 
 fn check(layout: &LayoutFile, derived: bool) -> Result<String, Errors> {

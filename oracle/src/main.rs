@@ -11,11 +11,11 @@ use std::process::ExitCode;
 use atc_oracle::chart::{self, Part, View};
 use atc_oracle::signal::{self, Config, SignalError};
 use atc_oracle::trace::{Replies, Trace, TraceError};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 /// The verified kernel as a reference oracle
 #[derive(Parser)]
-#[command(version)]
+#[command(version = concat!(env!("CARGO_PKG_VERSION"), " (protocol 1)"))]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -35,6 +35,11 @@ enum Command {
     Layout(layout::LayoutCommand),
     /// Prints the JSON Schema of protocol 1
     Schema,
+    /// Prints what a shell needs to complete the commands
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
 }
 
 #[derive(Subcommand)]
@@ -78,7 +83,7 @@ struct ChartArgs {
     /// Draws only the figure over distance, or only the rows
     #[arg(long, value_enum)]
     only: Option<Only>,
-    /// Draws replies that differ from the kernel's in red; else they are an error
+    /// Draws replies that differ from the kernel's in red, with exit code 1 if there are any; else the first one is an error
     #[arg(long)]
     as_recorded: bool,
 }
@@ -99,6 +104,8 @@ enum Failure {
     Config(PathBuf, String),
     Signal(String),
     Layout(atc_layout::Errors),
+    /// What was compared is not the same; it has been told.
+    Differs,
 }
 
 impl fmt::Display for Failure {
@@ -111,6 +118,7 @@ impl fmt::Display for Failure {
             Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
             Self::Signal(reason) => f.write_str(reason),
             Self::Layout(errors) => write!(f, "{errors}"),
+            Self::Differs => Ok(()),
         }
     }
 }
@@ -122,19 +130,27 @@ fn main() -> ExitCode {
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
         Command::Schema => print(&atc_oracle::schema::text()),
+        Command::Completions { shell } => completions(shell),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Differs) => ExitCode::FAILURE,
         // Each line of these begins with its file and place, as an editor wants it.
         Err(Failure::Layout(errors)) => {
-            eprintln!("{errors}");
+            remark(&format!("{errors}\n"));
             ExitCode::FAILURE
         }
         Err(failure) => {
-            eprintln!("oracle: {failure}");
+            remark(&format!("oracle: {failure}\n"));
             ExitCode::FAILURE
         }
     }
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "oracle", &mut text);
+    print(&String::from_utf8_lossy(&text))
 }
 
 fn draw(args: &ChartArgs) -> Result<(), Failure> {
@@ -156,7 +172,10 @@ fn draw(args: &ChartArgs) -> Result<(), Failure> {
         None if args.vcd.is_none() => print(&svg)?,
         None => {}
     }
-    vcd.map_or(Ok(()), |(path, vcd)| write(path, &vcd))
+    vcd.map_or(Ok(()), |(path, vcd)| write(path, &vcd))?;
+    // The chart shows what differs; the exit code says that something does.
+    let differs = args.as_recorded && trace.scenes(Replies::MustAgree).is_err();
+    if differs { Err(Failure::Differs) } else { Ok(()) }
 }
 
 fn signal(command: &SignalCommand) -> Result<(), Failure> {
@@ -189,8 +208,8 @@ fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {
         Some(path) => write(path, &done.text)?,
         None => print(&done.text)?,
     }
-    eprint!("{}", done.remarks);
-    Ok(())
+    remark(&done.remarks);
+    if done.differs { Err(Failure::Differs) } else { Ok(()) }
 }
 
 fn read(path: &Path) -> Result<String, Failure> {
@@ -203,21 +222,49 @@ fn read(path: &Path) -> Result<String, Failure> {
     text.map_err(|error| Failure::Read(path.to_owned(), error))
 }
 
-/// Writes beside the file first and then takes its name, so that nothing half-written ever has it.
+/// Writes a file. Over one that is there goes a new one that was written beside it, so that nothing half-written ever has its name; what is
+/// no plain file, such as a pipe or a device, is written to as it is.
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let failed = |error| Failure::Write(path.to_owned(), error);
+    match fs::metadata(path) {
+        Ok(there) if !there.is_file() => through(path, text),
+        Ok(there) if there.permissions().readonly() => {
+            Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is there and read-only"))
+        }
+        // A link stays one: what it leads to is replaced.
+        Ok(_) => fs::canonicalize(path).and_then(|file| replace(&file, text)),
+        // A link that leads nowhere yet.
+        Err(_) if path.is_symlink() => through(path, text),
+        Err(_) => replace(path, text),
+    }
+    .map_err(failed)
+}
+
+fn through(path: &Path, text: &str) -> io::Result<()> {
+    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
+    file.write_all(text.as_bytes())?;
+    file.flush()
+}
+
+fn replace(path: &Path, text: &str) -> io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the umask takes away what it takes away.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        // As for any new file: the umask takes away what it takes away. A file that was there keeps what it had.
+        builder.permissions(
+            fs::metadata(path).map_or_else(|_| fs::Permissions::from_mode(0o666), |old| old.permissions()),
+        );
     }
-    let mut file = builder.tempfile_in(folder).map_err(failed)?;
-    file.write_all(text.as_bytes()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(text.as_bytes())?;
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+/// Says something on standard error. Nobody may be listening.
+fn remark(text: &str) {
+    drop(io::stderr().write_all(text.as_bytes()));
 }
 
 fn print(text: &str) -> Result<(), Failure> {

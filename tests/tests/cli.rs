@@ -38,12 +38,13 @@ The verified kernel as a reference oracle
 Usage: oracle <COMMAND>
 
 Commands:
-  serve   Answers JSON lines (protocol 1) from standard input on standard output
-  chart   Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
-  signal  Makes the train control signal as a WAV file, or reads one
-  layout  Checks, imports, tabulates or draws the layout of a station
-  schema  Prints the JSON Schema of protocol 1
-  help    Print this message or the help of the given subcommand(s)
+  serve        Answers JSON lines (protocol 1) from standard input on standard output
+  chart        Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
+  signal       Makes the train control signal as a WAV file, or reads one
+  layout       Checks, imports, tabulates or draws the layout of a station
+  schema       Prints the JSON Schema of protocol 1
+  completions  Prints what a shell needs to complete the commands
+  help         Print this message or the help of the given subcommand(s)
 
 Options:
   -h, --help     Print help
@@ -69,7 +70,7 @@ Options:
       --from <FROM>        The first instant drawn, in the unit of the chart's axis
       --to <TO>            The last instant drawn
       --only <ONLY>        Draws only the figure over distance, or only the rows [possible values: figure, rows]
-      --as-recorded        Draws replies that differ from the kernel's in red; else they are an error
+      --as-recorded        Draws replies that differ from the kernel's in red, with exit code 1 if there are any; else the first one is an error
   -h, --help               Print help
 
 "#]]

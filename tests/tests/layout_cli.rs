@@ -231,3 +231,105 @@ fn the_schema_is_printed() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../layout/layout.schema.json");
     assert_eq!(printed, fs::read_to_string(path).expect(path));
 }
+
+#[test]
+fn two_descriptions_of_one_station_are_compared_cell_by_cell() {
+    let folder = folder();
+    let (same, _) = said(folder.path(), &["compare", "passing-loop.toml", "passing-loop.toml"]);
+    assert_eq!(same, "no difference\n");
+    let (other, _) = changed("name = \"W2\"\nlength_m = 300", "name = \"W2\"\nlength_m = 310");
+    fs::write(folder.path().join("other.toml"), other).expect("written");
+    let output = layout(folder.path(), &["compare", "passing-loop.toml", "other.toml"]);
+    assert_eq!(output.status.code(), Some(1), "they differ");
+    assert_eq!(text(&output.stdout), "circuit W2: length m: 300 | 310\n");
+    let missing = layout(folder.path(), &["compare", "passing-loop.toml", "terminus.toml"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(
+        text(&missing.stdout).contains("route W-1: the whole of it: there | not there\n"),
+        "{}",
+        text(&missing.stdout)
+    );
+}
+
+#[test]
+fn a_layout_comes_from_standard_input_in_any_form() {
+    let folder = folder();
+    for name in ["passing-loop.toml", "passing-loop.railml.xml"] {
+        let file = fs::File::open(folder.path().join(name)).expect(name);
+        let mut command = Command::new(device::oracle());
+        let output = command.args(["layout", "check", "-"]).stdin(file).output().expect("the oracle runs");
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).starts_with("-: no broken rule"), "{}", text(&output.stdout));
+    }
+}
+
+#[test]
+fn a_check_is_told_as_json() {
+    let folder = folder();
+    let (whole, _) = said(folder.path(), &["check", "--json", "passing-loop.railml.xml"]);
+    let whole: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
+    assert_eq!((&whole["problems"], &whole["routes"]), (&serde_json::json!([]), &serde_json::json!(8)));
+    assert!(!whole["defaulted"].as_array().expect("a list").is_empty());
+    let (other, place) = changed("name = \"W2\"\nlength_m = 300", "name = \"W2\"\nlength_m = 0");
+    fs::write(folder.path().join("other.toml"), other).expect("written");
+    let output = layout(folder.path(), &["check", "--json", "other.toml"]);
+    assert_eq!(output.status.code(), Some(1));
+    let broken: serde_json::Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+    assert_eq!(broken["problems"][0]["rule"], "range", "{place}");
+}
+
+#[test]
+fn nothing_imported_is_a_failure_and_says_why() {
+    let folder = folder();
+    let none = sample("passing-loop.railml.xml")
+        .replace("<routeEntry", "<routeStart")
+        .replace("</routeEntry>", "</routeStart>");
+    fs::write(folder.path().join("none.railml"), none).expect("written");
+    let output = layout(folder.path(), &["import", "none.railml", "-o", "new.toml"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("no route was imported") && said.contains("it has no routeEntry; it is left out"), "{said}");
+    assert!(!folder.path().join("new.toml").exists());
+    let output = layout(folder.path(), &["check", "none.railml"]);
+    assert!(text(&output.stderr).contains("the layout has no route: nothing can be set"));
+}
+
+/// A pipe, a link and a read-only file are not what a new file may take the place of.
+#[cfg(unix)]
+#[test]
+fn what_is_no_plain_file_is_written_to_and_not_replaced() {
+    use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _, symlink};
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    assert_eq!(layout(folder.path(), &["draw", "passing-loop.toml", "-o", "/dev/null"]).status.code(), Some(0));
+    assert!(fs::metadata("/dev/null").expect("there").file_type().is_char_device(), "it is the device that it was");
+    let full = layout(folder.path(), &["draw", "passing-loop.toml", "-o", "/dev/full"]);
+    assert_eq!(full.status.code(), Some(1));
+    assert!(text(&full.stderr).starts_with("oracle: /dev/full cannot be written"), "{}", text(&full.stderr));
+
+    fs::write(at("real.svg"), BEFORE).expect("written");
+    symlink("real.svg", at("link.svg")).expect("a link");
+    said(folder.path(), &["draw", "passing-loop.toml", "-o", "link.svg"]);
+    assert!(at("link.svg").is_symlink() && fs::read_to_string(at("real.svg")).expect("read").starts_with("<svg"));
+
+    fs::write(at("fixed.svg"), BEFORE).expect("written");
+    fs::set_permissions(at("fixed.svg"), fs::Permissions::from_mode(0o444)).expect("set");
+    let fixed = layout(folder.path(), &["draw", "passing-loop.toml", "-o", "fixed.svg"]);
+    assert_eq!(fixed.status.code(), Some(1), "it is read-only");
+    assert_eq!(fs::read_to_string(at("fixed.svg")).expect("read"), BEFORE);
+}
+
+/// Where nobody reads what is remarked, that is no panic.
+#[cfg(unix)]
+#[test]
+fn a_full_standard_error_is_no_panic() {
+    let folder = folder();
+    let full = || fs::OpenOptions::new().write(true).open("/dev/full").expect("the device");
+    for (arguments, code) in
+        [(["layout", "import", "passing-loop.railml.xml"], 0), (["layout", "check", "nothing.toml"], 1)]
+    {
+        let mut command = Command::new(device::oracle());
+        command.args(arguments).current_dir(folder.path()).stdin(Stdio::null()).stdout(Stdio::null()).stderr(full());
+        assert_eq!(command.status().expect("the oracle runs").code(), Some(code), "{arguments:?}");
+    }
+}

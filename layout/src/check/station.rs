@@ -7,6 +7,7 @@ use atc_kernel::time::Ticks;
 
 use crate::derive::way::{Step, through};
 use crate::form::{EndKind, Station};
+use crate::graph::Passed;
 use crate::model::{Model, Positions, Route};
 use crate::problem::Problem;
 use crate::rule::Rule;
@@ -58,6 +59,22 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     detectors(station, model, problems);
     segments(station, model, problems);
     fouling(station, model, problems);
+    twice(model, problems);
+}
+
+/// Two routes of one signal and one path are one route with two names, or the way of one of them is not the one that was meant.
+fn twice(model: &Model, problems: &mut Vec<Problem>) {
+    let way = |route: &Route| -> (usize, Vec<usize>, Vec<Passed>) {
+        let passed = route.path.iter().flat_map(|place| place.passed.iter().copied());
+        (route.start, route.circuits().collect(), passed.collect())
+    };
+    for (number, route) in model.routes.iter().enumerate().filter(|(_, route)| route.is_sound()) {
+        let same = |other: &&Route| other.is_sound() && way(other) == way(route) && other.overlap == route.overlap;
+        if let Some(other) = model.routes[..number].iter().find(same) {
+            let what = format!("routes {} and {} lead from one signal over one path", other.name, route.name);
+            problems.push(Problem::new(Rule::RouteTwice, &route.span, what, "leave one out, or mend its path"));
+        }
+    }
 }
 
 fn detectors(station: &Station, model: &Model, problems: &mut Vec<Problem>) {

@@ -4,14 +4,22 @@ use std::collections::BTreeSet;
 
 use crate::form::{EndKind, Position};
 use crate::graph::{Graph, Kind, Passed};
-use crate::model::{Guard, Positions};
+use crate::model::{Circuits, Guard, Positions};
 
 /// Where the routes of a station start: the joint, the circuit in rear of it, and the signal there.
 pub type Signals = Vec<(usize, usize, String)>;
 
-/// What is on the tracks that lead to the unused leg of `passed`, on a path that runs over the points `own`.
-pub fn guards(graph: &Graph, signals: &Signals, own: &Positions, passed: Passed) -> Vec<Guard> {
-    let mut walk = Walk { graph, signals, own, seen: BTreeSet::new(), guards: Vec::new() };
+/// A path: the points that it runs over, and its circuits.
+pub struct Path {
+    /// The points.
+    pub points: Positions,
+    /// The circuits.
+    pub circuits: Circuits,
+}
+
+/// What is on the tracks that lead to the unused leg of `passed`, which `path` runs over.
+pub fn guards(graph: &Graph, signals: &Signals, path: &Path, passed: Passed) -> Vec<Guard> {
+    let mut walk = Walk { graph, signals, path, seen: BTreeSet::new(), guards: Vec::new() };
     let point = graph.tracks.iter().position(|track| track.kind == Kind::Point(passed.point));
     if let Some(point) = point {
         walk.outward(point, passed.other_leg);
@@ -22,7 +30,7 @@ pub fn guards(graph: &Graph, signals: &Signals, own: &Positions, passed: Passed)
 struct Walk<'a> {
     graph: &'a Graph,
     signals: &'a Signals,
-    own: &'a Positions,
+    path: &'a Path,
     seen: BTreeSet<(usize, usize)>,
     guards: Vec<Guard>,
 }
@@ -50,17 +58,41 @@ impl Walk<'_> {
             self.on(next, joint);
             return;
         };
-        let [toe, normal, _] = self.graph.tracks[next].joints[..] else { return };
+        let [toe, normal, reverse] = self.graph.tracks[next].joints[..] else { return };
         if joint == toe {
             self.on(next, joint);
             return;
         }
-        let away = if joint == normal { Position::Reverse } else { Position::Normal };
-        match self.own.get(&point) {
+        let (away, leg) = if joint == normal { (Position::Reverse, reverse) } else { (Position::Normal, normal) };
+        if self.path.points.contains_key(&point) {
             // The path runs over it: either it leads away from here, or the path itself comes from here.
-            Some(_) => self.guards.push(Guard::Own),
-            None => self.guards.push(Guard::Point(point, away)),
+            self.guards.push(Guard::Own);
+        } else if self.leads_onto_the_path(next, leg, &mut BTreeSet::new()) {
+            // Over a scissors crossover both positions lead under the train: what keeps vehicles off is farther away.
+            self.on(next, joint);
+        } else {
+            self.guards.push(Guard::Point(point, away));
         }
+    }
+
+    /// Whether a vehicle that leaves `track` over `joint` comes onto a circuit of the path, over a crossing, before a signal stops it.
+    fn leads_onto_the_path(&self, track: usize, joint: usize, seen: &mut BTreeSet<(usize, usize)>) -> bool {
+        if !seen.insert((track, joint)) {
+            return false;
+        }
+        let Some(next) = self.graph.joints[joint].tracks.iter().copied().find(|next| *next != track) else {
+            return false;
+        };
+        let (here, there) = (self.graph.tracks[track].circuit, self.graph.tracks[next].circuit);
+        let stopped = here != there && self.signals.iter().any(|(start, rear, _)| *start == joint && *rear == here);
+        // A point that the path runs over has its own protection.
+        let is_own =
+            matches!(self.graph.tracks[next].kind, Kind::Point(point) if self.path.points.contains_key(&point));
+        if stopped || is_own {
+            return false;
+        }
+        self.path.circuits.contains(&there)
+            || self.graph.moves(next, joint).iter().any(|(exit, _)| self.leads_onto_the_path(next, *exit, seen))
     }
 
     fn on(&mut self, track: usize, from: usize) {

@@ -1,6 +1,6 @@
 //! The positions that a route needs beyond the points it runs over: flank points, and points that a circuit of the path detects.
 
-use super::flank::{Signals, guards};
+use super::flank::{Path, Signals, guards};
 use crate::form::Position;
 use crate::graph::Kind;
 use crate::model::{Circuits, Flank, Guard, Model, Note, Positions, Route};
@@ -23,13 +23,16 @@ pub fn positions(model: &mut Model) {
     }
 }
 
-/// The points that the path runs over.
-fn own(route: &Route) -> Positions {
-    route.path.iter().flat_map(|place| &place.passed).map(|passed| (passed.point, passed.position)).collect()
+fn path(route: &Route) -> Path {
+    let passed = route.path.iter().flat_map(|place| &place.passed);
+    Path {
+        points: passed.map(|passed| (passed.point, passed.position)).collect(),
+        circuits: route.circuits().collect(),
+    }
 }
 
 fn flanks(model: &mut Model, signals: &Signals, route: &mut Route) {
-    let own = own(route);
+    let path = path(route);
     for place in 0..route.path.len() {
         for passed in route.path[place].passed.clone() {
             let leg = opposite(passed.position);
@@ -39,7 +42,7 @@ fn flanks(model: &mut Model, signals: &Signals, route: &mut Route) {
                 route.flanks.push(Flank { point: passed.point, leg, guards });
                 continue;
             }
-            let guards = guards(&model.graph, signals, &own, passed);
+            let guards = guards(&model.graph, signals, &path, passed);
             for guard in &guards {
                 let Guard::Point(point, position) = guard else { continue };
                 // What the file gives stands; whether it protects is checked later.

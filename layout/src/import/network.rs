@@ -75,11 +75,14 @@ struct Piece {
 }
 
 /// What a circuit is made of.
+#[derive(Default)]
 pub struct Area {
     /// The joints at its borders: cuts and ends of the tracks.
     pub borders: BTreeSet<String>,
-    /// Those of them that are cuts or buffer stops.
-    pub marked: BTreeSet<String>,
+    /// Those of them that are cuts.
+    pub cuts: BTreeSet<String>,
+    /// Those of them that are buffer stops.
+    pub stops: BTreeSet<String>,
 }
 
 /// A network divided into circuits.
@@ -94,6 +97,17 @@ pub struct Divided {
 }
 
 impl Network {
+    /// The edge of this name.
+    pub fn named(&self, name: &str) -> Option<usize> {
+        self.edges.iter().position(|edge| edge.name == name)
+    }
+
+    /// The edges of the normal and the reverse leg of a switch.
+    pub fn legs(&self, switch: usize) -> Option<[usize; 2]> {
+        let [_, (normal, _), (reverse, _)] = self.switches.get(switch)?.ports;
+        Some([normal, reverse])
+    }
+
     /// Divides the tracks at the cuts.
     pub fn divide(&self) -> Divided {
         let mut pieces = Vec::new();
@@ -163,16 +177,17 @@ impl Divided {
             let top = find(&mut root, piece);
             let number = *numbers.entry(top).or_insert(self.areas.len());
             if number == self.areas.len() {
-                self.areas.push(Area { borders: BTreeSet::new(), marked: BTreeSet::new() });
+                self.areas.push(Area::default());
             }
             self.area_of.push(number);
         }
         for (number, area) in self.area_of.iter().enumerate() {
             for side in [Side::Begin, Side::End] {
                 if let Some(name) = border(&self.pieces[number], side, network, &self.ends) {
-                    let open = self.ends.values().any(|(end, kind)| *end == name && *kind == EndKind::Line);
-                    if !open {
-                        self.areas[*area].marked.insert(name.clone());
+                    match self.ends.values().find(|(end, _)| *end == name).map(|(_, kind)| kind) {
+                        Some(EndKind::Line) => {}
+                        Some(EndKind::Buffer) => drop(self.areas[*area].stops.insert(name.clone())),
+                        None => drop(self.areas[*area].cuts.insert(name.clone())),
                     }
                     self.areas[*area].borders.insert(name);
                 }
@@ -198,6 +213,24 @@ impl Divided {
         [at(1), at(0)]
     }
 
+    /// The areas that a stretch of an edge runs through, in metres from its begin.
+    pub fn along(&self, edge: usize, from: f64, to: f64) -> BTreeSet<usize> {
+        let pieces = self.pieces.iter().zip(&self.area_of).filter(|(piece, _)| piece.edge == edge);
+        let run_through = pieces.filter(|(piece, _)| piece.from < to && from < piece.to || piece.from >= piece.to);
+        run_through.map(|(_, area)| *area).collect()
+    }
+
+    /// The end that this one is joined to without a switch between them.
+    pub fn linked(&self, end: EdgeEnd) -> Option<EdgeEnd> {
+        self.at_end.get(&end).copied()
+    }
+
+    /// The name of an end of the tracks, and the area there.
+    pub fn end_at(&self, end: EdgeEnd) -> Option<(&str, usize)> {
+        let (name, _) = self.ends.get(&end)?;
+        Some((name, *self.area_of.get(self.piece_at(end)?)?))
+    }
+
     /// Writes circuits, points and ends into a layout; `names` are those of the areas.
     pub fn write(&self, network: &Network, names: &[At<String>], station: &mut Station) {
         let mut circuits: Vec<Circuit> =
@@ -205,6 +238,7 @@ impl Divided {
         let mut legs: BTreeMap<(usize, usize), String> = BTreeMap::new();
         let mut done = BTreeSet::new();
         let mut inner = 0;
+        let taken: BTreeSet<&str> = network.cuts.iter().map(|cut| cut.name.as_str()).collect();
         let mut chains: Vec<Vec<(Stop, Stop, f64)>> = self.areas.iter().map(|_| Vec::new()).collect();
         for piece in 0..self.pieces.len() {
             if !done.insert(piece) {
@@ -231,8 +265,13 @@ impl Divided {
                         legs.insert((*switch, *port), name.clone());
                     }
                     (Stop::Port(one, port), Stop::Port(other, port_of_other)) => {
-                        inner += 1;
-                        let name = format!("inner {inner}");
+                        let name = loop {
+                            inner += 1;
+                            let name = format!("inner {inner}");
+                            if !taken.contains(name.as_str()) {
+                                break name;
+                            }
+                        };
                         legs.insert((*one, *port), name.clone());
                         legs.insert((*other, *port_of_other), name);
                     }

@@ -259,7 +259,9 @@ fn routes(infra: &Infra, network: &Network, divided: &Divided, station: &mut Sta
             positions(run, &points).into_iter().filter(|(point, _)| known.contains(point)).collect();
         let exit = joints.get(run.exit_point.id.as_str()).copied();
         let look = |start: usize, first: usize| {
-            search(&graph, &Sought { start, first, exit, within: None, positions: &positions }).map(|found| found.way)
+            search(&graph, &Sought { start, first, exit, last: None, within: None, positions: &positions })
+                .filter(|found| found.alone)
+                .map(|found| found.way)
         };
         let found = match (start, rear, ahead, exit) {
             (Some(start), Some(rear), Some(first), Some(_)) if rear != first => {
@@ -279,7 +281,7 @@ fn routes(infra: &Infra, network: &Network, divided: &Divided, station: &mut Sta
         }
         let Some((rear, way)) = found else {
             report.lacking.push(format!(
-                "route {}: there is no way from {} to {} with its switches",
+                "route {}: there is no way from {} to {} with its switches, or more than one",
                 run.id, run.entry_point.id, run.exit_point.id
             ));
             continue;

@@ -13,19 +13,12 @@ pub struct Sought<'a> {
     pub first: usize,
     /// The joint where it ends, if it is known.
     pub exit: Option<usize>,
-    /// The circuits it runs over, if they are known: it leaves none out, or may end before the last ones.
-    pub within: Option<(&'a BTreeSet<usize>, Extent)>,
+    /// The circuit that it comes from there, if it is known.
+    pub last: Option<usize>,
+    /// The circuits it runs over, if they are known: it leaves none out.
+    pub within: Option<&'a BTreeSet<usize>>,
     /// Positions of points.
     pub positions: &'a BTreeMap<usize, Position>,
-}
-
-/// Whether a way runs over all circuits that it may run over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Over all of them.
-    All,
-    /// Over some of them.
-    Some,
 }
 
 /// A way that was found.
@@ -61,8 +54,8 @@ struct Looking<'a> {
 
 impl Looking<'_> {
     fn go(&mut self, joint: usize, circuit: usize) {
-        let Sought { exit: wanted, within, positions, .. } = self.sought;
-        let apart = within.is_some_and(|(within, _)| !within.contains(&circuit));
+        let Sought { exit: wanted, last, within, positions, .. } = self.sought;
+        let apart = within.is_some_and(|within| !within.contains(&circuit));
         let long = self.so_far.len() >= LONGEST;
         if apart || long || self.patience == 0 || self.so_far.iter().any(|(used, _)| *used == circuit) {
             return;
@@ -75,11 +68,9 @@ impl Looking<'_> {
             }
             let exit = way.exit;
             self.so_far.push((circuit, way));
-            let whole = match within {
-                Some((within, Extent::All)) => self.so_far.len() == within.len(),
-                Some((_, Extent::Some)) | None => true,
-            };
-            if whole && wanted.is_none_or(|wanted| wanted == exit) {
+            let whole = within.is_none_or(|within| self.so_far.len() == within.len());
+            let ends = wanted.is_none_or(|wanted| wanted == exit) && last.is_none_or(|last| last == circuit);
+            if whole && ends {
                 self.found += 1;
                 if self.best.as_ref().is_none_or(|best| self.so_far.len() < best.len()) {
                     self.best = Some(self.so_far.clone());

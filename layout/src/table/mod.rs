@@ -32,6 +32,11 @@ pub const COLUMNS: [&str; 20] = [
     "releases",
 ];
 
+/// The cells of a route's row under [`COLUMNS`].
+pub fn cells(model: &Model, route: usize) -> Vec<String> {
+    Row::of(model, route).cells()
+}
+
 /// The control table as comma-separated values (RFC 4180), a row for each route.
 pub fn csv(model: &Model) -> String {
     let mut text = String::new();

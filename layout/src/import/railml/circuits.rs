@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
-use super::infrastructure::{Spot, Tracks};
+use super::infrastructure::{Spot, Switched, Tracks};
+use super::limits::Limits;
 use super::xml::{Xml, references};
 use crate::at::At;
-use crate::form::Station;
+use crate::form::{Position, Station};
 use crate::graph::Graph;
 use crate::import::Report;
-use crate::import::network::{Cut, Divided, Network};
+use crate::import::network::{Area, Cut, Divided, Network};
 use crate::names::Names;
 
 /// Where things of the file are in the layout.
@@ -27,19 +28,22 @@ pub struct Placed<'a> {
     pub sections: BTreeMap<&'a str, usize>,
     /// Signals by id.
     pub signals: BTreeMap<&'a str, Spot>,
-    /// Switches by id: their number, and whether the left branch is the normal leg.
-    pub switches: BTreeMap<&'a str, (usize, bool)>,
+    /// Switches by id.
+    pub switches: BTreeMap<&'a str, Switched>,
+    /// Positions of the two points of a slip between which there is no way.
+    pub absent: Vec<[(usize, Position); 2]>,
+    /// What the file says of speeds.
+    pub limits: Limits,
     /// The joints of detectors and buffer stops by id.
     pub borders: BTreeMap<&'a str, String>,
 }
 
 /// Writes circuits, points and ends into `station`.
 pub fn write<'a>(xml: &Xml<'a>, tracks: Tracks<'a>, station: &mut Station, report: &mut Report) -> Placed<'a> {
-    let Tracks { mut network, detectors, signals, buffers, switches } = tracks;
+    let Tracks { mut network, detectors, signals, buffers, switches, absent, limits } = tracks;
     let demarcating: BTreeSet<&str> =
         xml.all("tvdSection").flat_map(|section| references(section, "hasDemarcatingTraindetector")).collect();
     let mut borders: BTreeMap<&str, String> = buffers;
-    let mut used: BTreeSet<String> = borders.values().cloned().collect();
     let mut virtual_ones = Vec::new();
     for (id, spot) in &detectors {
         let is_virtual =
@@ -54,9 +58,7 @@ pub fn write<'a>(xml: &Xml<'a>, tracks: Tracks<'a>, station: &mut Station, repor
             borders.insert(id, same.name.clone());
             continue;
         }
-        let name = xml.id(id).map_or_else(|| (*id).to_owned(), |node| Xml::name(node).value);
-        let name = if used.insert(name.clone()) { name } else { (*id).to_owned() };
-        used.insert(name.clone());
+        let name = xml.id(id).map_or_else(|| (*id).to_owned(), |node| xml.name(node).value);
         borders.insert(id, name.clone());
         network.cuts.push(Cut { name, edge: spot.edge, at: spot.at });
     }
@@ -80,14 +82,13 @@ pub fn write<'a>(xml: &Xml<'a>, tracks: Tracks<'a>, station: &mut Station, repor
     }
     divided.write(&network, &names, station);
     report.taken.push(format!("{} train detection elements, {} circuits", network.cuts.len(), station.circuits.len()));
-    distinct_points(station);
     let mut ignored = Vec::new();
     let graph = Graph::of(station, &Names::of(station, &mut ignored), &mut ignored);
     let joints = graph.joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
-    Placed { graph, joints, network, divided, sections, signals, switches, borders }
+    Placed { graph, joints, network, divided, sections, signals, switches, absent, limits, borders }
 }
 
-/// Gives every area the name of the tvdSection with the same borders.
+/// Gives every area the name of the tvdSection with the same borders. A section whose borders are those of no area, or of two, has no place.
 fn sections<'a>(
     xml: &Xml<'a>,
     divided: &Divided,
@@ -96,53 +97,42 @@ fn sections<'a>(
 ) -> (Vec<At<String>>, BTreeMap<&'a str, usize>) {
     let mut names: Vec<Option<At<String>>> = vec![None; divided.areas.len()];
     let mut sections = BTreeMap::new();
-    let mut used = BTreeSet::new();
-    let given = |section: Node<'a, 'a>| -> BTreeSet<String> {
-        let named =
-            references(section, "hasDemarcatingTraindetector").chain(references(section, "hasDemarcatingBufferstop"));
-        named.filter_map(|id| borders.get(id).cloned()).collect()
-    };
-    let mut take = |section: Node<'a, 'a>, id: &'a str, area: usize| {
-        let mut name = Xml::name(section);
-        if !used.insert(name.value.clone()) {
-            id.clone_into(&mut name.value);
-            used.insert(name.value.clone());
-        }
-        names[area] = Some(name);
-        sections.insert(id, area);
-    };
-    // Those that fit exactly first, so that no other one takes their place.
-    let mut free: BTreeSet<usize> = (0..divided.areas.len()).collect();
-    let mut left = Vec::new();
-    for section in xml.all("tvdSection") {
+    let given: Vec<(Node<'a, 'a>, Borders)> =
+        xml.all("tvdSection").map(|section| (section, Borders::of(xml, section, borders))).collect();
+    for (section, has) in &given {
         let Some(id) = section.attribute("id") else { continue };
-        let has = given(section);
-        let exact = free.iter().copied().find(|area| divided.areas[*area].marked == has).filter(|_| !has.is_empty());
-        match exact {
-            Some(area) => {
-                free.remove(&area);
-                take(section, id, area);
+        let fitting: Vec<usize> = (0..divided.areas.len()).filter(|area| has.fit(&divided.areas[*area])).collect();
+        match (fitting.as_slice(), has.unknown.as_slice()) {
+            ([area], []) => {
+                sections.insert(id, *area);
+                // Two sections with the same borders are one circuit.
+                let first = names[*area].get_or_insert_with(|| xml.name(*section));
+                if sections.values().filter(|other| *other == area).count() > 1 {
+                    let what = format!(
+                        "{}: it has the borders of section {first}, and is one circuit with it",
+                        Xml::at(*section)
+                    );
+                    report.defaulted.push(what);
+                }
             }
-            None => left.push((section, id, has)),
+            (_, [unknown, ..]) => report.lacking.push(format!(
+                "a place for the {}: its border {} has none",
+                Xml::at(*section),
+                xml.place(unknown)
+            )),
+            ([], []) => {
+                let what =
+                    format!("a place for the {}: no part of the tracks has exactly its borders", Xml::at(*section));
+                report.lacking.push(what);
+            }
+            _ => {
+                let what =
+                    format!("a place for the {}: several parts of the tracks have its borders", Xml::at(*section));
+                report.lacking.push(what);
+            }
         }
     }
-    for (section, id, has) in left {
-        let common = |area: usize| divided.areas[area].marked.intersection(&has).count();
-        let best =
-            free.iter().copied().max_by_key(|area| (common(*area), usize::MAX - divided.areas[*area].marked.len()));
-        let Some(area) = best.filter(|area| common(*area) > 0) else {
-            report
-                .lacking
-                .push(format!("a place for the tvdSection {id}: no part of the tracks lies between its detectors"));
-            continue;
-        };
-        let what = format!(
-            "tvdSection {id}: no part of the tracks has exactly its borders; the one with most of them is taken"
-        );
-        report.defaulted.push(what);
-        free.remove(&area);
-        take(section, id, area);
-    }
+    let mut used: BTreeSet<String> = names.iter().flatten().map(|name| name.value.clone()).collect();
     let mut unnamed = Vec::new();
     let named = names.into_iter().enumerate().map(|(number, name)| {
         name.unwrap_or_else(|| {
@@ -162,13 +152,37 @@ fn sections<'a>(
     (named, sections)
 }
 
-/// Two switches of one name get numbers.
-fn distinct_points(station: &mut Station) {
-    let mut used: BTreeMap<String, usize> = BTreeMap::new();
-    for point in &mut station.points {
-        let count = used.entry(point.name.value.clone()).and_modify(|count| *count += 1).or_insert(1);
-        if *count > 1 {
-            point.name.value = format!("{} #{count}", point.name);
-        }
+/// The borders of a tvdSection.
+struct Borders {
+    detectors: BTreeSet<String>,
+    buffers: BTreeSet<String>,
+    /// Those that have no place.
+    unknown: Vec<String>,
+}
+
+impl Borders {
+    fn of(xml: &Xml<'_>, section: Node<'_, '_>, borders: &BTreeMap<&str, String>) -> Self {
+        // Where the line goes on is an end of the tracks; it need not be named.
+        let is_open = |id: &str| xml.id(id).is_some_and(|node| node.tag_name().name() == "border");
+        let mut unknown = Vec::new();
+        let mut all = |list: &'static str| -> BTreeSet<String> {
+            let mut found = BTreeSet::new();
+            for id in references(section, list) {
+                match borders.get(id) {
+                    Some(name) => drop(found.insert(name.clone())),
+                    None if is_open(id) => {}
+                    None => unknown.push(id.to_owned()),
+                }
+            }
+            found
+        };
+        let (detectors, buffers) = (all("hasDemarcatingTraindetector"), all("hasDemarcatingBufferstop"));
+        Self { detectors, buffers, unknown }
+    }
+
+    /// Whether they are those of this part of the tracks. Its buffer stops may be left out, but none may be another's.
+    fn fit(&self, area: &Area) -> bool {
+        let names_any = !(self.detectors.is_empty() && self.buffers.is_empty());
+        names_any && self.detectors == area.cuts && self.buffers.is_subset(&area.stops)
     }
 }

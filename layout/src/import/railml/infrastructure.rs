@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
+use super::limits::Limits;
 use super::xml::{Xml, child, children, duration, number, references};
+use crate::form::Position;
 use crate::import::Report;
 use crate::import::network::{Edge, EdgeEnd, Network, Side, Switch};
 use crate::problem::Problem;
@@ -31,8 +33,47 @@ pub struct Tracks<'a> {
     pub signals: BTreeMap<&'a str, Spot>,
     /// Buffer stops by id, and their names in the network.
     pub buffers: BTreeMap<&'a str, String>,
-    /// Switches by id: their number, and whether the left branch is the normal leg.
-    pub switches: BTreeMap<&'a str, (usize, bool)>,
+    /// Switches by id.
+    pub switches: BTreeMap<&'a str, Switched>,
+    /// Positions of the two points of a slip between which there is no way.
+    pub absent: Vec<[(usize, Position); 2]>,
+    /// What the file says of speeds.
+    pub limits: Limits,
+}
+
+/// What a switch of the file is in the layout.
+#[derive(Clone, Copy, Debug)]
+pub enum Switched {
+    /// A point.
+    Point {
+        /// Its number.
+        point: usize,
+        /// Whether its left branch is the normal leg.
+        left_is_normal: bool,
+    },
+    /// A crossing with slips: two points, toe to toe.
+    Slip([usize; 2]),
+}
+
+/// Where on the tracks something is.
+pub struct Places<'a> {
+    edges: BTreeMap<&'a str, usize>,
+    lengths: Vec<f64>,
+    measures: BTreeMap<&'a str, Measures<'a>>,
+}
+
+impl Places<'_> {
+    /// The edge of a net element, and its length in metres.
+    pub fn edge(&self, element: &str) -> Option<(usize, f64)> {
+        let edge = *self.edges.get(element)?;
+        Some((edge, *self.lengths.get(edge)?))
+    }
+
+    /// Metres from the begin of the net element that `at` names, by a linear coordinate.
+    pub fn by_chainage(&self, at: Node<'_, '_>, linear: Node<'_, '_>, length: f64) -> Option<f64> {
+        let measures = self.measures.get(at.attribute("netElementRef")?)?;
+        share_by(linear, measures).map(|share| (share * length).clamp(0.0, length))
+    }
 }
 
 /// Length of an edge of which the file tells none, in metres.
@@ -82,11 +123,17 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
         signals: BTreeMap::new(),
         buffers: BTreeMap::new(),
         switches: BTreeMap::new(),
+        absent: Vec::new(),
+        limits: Limits::default(),
     };
-    switches(xml, &relations, &mut tracks, report);
-    links(&relations, &mut tracks, report);
     let measures: BTreeMap<&str, Measures<'_>> =
         xml.all("netElement").filter_map(|element| Some((element.attribute("id")?, measures(element)))).collect();
+    let lengths = tracks.network.edges.iter().map(|edge| edge.length).collect();
+    let places = Places { edges, lengths, measures };
+    tracks.limits = Limits::read(xml, &places, report);
+    switches(xml, &relations, &mut tracks, report);
+    links(&relations, &mut tracks, report);
+    let Places { edges, measures, .. } = places;
     let mut lost = Vec::new();
     let mut beyond = Vec::new();
     let mut spot = |node: Node<'a, 'a>, id: &'a str, network: &Network| {
@@ -114,7 +161,7 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
             continue;
         };
         let side = if spot.at * 2.0 < tracks.network.edges[spot.edge].length { Side::Begin } else { Side::End };
-        let name = Xml::name(node).value;
+        let name = xml.name(node).value;
         tracks.network.buffers.push((name.clone(), (spot.edge, side)));
         tracks.buffers.insert(id, name);
     }
@@ -208,7 +255,11 @@ fn spot(
 /// Where on its net element a place with a linear coordinate is: between those two of the element's own coordinates in that system that it
 /// lies between, or beyond the first or last. Nowhere where the chainage turns round on the element.
 fn share_of(location: Node<'_, '_>, measures: &Measures<'_>) -> Option<f64> {
-    let linear = child(location, "linearCoordinate")?;
+    share_by(child(location, "linearCoordinate")?, measures)
+}
+
+/// The same for a linear coordinate.
+fn share_by(linear: Node<'_, '_>, measures: &Measures<'_>) -> Option<f64> {
     let system = linear.attribute("positioningSystemRef").unwrap_or_default();
     let measure = number(linear, "measure")?;
     let mut same: Vec<(f64, f64)> = measures.iter().filter(|at| at.0 == system).map(|at| (at.1, at.2)).collect();
@@ -271,7 +322,7 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
         };
         let (left, right) = (branch("leftBranch"), branch("rightBranch"));
         let ([left], [right]) = (left.as_slice(), right.as_slice()) else {
-            crossing(id, switch, &[branch("straightBranch"), branch("turningBranch")].concat(), tracks, report);
+            crossing(xml, id, switch, &[branch("straightBranch"), branch("turningBranch")].concat(), tracks, report);
             continue;
         };
         let shared = [left.0, left.1].into_iter().find(|end| *end == right.0 || *end == right.1);
@@ -292,8 +343,15 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
         }
         let left_is_normal = course != Some("right");
         let ports = if left_is_normal { [toe, left, right] } else { [toe, right, left] };
-        tracks.switches.insert(id, (tracks.network.switches.len(), left_is_normal));
-        tracks.network.switches.push(Switch { name: Xml::name(switch), ports, throw_ms });
+        let point = tracks.network.switches.len();
+        tracks.switches.insert(id, Switched::Point { point, left_is_normal });
+        for (branch, is_left) in [("leftBranch", true), ("rightBranch", false)] {
+            let position = if is_left == left_is_normal { Position::Normal } else { Position::Reverse };
+            if let Some(branch) = child(switch, branch) {
+                tracks.limits.branch(point, position, branch);
+            }
+        }
+        tracks.network.switches.push(Switch { name: xml.name(switch), ports, throw_ms });
     }
     if !assumed.is_empty() {
         report
@@ -305,6 +363,7 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
 
 /// A crossing with slips becomes two points toe to toe; one without, two tracks that cross.
 fn crossing<'a>(
+    xml: &Xml<'a>,
     id: &'a str,
     switch: Node<'a, 'a>,
     ways: &[(EdgeEnd, EdgeEnd)],
@@ -317,31 +376,65 @@ fn crossing<'a>(
         network.links.extend([*one, *other]);
         return;
     }
-    let Some((a1, b1)) = ways.first().copied() else {
-        report.lacking.push(format!("switch {id}: its branches name no net relations"));
+    let Some([[a1, a2], [b1, b2]]) = sides(ways) else {
+        report.lacking.push(format!("the tracks of the {}: its branches are not those of a slip", Xml::at(switch)));
         return;
     };
-    let beside = |end: EdgeEnd, not: EdgeEnd| {
-        ways.iter().find_map(|(one, other)| {
-            let across = if *one == end { *other } else { *one };
-            ((*one == end || *other == end) && across != not).then_some(across)
-        })
-    };
-    let (Some(b2), Some(a2)) = (beside(a1, b1), beside(b1, a1)) else {
-        report.lacking.push(format!("switch {id}: its branches are not those of a slip"));
-        return;
-    };
-    if ways.len() < 4 {
-        report.defaulted.push(format!("switch {id}: a single slip is taken as a double one"));
-    }
-    let name = Xml::name(switch);
+    let name = xml.name(switch);
     let between = network.edges.len();
     network.edges.push(Edge { name: id.to_owned(), length: 0.0 });
+    let first = network.switches.len();
     for (letter, side, legs) in [("A", Side::Begin, [a1, a2]), ("B", Side::End, [b1, b2])] {
         let mut name = name.clone();
         name.value = format!("{name}.{letter}");
-        network.switches.push(Switch { name, ports: [(between, side), legs[0], legs[1]], throw_ms: None });
+        network.switches.push(Switch { name, ports: [(between, side), legs[0], legs[1]], throw_ms: throw_of(xml, id) });
     }
+    tracks.switches.insert(id, Switched::Slip([first, first + 1]));
+    // A single slip has three of the four ways.
+    for (a, of_a) in [(a1, Position::Normal), (a2, Position::Reverse)] {
+        for (b, of_b) in [(b1, Position::Normal), (b2, Position::Reverse)] {
+            if !ways.contains(&(a, b)) && !ways.contains(&(b, a)) {
+                tracks.absent.push([(first, of_a), (first + 1, of_b)]);
+            }
+        }
+    }
+    // The limit of the slowest branch holds for all of them.
+    let branches = ["straightBranch", "turningBranch"].into_iter().flat_map(|name| children(switch, name));
+    for branch in branches {
+        for (point, position) in [first, first + 1].into_iter().flat_map(|point| BOTH.map(|position| (point, position)))
+        {
+            tracks.limits.branch(point, position, branch);
+        }
+    }
+}
+
+/// The two ends on either side of a slip: each way leads from one side to the other.
+fn sides(ways: &[(EdgeEnd, EdgeEnd)]) -> Option<[[EdgeEnd; 2]; 2]> {
+    let (first, _) = ways.first()?;
+    let (mut here, mut there) = (vec![*first], Vec::new());
+    for _ in ways {
+        for (one, other) in ways.iter().flat_map(|(one, other)| [(one, other), (other, one)]) {
+            if here.contains(one) && !there.contains(other) {
+                there.push(*other);
+            }
+            if there.contains(one) && !here.contains(other) {
+                here.push(*other);
+            }
+        }
+    }
+    let apart = here.iter().all(|end| !there.contains(end));
+    let (here, there) = (<[EdgeEnd; 2]>::try_from(here).ok()?, <[EdgeEnd; 2]>::try_from(there).ok()?);
+    ((3..=4).contains(&ways.len()) && apart).then_some([here, there])
+}
+
+/// Both positions of a point.
+const BOTH: [Position; 2] = [Position::Normal, Position::Reverse];
+
+/// The longest throw time of the machines of a switch, in ms.
+fn throw_of(xml: &Xml<'_>, id: &str) -> Option<u32> {
+    let machines = xml.all("switchIL").filter(|il| super::xml::reference(*il, "refersTo") == Some(id));
+    let times = machines.filter_map(|il| il.attribute("maxThrowTime").or(il.attribute("typicalThrowTime")));
+    times.filter_map(duration).max()
 }
 
 /// What is left over of the relations joins tracks without branches.

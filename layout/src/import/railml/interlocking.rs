@@ -5,39 +5,90 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::circuits::Placed;
+use super::infrastructure::{Spot, Switched};
 use super::xml::{Xml, child, children, duration, reference, references};
 use crate::at::At;
 use crate::form::{Element, Position, Route, Station};
 use crate::graph::Way;
 use crate::import::Report;
-use crate::import::search::{Extent, Found, Sought, search};
+use crate::import::network::{Cut, Side};
+use crate::import::search::{Found, Sought, search};
 
-/// How far from its signal a route may begin without a remark, in metres.
+/// A joint so many metres in rear of a signal is at it. Beyond that, how far from its signal a route begins is remarked.
 const NEAR: f64 = 1.0;
+
+/// A joint at most so many metres in rear of a signal may be the one that belongs to it, if the route's sections say so.
+const OFFSET: f64 = 20.0;
+
+/// A joint at a signal, for trains in one direction.
+struct Near {
+    joint: usize,
+    /// The circuit in rear of it.
+    rear: usize,
+    /// The circuit ahead; none at an end of the tracks.
+    ahead: Option<usize>,
+    /// How far from the signal it lies, in metres.
+    beside: f64,
+    /// Whether it lies in rear of the signal.
+    behind: bool,
+}
+
+/// Where a route may begin.
+struct Start {
+    joint: usize,
+    rear: usize,
+    first: usize,
+    beside: f64,
+    behind: bool,
+}
+
+/// Where a route may end; anywhere without a joint.
+struct End {
+    joint: Option<usize>,
+    /// The circuit that it comes from, where that is known.
+    last: Option<usize>,
+    beside: f64,
+    behind: bool,
+}
+
+impl End {
+    /// Whether a route ends here whose last circuit is this one.
+    fn is(&self, joint: usize, last: usize) -> bool {
+        self.joint == Some(joint) && self.last.is_none_or(|one| one == last)
+    }
+}
+
+/// The course of a route: the circuit in rear of its signal, its way, and what is to be confirmed.
+struct Course {
+    rear: usize,
+    way: Vec<(usize, Way)>,
+    remarks: Vec<String>,
+}
 
 /// Writes the routes into `station`.
 pub fn write<'a>(xml: &Xml<'a>, placed: &Placed<'a>, station: &mut Station, report: &mut Report) {
     let mut reader = Reader { xml, placed, station, report, names: BTreeMap::new() };
     let mut routes = Vec::new();
-    let mut used = BTreeSet::new();
     let mut count = 0;
     for node in xml.all("route") {
         count += 1;
         let id = node.attribute("id").unwrap_or_default();
         match reader.route(node) {
-            Ok(mut route) => {
-                if !used.insert(route.name.value.clone()) {
-                    id.clone_into(&mut route.name.value);
-                    used.insert(route.name.value.clone());
-                }
+            Ok(route) => {
                 reader.names.insert(id, routes.len());
                 routes.push(route);
             }
-            Err(why) => reader.report.lacking.push(format!("route {id}: {why}; it is left out")),
+            Err(why) => reader.report.lacking.push(format!("{}: {why}; it is left out", Xml::at(node))),
         }
     }
-    reader.overlaps(&mut routes);
+    let bad = reader.overlaps(&mut routes);
     reader.conflicts(&mut routes);
+    let mut number = 0..;
+    routes.retain(|_| number.next().is_some_and(|number| !bad.contains(&number)));
+    let left: BTreeSet<String> = routes.iter().map(|route| route.name.value.clone()).collect();
+    for route in &mut routes {
+        route.conflicts.retain(|other| left.contains(&other.value));
+    }
     let groups = xml.all("routeReleaseGroupAhead").chain(xml.all("routeReleaseGroupRear")).count();
     if groups > 0 {
         reader.report.skipped.push(format!("{groups} release groups: every circuit is released on its own, in order"));
@@ -68,135 +119,243 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// The positions that these elements give for switches, as those of points: one each, or several in wrappers.
-    fn positions_of(&mut self, given: Vec<Node<'a, 'a>>) -> Result<BTreeMap<usize, Position>, String> {
+    fn positions_of(&self, given: Vec<Node<'a, 'a>>) -> Result<BTreeMap<usize, Position>, String> {
         let mut found = BTreeMap::new();
         for node in given {
             let wrapped: Vec<Node<'a, 'a>> = children(node, "relatedSwitchAndPosition").collect();
             for node in if wrapped.is_empty() { vec![node] } else { wrapped } {
-                let id = reference(node, "refersToSwitch")
-                    .or_else(|| reference(node, "refersTo"))
-                    .ok_or("a position of it names no switch")?;
-                let switch = self.xml.referred(id).and_then(|switch| switch.attribute("id"));
-                let switch = switch.ok_or_else(|| format!("the switch {id} of a position does not exist"))?;
-                let Some((point, left_is_normal)) = self.placed.switches.get(switch) else {
-                    self.report
-                        .skipped
-                        .push(format!("a position of {id}, which is no switch with a left and a right branch"));
-                    continue;
-                };
-                let left = match node.attribute("inPosition") {
-                    Some("left") => true,
-                    Some("right") => false,
-                    other => {
-                        return Err(format!(
-                            "the position {:?} of {id} is neither left nor right",
-                            other.unwrap_or("")
-                        ));
-                    }
-                };
-                let position = if left == *left_is_normal { Position::Normal } else { Position::Reverse };
-                if found.insert(*point, position).is_some_and(|before| before != position) {
-                    return Err(format!("{id} is to stand in both positions"));
+                let (point, position) = self.position(node)?;
+                if found.insert(point, position).is_some_and(|before| before != position) {
+                    return Err(format!("it asks for both positions of a switch ({})", Xml::at(node)));
                 }
             }
         }
         Ok(found)
     }
 
-    fn positions(&mut self, node: Node<'a, 'a>, names: &[&'a str]) -> Result<BTreeMap<usize, Position>, String> {
+    fn position(&self, node: Node<'a, 'a>) -> Result<(usize, Position), String> {
+        let at = Xml::at(node);
+        let id = reference(node, "refersToSwitch")
+            .or_else(|| reference(node, "refersTo"))
+            .ok_or_else(|| format!("a position of it names no switch ({at})"))?;
+        let machine = self.xml.id(id).ok_or_else(|| format!("the switch {id} does not exist ({at})"))?;
+        let switch = self.xml.referred(id).and_then(|switch| switch.attribute("id")).unwrap_or_default();
+        let left = match node.attribute("inPosition") {
+            Some("left") => true,
+            Some("right") => false,
+            other => return Err(format!("the position {:?} is neither left nor right ({at})", other.unwrap_or(""))),
+        };
+        let branch = |name| reference(machine, name).and_then(|id| self.placed.network.named(id));
+        let branches = branch("branchLeft").zip(branch("branchRight"));
+        let position = |is_normal: bool| if is_normal { Position::Normal } else { Position::Reverse };
+        match self.placed.switches.get(switch) {
+            Some(Switched::Point { point, left_is_normal }) => {
+                let legs = self
+                    .placed
+                    .network
+                    .legs(*point)
+                    .map(|[one, other]| if *left_is_normal { (one, other) } else { (other, one) });
+                if branches.zip(legs).is_some_and(|(said, there)| said != there) {
+                    return Err(format!("the branches of the {} are not those of its switch", Xml::at(machine)));
+                }
+                Ok((*point, position(left == *left_is_normal)))
+            }
+            Some(Switched::Slip(points)) => {
+                // One of its two machines: which, its branches say.
+                let Some((one, other)) = branches else {
+                    return Err(format!("the {} of a slip names no branchLeft and branchRight", Xml::at(machine)));
+                };
+                let wanted = if left { one } else { other };
+                let legs = points.iter().filter_map(|point| Some((*point, self.placed.network.legs(*point)?)));
+                let mut fitting = legs.filter(|(_, legs)| *legs == [one, other] || *legs == [other, one]);
+                match (fitting.next(), fitting.next()) {
+                    (Some((point, [normal, _])), None) => Ok((point, position(wanted == normal))),
+                    _ => Err(format!("the branches of the {} are not those of its slip", Xml::at(machine))),
+                }
+            }
+            None => Err(format!(
+                "its position of the {} cannot be read: the switch is not one that was taken",
+                Xml::at(machine)
+            )),
+        }
+    }
+
+    fn positions(&self, node: Node<'a, 'a>, names: &[&'a str]) -> Result<BTreeMap<usize, Position>, String> {
         self.positions_of(names.iter().flat_map(|name| children(node, name)).collect())
     }
 
     fn sections(&self, node: Node<'a, 'a>) -> Result<BTreeSet<usize>, String> {
-        let placed = |id| self.placed.sections.get(id).copied().ok_or_else(|| format!("its section {id} has no place"));
+        let placed = |id| {
+            let found = self.placed.sections.get(id).copied();
+            found.ok_or_else(|| format!("its section has no place ({})", self.xml.place(id)))
+        };
         references(node, "hasTvdSection").map(placed).collect()
-    }
-
-    /// A time that an attribute gives; one that cannot be read is reported.
-    fn time(&mut self, node: Node<'a, 'a>, attribute: &str, about: &str) -> Option<u32> {
-        let text = node.attribute(attribute)?;
-        let read = duration(text);
-        if read.is_none() {
-            self.report.lacking.push(format!("{about}: {attribute} {text:?} is no time that can be read"));
-        }
-        read
     }
 
     fn route(&mut self, node: Node<'a, 'a>) -> Result<Route, String> {
         let entry =
             child(node, "routeEntry").and_then(|entry| reference(entry, "refersTo")).ok_or("it has no routeEntry")?;
-        let entry_asset = self.xml.referred(entry).ok_or_else(|| format!("its routeEntry {entry} does not exist"))?;
-        let signal_id = entry_asset.attribute("id").unwrap_or_default();
+        let signal = self.xml.referred(entry).ok_or_else(|| format!("its routeEntry {entry} does not exist"))?;
         let sections = self.sections(node)?;
         let mut positions = self.positions(node, &["facingSwitchInPosition", "trailingSwitchInPosition"])?;
-        let exit =
-            child(node, "routeExit").and_then(|exit| reference(exit, "refersTo")).and_then(|exit| self.exit(exit));
+        let exit = child(node, "routeExit").and_then(|exit| reference(exit, "refersTo"));
         if exit.is_none() && sections.is_empty() {
-            return Err("it names neither sections nor an exit with a place".to_owned());
+            return Err("it names neither sections nor an exit".to_owned());
         }
-        let name = Xml::name(node);
-        let (distance, rear, Found { way, alone }, remark) = self.way(signal_id, &sections, exit, &positions)?;
-        if distance > NEAR {
-            self.report.defaulted.push(format!("route {name}: it begins at the joint {distance:.0} m from its signal"));
-        }
-        if let Some((_, beside)) = exit.filter(|(_, beside)| *beside > NEAR) {
-            self.report.defaulted.push(format!("route {name}: it ends at the joint {beside:.0} m from its exit"));
-        }
-        if let Some(remark) = remark {
+        let name = self.xml.name(node);
+        let starts = self.starts(signal)?;
+        let ends = exit.map(|exit| self.ends(exit)).transpose()?;
+        let Course { rear, way, remarks } = self.course(&starts, ends.as_deref(), &sections, &positions)?;
+        for remark in remarks {
             self.report.defaulted.push(format!("route {name}: {remark}"));
         }
-        if !alone {
-            self.report
-                .defaulted
-                .push(format!("route {name}: the file leaves more than one way; the shortest is taken"));
+        let passed: BTreeMap<usize, Position> =
+            way.iter().flat_map(|(_, way)| &way.passed).map(|passed| (passed.point, passed.position)).collect();
+        let absent = |pair: &&[(usize, Position); 2]| pair.iter().all(|(point, at)| passed.get(point) == Some(at));
+        if self.placed.absent.iter().any(|pair| absent(&pair)) {
+            return Err("it runs over a single slip where that has no way".to_owned());
         }
         let mut path = self.path(&way);
         positions.extend(self.flank(node)?);
         self.hold(&mut path, &way, &positions);
-        let release_ms = self.time(node, "approachReleaseDelay", &format!("route {name}")).map(At::derived);
-        if node.attribute("approachReleaseDelay").is_none() {
-            self.report
-                .defaulted
-                .push(format!("route {name}: release time of [times]: it has no approachReleaseDelay"));
+        let speed_kmh = self.placed.limits.on_way(&way, &self.placed.divided);
+        if let Some(limit) = speed_kmh.filter(|limit| self.station.braking.speeds_kmh.iter().all(|code| code > limit)) {
+            return Err(format!("its limit of {limit} km/h is below the lowest code"));
         }
+        if speed_kmh.is_none() {
+            self.report.defaulted.push(format!("route {name}: speed of [speed]: the file limits none on it"));
+        }
+        let release_ms = self.release(node, &way, &name)?;
+        // No train runs faster than the highest code.
+        let speed_kmh = speed_kmh.filter(|limit| self.station.braking.speeds_kmh.iter().any(|code| code > limit));
         Ok(Route {
             name,
-            signal: Some(Xml::name(entry_asset).value),
+            signal: Some(self.xml.name(signal).value),
             entry: At::derived(self.circuit(rear)),
             path,
             release_ms,
+            speed_kmh: speed_kmh.map(At::derived),
             ..Route::default()
         })
     }
 
-    /// The way of a route: how far from its signal it begins, the circuit in rear, the way, and what it does not keep of what is given.
-    #[allow(clippy::type_complexity, reason = "said above")]
-    fn way(
-        &self,
-        signal: &str,
-        sections: &BTreeSet<usize>,
-        exit: Option<(usize, f64)>,
-        positions: &BTreeMap<usize, Position>,
-    ) -> Result<(f64, usize, Found, Option<&'static str>), String> {
-        let exit = exit.map(|(joint, _)| joint);
-        let all = (!sections.is_empty()).then_some((sections, Extent::All));
-        let some = (!sections.is_empty()).then_some((sections, Extent::Some));
-        // All that is given, or all but one thing.
-        let mut looks = vec![(exit, all, None)];
-        if exit.is_some() && all.is_some() {
-            looks.push((None, all, Some("its sections do not end at its exit; it is taken to end with them")));
-            looks.push((exit, some, Some("not all of its sections lie between its signal and its exit")));
+    /// The longest of the times that a route stays locked for: its own, and what its sections ask.
+    fn release(&mut self, node: Node<'a, 'a>, way: &[(usize, Way)], name: &str) -> Result<Option<At<u32>>, String> {
+        let own = time(node, "approachReleaseDelay")?;
+        let mut residual = time(node, "residualRouteCancellationDelay")?;
+        for (circuit, _) in way {
+            let sections = self.placed.sections.iter().filter(|(_, area)| *area == circuit);
+            for node in sections.filter_map(|(id, _)| self.xml.id(id)) {
+                residual = residual.max(time(node, "residualRouteCancellationDelay")?);
+            }
         }
-        let starts = self.starts(signal, sections)?;
-        for (exit, within, remark) in looks {
-            for (distance, joint, rear, first) in &starts {
-                let sought = Sought { start: *joint, first: *first, exit, within, positions };
-                if let Some(found) = search(&self.placed.graph, &sought) {
-                    return Ok((*distance, *rear, found, remark));
+        if own.is_none() {
+            self.report
+                .defaulted
+                .push(format!("route {name}: release time of [times]: it has no approachReleaseDelay"));
+        }
+        let least = own.unwrap_or(self.station.times.release_ms.value);
+        let longest = residual.map_or(least, |residual| residual.max(least));
+        Ok((own.is_some() || longest > least).then_some(At::derived(longest)))
+    }
+
+    /// The one way of a route from one of these starts to one of these ends, over all of its sections but the one in rear of its signal.
+    fn course(
+        &self,
+        starts: &[Start],
+        ends: Option<&[End]>,
+        sections: &BTreeSet<usize>,
+        positions: &BTreeMap<usize, Position>,
+    ) -> Result<Course, String> {
+        // First where a train stands in rear of every joint that is at or beyond a signal; then where one lies a little in rear of it.
+        for behind in [false, true] {
+            let mut found: Vec<Course> = Vec::new();
+            for start in starts {
+                let listed = |circuit| sections.contains(&circuit);
+                if start.behind && !(behind && listed(start.first)) {
+                    continue;
+                }
+                let mut over = sections.clone();
+                over.remove(&start.rear);
+                let within = (!sections.is_empty()).then_some(&over);
+                let anywhere = [End { joint: None, last: None, beside: 0.0, behind: false }];
+                for end in ends.unwrap_or(&anywhere) {
+                    if end.behind && !(behind && end.last.is_some_and(listed)) {
+                        continue;
+                    }
+                    let sought = Sought {
+                        start: start.joint,
+                        first: start.first,
+                        exit: end.joint,
+                        last: end.last,
+                        within,
+                        positions,
+                    };
+                    let Some(Found { way, alone }) = search(&self.placed.graph, &sought) else { continue };
+                    if !alone {
+                        return Err("the file leaves more than one way for it".to_owned());
+                    }
+                    let mut remarks = Vec::new();
+                    if start.beside > NEAR {
+                        remarks.push(format!("it begins at the joint {:.0} m from its signal", start.beside));
+                    }
+                    if end.beside > NEAR {
+                        remarks.push(format!("it ends at the joint {:.0} m from its exit", end.beside));
+                    }
+                    found.push(Course { rear: start.rear, way, remarks });
+                }
+            }
+            match found.len() {
+                0 => {}
+                1 => return found.pop().ok_or_else(String::new),
+                _ => {
+                    return Err(
+                        "the file leaves more than one way for it: a signal may be for either direction".to_owned()
+                    );
                 }
             }
         }
-        Err("no way leads from its signal over its sections with its switches".to_owned())
+        Err(self.astray(starts, ends, sections, positions))
+    }
+
+    /// Why there is no such way: which sections lie elsewhere, if without them there is one.
+    fn astray(
+        &self,
+        starts: &[Start],
+        ends: Option<&[End]>,
+        sections: &BTreeSet<usize>,
+        positions: &BTreeMap<usize, Position>,
+    ) -> String {
+        let pairs = starts.iter().flat_map(|start| ends.into_iter().flatten().map(move |end| (start, end)));
+        for (start, end) in pairs.filter(|(start, end)| !start.behind && !end.behind) {
+            let sought = Sought {
+                start: start.joint,
+                first: start.first,
+                exit: end.joint,
+                last: end.last,
+                within: None,
+                positions,
+            };
+            let Some(Found { way, .. }) = search(&self.placed.graph, &sought) else { continue };
+            let run_over: BTreeSet<usize> = way.iter().map(|(circuit, _)| *circuit).chain([start.rear]).collect();
+            let named = |circuits: Vec<usize>| {
+                let of = |circuit: &usize| self.placed.sections.iter().find(|(_, area)| *area == circuit);
+                let told =
+                    |circuit: usize| of(&circuit).map_or_else(|| self.circuit(circuit), |(id, _)| self.xml.place(id));
+                circuits.into_iter().map(told).collect::<Vec<_>>().join("; ")
+            };
+            let apart = named(sections.difference(&run_over).copied().collect());
+            let unnamed =
+                named(way.iter().map(|(circuit, _)| *circuit).filter(|one| !sections.contains(one)).collect());
+            return match (apart.as_str(), unnamed.as_str()) {
+                (apart, "") => format!("sections that it lists do not lie between its signal and its exit: {apart}"),
+                ("", unnamed) => format!("it runs over sections that it does not list: {unnamed}"),
+                (apart, unnamed) => format!(
+                    "sections that it lists do not lie between its signal and its exit: {apart}; it runs over others that it does not list: {unnamed}"
+                ),
+            };
+        }
+        "no way leads from its signal to its exit over its sections with its switches".to_owned()
     }
 
     /// Has the first place of a path hold the points that it is not run over.
@@ -221,57 +380,94 @@ impl<'a> Reader<'a, '_> {
         made.collect()
     }
 
-    /// Where a route may begin, the likeliest first: distance from the signal, joint, circuit in rear, first circuit.
-    fn starts(&self, signal: &str, sections: &BTreeSet<usize>) -> Result<Vec<(f64, usize, usize, usize)>, String> {
-        let spot =
-            self.placed.signals.get(signal).ok_or_else(|| format!("its signal {signal} has no place on the tracks"))?;
-        let mut starts = Vec::new();
-        let cuts = self.placed.network.cuts.iter().enumerate().filter(|(_, cut)| cut.edge == spot.edge);
-        for (number, cut) in cuts {
-            let [before, after] = self.placed.divided.beside(number);
-            let both = [(before, after, true), (after, before, false)];
-            for (rear, first, toward_end) in both {
-                let (Some(rear), Some(first), Some(joint)) = (rear, first, self.placed.joints.get(&cut.name)) else {
-                    continue;
-                };
-                let against = spot.toward_end.is_some_and(|given| given != toward_end);
-                if rear != first && !against {
-                    starts.push((
-                        Self::badness(sections, (rear, first)),
-                        (cut.at - spot.at).abs(),
-                        *joint,
-                        rear,
-                        first,
-                    ));
-                }
-            }
-        }
-        starts.sort_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
+    /// Where a route with this signal may begin: at the first joint at or beyond it for a train that it is for, or at one a little in rear of it.
+    fn starts(&self, signal: Node<'a, 'a>) -> Result<Vec<Start>, String> {
+        let spot = signal.attribute("id").and_then(|id| self.placed.signals.get(id));
+        let spot = spot.ok_or_else(|| format!("its signal has no place on the tracks ({})", Xml::at(signal)))?;
+        let directions = spot.toward_end.map_or_else(|| vec![true, false], |given| vec![given]);
+        let joints = directions.into_iter().flat_map(|toward_end| self.joints_at(*spot, toward_end));
+        let starts = joints.filter_map(|at| {
+            Some(Start { joint: at.joint, rear: at.rear, first: at.ahead?, beside: at.beside, behind: at.behind })
+        });
+        let starts: Vec<Start> = starts.collect();
         if starts.is_empty() {
-            return Err(format!("no joint between two circuits lies on the track of its signal {signal}"));
+            return Err(format!("no joint lies at or beyond its signal before the next switch ({})", Xml::at(signal)));
         }
-        Ok(starts.into_iter().map(|(_, distance, joint, rear, first)| (distance, joint, rear, first)).collect())
+        Ok(starts)
     }
 
-    /// How unlikely it is that a route over `sections` begins there: 0 is as it should be.
-    fn badness(sections: &BTreeSet<usize>, (rear, first): (usize, usize)) -> u8 {
-        u8::from(!sections.is_empty() && !sections.contains(&first)) + u8::from(sections.contains(&rear))
+    /// Where a route may end that this is the exit of: at a detector or buffer stop, or at the first joint at or beyond a signal in the
+    /// direction of travel, or at one a little in rear of it.
+    fn ends(&self, id: &str) -> Result<Vec<End>, String> {
+        let asset = self.xml.referred(id).ok_or_else(|| format!("its exit {id} does not exist"))?;
+        let own = asset.attribute("id").unwrap_or_default();
+        if let Some(name) = self.placed.borders.get(own) {
+            let joint = self.placed.joints.get(name).copied();
+            let joint = joint.ok_or_else(|| format!("its exit has no place on the tracks ({})", Xml::at(asset)))?;
+            return Ok(vec![End { joint: Some(joint), last: None, beside: 0.0, behind: false }]);
+        }
+        let spot = self.placed.signals.get(own);
+        let spot = spot.ok_or_else(|| format!("its exit has no place on the tracks ({})", Xml::at(asset)))?;
+        let joints = [true, false].into_iter().flat_map(|toward_end| self.joints_at(*spot, toward_end));
+        let ends: Vec<End> = joints
+            .map(|at| End { joint: Some(at.joint), last: Some(at.rear), beside: at.beside, behind: at.behind })
+            .collect();
+        if ends.is_empty() {
+            return Err(format!("no joint lies at or beyond its exit before the next switch ({})", Xml::at(asset)));
+        }
+        Ok(ends)
     }
 
-    /// The joint at the exit of a route, and how far from it in metres: nearest to the signal, or that of a buffer stop or detector.
-    fn exit(&self, id: &str) -> Option<(usize, f64)> {
-        let asset = self.xml.referred(id)?.attribute("id")?;
-        if let Some(name) = self.placed.borders.get(asset) {
-            return self.placed.joints.get(name).map(|joint| (*joint, 0.0));
+    /// The first joint at or beyond a place for trains in this direction, and the last one in rear of it if it is near.
+    fn joints_at(&self, spot: Spot, toward_end: bool) -> Vec<Near> {
+        let placed = self.placed;
+        let number = |name: &str| placed.joints.get(name).copied();
+        let mut found = Vec::new();
+        let (mut edge, mut toward_end, mut at) = (spot.edge, toward_end, spot.at);
+        let mut run = 0.0;
+        for step in 0..placed.network.edges.len() {
+            let cuts = placed.network.cuts.iter().enumerate().filter(|(_, cut)| cut.edge == edge);
+            // How far beyond the place a cut is.
+            let beyond = |cut: &Cut| if toward_end { cut.at - at } else { at - cut.at };
+            let areas = |cut: usize| {
+                let [before, after] = placed.divided.beside(cut);
+                if toward_end { (before, after) } else { (after, before) }
+            };
+            let slack = if step == 0 { -NEAR } else { 0.0 };
+            let ahead = cuts.clone().filter(|(_, cut)| beyond(cut) >= slack);
+            let ahead = ahead.min_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
+            let behind = cuts.filter(|(_, cut)| (-OFFSET..-NEAR).contains(&beyond(cut)));
+            let behind = behind.max_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
+            if let (0, Some((place, cut))) = (step, behind)
+                && let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place))
+            {
+                found.push(Near { joint, rear, ahead, beside: beyond(cut).abs(), behind: true });
+            }
+            if let Some((place, cut)) = ahead {
+                if let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place)) {
+                    found.push(Near { joint, rear, ahead, beside: (run + beyond(cut)).abs(), behind: false });
+                }
+                break;
+            }
+            let side = if toward_end { Side::End } else { Side::Begin };
+            let length = placed.network.edges[edge].length;
+            run += if toward_end { length - at } else { at };
+            let Some((next, side)) = placed.divided.linked((edge, side)) else {
+                // An end of the tracks is one for a route, too.
+                let end = placed.divided.end_at((edge, side));
+                if let Some((Some(joint), rear)) = end.map(|(name, rear)| (number(name), rear)) {
+                    found.push(Near { joint, rear, ahead: None, beside: run, behind: false });
+                }
+                break;
+            };
+            (edge, toward_end) = (next, side == Side::Begin);
+            at = if toward_end { 0.0 } else { placed.network.edges[edge].length };
         }
-        let spot = self.placed.signals.get(asset)?;
-        let near = self.placed.network.cuts.iter().filter(|cut| cut.edge == spot.edge);
-        let nearest = near.min_by(|a, b| (a.at - spot.at).abs().total_cmp(&(b.at - spot.at).abs()))?;
-        self.placed.joints.get(&nearest.name).map(|joint| (*joint, (nearest.at - spot.at).abs()))
+        found
     }
 
     /// Positions of points that routeRelations ask for.
-    fn flank(&mut self, node: Node<'a, 'a>) -> Result<BTreeMap<usize, Position>, String> {
+    fn flank(&self, node: Node<'a, 'a>) -> Result<BTreeMap<usize, Position>, String> {
         let mut required = Vec::new();
         for id in references(node, "additionalRelation") {
             let relation = self.xml.id(id).ok_or_else(|| format!("its relation {id} does not exist"))?;
@@ -280,9 +476,10 @@ impl<'a> Reader<'a, '_> {
         self.positions_of(required)
     }
 
-    /// Gives routes their overlaps: the one that a route's exit names before one that names the route, and that before one that
+    /// Gives routes their overlaps; those whose overlap cannot be read are returned: without it they would not be the file's. The one that a route's exit names before one that names the route, and that before one that
     /// names the place where the route ends. A route has one at most.
-    fn overlaps(&mut self, routes: &mut [Route]) {
+    fn overlaps(&mut self, routes: &mut [Route]) -> BTreeSet<usize> {
+        let mut bad = BTreeSet::new();
         let mut at_exits: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for node in self.xml.all("route") {
             let number = node.attribute("id").and_then(|id| self.names.get(id)).copied();
@@ -301,10 +498,12 @@ impl<'a> Reader<'a, '_> {
             let mut found: Vec<(u8, usize)> = of_exits.chain(named).collect();
             let names_routes = references(node, "activeForApproachRoute").next().is_some();
             if found.is_empty() && !names_routes {
-                let at = reference(node, "relatedToTrackAsset").and_then(|id| self.exit(id)).map(|(joint, _)| joint);
-                let ends = (0..routes.len())
-                    .filter(|route| at.is_some() && self.end_of(&routes[*route]).map(|end| end.0) == at);
-                found.extend(ends.map(|route| (2, route)));
+                let at = reference(node, "relatedToTrackAsset").and_then(|id| self.ends(id).ok()).unwrap_or_default();
+                let ends = |route: &Route| {
+                    let end = self.end_of(route);
+                    end.is_some_and(|(joint, last)| at.iter().any(|at| !at.behind && at.is(joint, last)))
+                };
+                found.extend((0..routes.len()).filter(|route| ends(&routes[*route])).map(|route| (2, route)));
             }
             if found.is_empty() {
                 self.report.lacking.push(format!("overlap {id}: it names no route that was taken"));
@@ -325,65 +524,56 @@ impl<'a> Reader<'a, '_> {
                 None => {}
             }
             let about = format!("overlap {id} for route {name}");
-            match self.overlap(node, &routes[number], &about) {
-                Ok(path) => {
-                    let timer = node.descendants().find(|timer| timer.attribute("timerValue").is_some());
-                    let timer = timer.map(|timer| self.time(timer, "timerValue", &about));
+            match self.overlap(node, &routes[number]) {
+                Ok((path, timer)) => {
                     if timer.is_none() {
                         self.report
                             .defaulted
                             .push(format!("route {name}: stay time of [times]: overlap {id} has no release timer"));
                     }
                     routes[number].overlap = path;
-                    routes[number].stay_ms = timer.flatten().map(At::derived);
+                    routes[number].stay_ms = timer.map(At::derived);
                     given.insert(number, id);
                 }
-                Err(why) => self.report.lacking.push(format!("{about}: {why}; it is left out")),
+                Err(why) => {
+                    self.report.lacking.push(format!("{about}: {why}; the route is left out ({})", Xml::at(node)));
+                    bad.insert(number);
+                }
             }
         }
+        bad
     }
 
-    /// The way of an overlap from the end of a route: over its sections, and to what limits it.
-    fn overlap(&mut self, node: Node<'a, 'a>, route: &Route, about: &str) -> Result<Vec<At<Element>>, String> {
+    /// The way of an overlap from the end of a route, over its sections and to what limits it; and the time of its release, in ms.
+    fn overlap(&self, node: Node<'a, 'a>, route: &Route) -> Result<(Vec<At<Element>>, Option<u32>), String> {
         let positions = self.positions(node, &["requiresSwitchInPosition"])?;
         let sections = self.sections(node)?;
         let mut limits = Vec::new();
         for id in references(node, "isLimitedBy") {
-            limits.push(self.exit(id).ok_or_else(|| format!("its limit {id} has no place"))?);
+            limits.extend(self.ends(id)?);
         }
         if sections.is_empty() && limits.is_empty() {
             return Err("it names neither sections nor a limit".to_owned());
         }
         let (joint, last) = self.end_of(route).ok_or("the end of the route is not known")?;
         let first = self.placed.graph.across(joint, last).ok_or("the tracks end with the route")?;
-        let within = (!sections.is_empty()).then_some((&sections, Extent::All));
-        let mut ends: Vec<Option<(usize, f64)>> = limits.iter().copied().map(Some).collect();
-        if within.is_some() {
-            ends.push(None);
-        }
-        let mut ways = ends.into_iter().filter_map(|limit| {
-            let exit = limit.map(|(joint, _)| joint);
-            let sought = Sought { start: joint, first, exit, within, positions: &positions };
-            search(&self.placed.graph, &sought).map(|found| (found, limit))
+        let within = (!sections.is_empty()).then_some(&sections);
+        // What its sections say is enough; where it names none, its limit says how far it goes.
+        let anywhere = vec![End { joint: None, last: None, beside: 0.0, behind: false }];
+        let ends = if within.is_some() { &anywhere } else { &limits };
+        let ways = ends.iter().filter(|end| !end.behind).filter_map(|end| {
+            let sought = Sought { start: joint, first, exit: end.joint, last: end.last, within, positions: &positions };
+            search(&self.placed.graph, &sought)
         });
-        let (Found { way, alone }, limit) = ways
-            .next()
-            .ok_or("no way leads from the end of the route over its sections, or to its limit, with its switches")?;
-        if limit.is_none() && !limits.is_empty() {
-            self.report
-                .defaulted
-                .push(format!("{about}: its sections do not end at its limit; they are taken as they are"));
-        }
-        let beside = limit.map_or(0.0, |(_, beside)| beside);
-        if beside > NEAR {
-            self.report.defaulted.push(format!("{about}: it ends at the joint {beside:.0} m from its limit"));
-        }
-        if !alone {
-            self.report.defaulted.push(format!("{about}: the file leaves more than one way; the shortest is taken"));
-        }
-        let mut path = self.path(&way);
-        self.hold(&mut path, &way, &positions);
-        Ok(path)
+        let ways: Vec<Found> = ways.collect();
+        let [Found { way, alone: true }] = ways.as_slice() else {
+            let none = "no way leads from the end of the route over its sections, or to its limit, with its switches";
+            return Err(if ways.is_empty() { none } else { "the file leaves more than one way for it" }.to_owned());
+        };
+        let mut path = self.path(way);
+        self.hold(&mut path, way, &positions);
+        let timer = node.descendants().find(|timer| timer.attribute("timerValue").is_some());
+        Ok((path, timer.map(|timer| time(timer, "timerValue")).transpose()?.flatten()))
     }
 
     /// The joint at the end of a route, and its last circuit.
@@ -416,6 +606,10 @@ impl<'a> Reader<'a, '_> {
     fn conflicts(&mut self, routes: &mut [Route]) {
         for conflict in self.xml.all("conflictingRoute") {
             let number = |name| reference(conflict, name).and_then(|id| self.names.get(id)).copied();
+            let known = |name| reference(conflict, name).is_some_and(|id| self.xml.id(id).is_some());
+            if !known("refersToRoute") || !known("conflictsWithRoute") {
+                self.report.lacking.push(format!("a route of the {}: it does not exist", Xml::at(conflict)));
+            }
             let (Some(one), Some(other)) = (number("refersToRoute"), number("conflictsWithRoute")) else { continue };
             for (one, other) in [(one, other), (other, one)] {
                 let name = routes[other].name.clone();
@@ -425,4 +619,11 @@ impl<'a> Reader<'a, '_> {
             }
         }
     }
+}
+
+/// A time that an attribute gives, in ms.
+fn time(node: Node<'_, '_>, attribute: &str) -> Result<Option<u32>, String> {
+    let Some(text) = node.attribute(attribute) else { return Ok(None) };
+    let none = || format!("the {attribute} {text:?} is no time that can be read ({})", Xml::at(node));
+    duration(text).map(Some).ok_or_else(none)
 }

@@ -3,10 +3,12 @@
 mod circuits;
 mod infrastructure;
 mod interlocking;
+mod limits;
 mod xml;
 
 use super::complete::complete;
 use super::{Imported, Report};
+use crate::at::At;
 use crate::description::Description;
 use crate::form::Station;
 use crate::problem::{Errors, Problem, Source};
@@ -55,11 +57,49 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     }
     let mut station = Station { name: xml.title().unwrap_or_else(|| "railML".to_owned()), ..Station::default() };
     let placed = circuits::write(&xml, tracks, &mut station, &mut report);
+    clear_time(&xml, &mut station, &mut report);
     interlocking::write(&xml, &placed, &mut station, &mut report);
     for name in ["times", "braking", "speed", "longest_train_m"] {
         report.defaulted.push(format!("[{name}]: the defaults of the layout form; the file says nothing of them"));
     }
+    let (branches, stretches) = placed.limits.count();
+    report.taken.push(format!("speeds of {branches} branches and {stretches} stretches of track"));
     xml.unused(&mut report);
     complete(&mut station, "railML", &mut report);
+    line_speeds(&placed, &mut station, &mut report);
     Ok(Imported { description: Description { station, source: source.clone() }, report })
+}
+
+/// A circuit counts as clear after the longest time that the file gives for one, if that is longer than the default.
+fn clear_time(xml: &Xml<'_>, station: &mut Station, report: &mut Report) {
+    let mut longest = station.times.clear_ms.value;
+    for section in xml.all("tvdSection") {
+        let Some(text) = section.attribute("partialRouteReleaseDelay") else { continue };
+        match xml::duration(text) {
+            Some(time) => longest = longest.max(time),
+            None => report.lacking.push(format!(
+                "a time of the {}: its partialRouteReleaseDelay {text:?} cannot be read",
+                Xml::at(section)
+            )),
+        }
+    }
+    if longest > station.times.clear_ms.value {
+        report.taken.push(format!("{longest} ms after which a circuit counts as clear: the longest of all sections"));
+        station.times.clear_ms = At::derived(longest);
+    }
+}
+
+/// Plain line is as fast as the slowest of its circuits. A route's speed that is no lower than the station's is left out.
+fn line_speeds(placed: &circuits::Placed<'_>, station: &mut Station, report: &mut Report) {
+    let numbers: std::collections::BTreeMap<String, usize> =
+        station.circuits.iter().enumerate().map(|(number, circuit)| (circuit.name.value.clone(), number)).collect();
+    let highest = station.braking.speeds_kmh.iter().max().copied().unwrap_or(0);
+    for segment in &mut station.segments {
+        let circuits = segment.circuits.iter().filter_map(|name| numbers.get(&name.value).copied()).collect();
+        let limit = placed.limits.in_circuits(&circuits, &placed.divided).filter(|limit| *limit < highest);
+        if let Some(limit) = limit {
+            report.taken.push(format!("segment {}: {limit} km/h", segment.name));
+            segment.speed_kmh = Some(At::derived(limit));
+        }
+    }
 }

@@ -11,10 +11,22 @@ use crate::import::Report;
 pub struct Xml<'a> {
     root: Node<'a, 'a>,
     ids: BTreeMap<&'a str, Node<'a, 'a>>,
+    /// How many elements of a kind have a name. Only ids tell elements apart; names are for people.
+    named: BTreeMap<(&'a str, &'a str), usize>,
 }
 
+/// Elements whose names must differ, by what they become in a layout: joints have one set of names.
+const KINDS: [(&str, &str); 6] = [
+    ("trainDetectionElement", "joint"),
+    ("bufferStop", "joint"),
+    ("signalIS", "signal"),
+    ("switchIS", "point"),
+    ("tvdSection", "circuit"),
+    ("route", "route"),
+];
+
 /// Elements that are looked at; the others are reported as not used.
-const USED: [&str; 28] = [
+const USED: [&str; 29] = [
     "netElements",
     "netRelations",
     "networks",
@@ -40,6 +52,7 @@ const USED: [&str; 28] = [
     "geometricPositioningSystems",
     "linearPositioningSystems",
     "crossings",
+    "speeds",
     "topology",
     "infrastructureVisualizations",
     "specificIMs",
@@ -50,7 +63,24 @@ impl<'a> Xml<'a> {
     pub fn new(document: &'a Document<'a>) -> Self {
         let root = document.root_element();
         let with_id = root.descendants().filter_map(|node| node.attribute("id").map(|id| (id, node)));
-        Self { root, ids: with_id.collect() }
+        let mut named = BTreeMap::new();
+        for node in root.descendants() {
+            if let Some(kind) = kind(node) {
+                *named.entry((kind, called(node))).or_default() += 1;
+            }
+        }
+        Self { root, ids: with_id.collect(), named }
+    }
+
+    /// An element and where it stands, for people: `route rt3, line 120`.
+    pub fn at(node: Node<'_, '_>) -> String {
+        let line = node.document().text_pos_at(node.range().start).row;
+        format!("{} {}, line {line}", node.tag_name().name(), node.attribute("id").unwrap_or("without an id"))
+    }
+
+    /// The same of the element with this id, or the id alone if there is none.
+    pub fn place(&self, id: &str) -> String {
+        self.id(id).map_or_else(|| format!("{id}, which does not exist"), Self::at)
     }
 
     /// Every element of this local name, in the order of the file.
@@ -76,7 +106,7 @@ impl<'a> Xml<'a> {
 
     /// A title of the file: its metadata, or the name of an operational point.
     pub fn title(&self) -> Option<String> {
-        let point = self.all("operationalPoint").next().map(|point| Self::name(point).value);
+        let point = self.all("operationalPoint").next().map(|point| self.name(point).value);
         let title = self
             .all("title")
             .filter_map(|title| title.text())
@@ -85,14 +115,11 @@ impl<'a> Xml<'a> {
         point.or(title)
     }
 
-    /// What people call an element: its name, its designator, or its id.
-    pub fn name(node: Node<'a, 'a>) -> At<String> {
-        let named = node.children().find_map(|child| match child.tag_name().name() {
-            "name" | "objectName" | "assetName" => child.attribute("name"),
-            "designator" => child.attribute("entry"),
-            _ => None,
-        });
-        let name = named.filter(|name| !name.trim().is_empty()).or_else(|| node.attribute("id")).unwrap_or("unnamed");
+    /// What people call an element: its name, its designator, or its id; its id alone where another one of its kind is called the same.
+    pub fn name(&self, node: Node<'a, 'a>) -> At<String> {
+        let called = called(node);
+        let alone = kind(node).is_none_or(|kind| self.named.get(&(kind, called)) == Some(&1));
+        let name = if alone { called } else { node.attribute("id").unwrap_or(called) };
         // The start tag alone: an element may be long.
         let range = node.range();
         At::new(name.to_owned(), range.start..range.end.min(range.start + 1))
@@ -115,6 +142,19 @@ impl<'a> Xml<'a> {
             report.skipped.push(format!("{name} with {count} elements"));
         }
     }
+}
+
+fn kind(node: Node<'_, '_>) -> Option<&'static str> {
+    KINDS.iter().find(|(name, _)| *name == node.tag_name().name()).map(|(_, kind)| *kind)
+}
+
+fn called<'a>(node: Node<'a, 'a>) -> &'a str {
+    let named = node.children().find_map(|child| match child.tag_name().name() {
+        "name" | "objectName" | "assetName" => child.attribute("name"),
+        "designator" => child.attribute("entry"),
+        _ => None,
+    });
+    named.filter(|name| !name.trim().is_empty()).or_else(|| node.attribute("id")).unwrap_or("unnamed")
 }
 
 /// The first child of this local name.
