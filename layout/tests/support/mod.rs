@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod railml;
+pub mod random;
 
 use atc_layout::At;
 use atc_layout::form::{Circuit, Element, End, EndKind, Platform, Point, Route, Segment, Station};

@@ -15,18 +15,73 @@ pub enum Version {
     V32,
 }
 
+/// What the files of different tools have in different ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dialect {
+    /// Every so many net elements one is measured the other way round; 0 for none.
+    pub turned: usize,
+    /// How far signals stand ahead of their joint, in metres: less than 0 in rear of it, where the joint is beyond the signal.
+    pub offset: f64,
+    /// Places in metres instead of shares of the length.
+    pub metres: bool,
+    /// Positions wrapped in an element of their own.
+    pub wrapped: bool,
+    /// The exit of a route is the signal where it ends, if there is one, and not a detector.
+    pub to_signals: bool,
+    /// The section in rear of the entry is listed, too.
+    pub rear: bool,
+    /// The list of sections is in the other order.
+    pub backwards: bool,
+    /// Nothing has a name: ids alone.
+    pub nameless: bool,
+}
+
+impl Dialect {
+    /// The plainest.
+    pub const PLAIN: Self = Self {
+        turned: 0,
+        offset: 0.0,
+        metres: false,
+        wrapped: false,
+        to_signals: false,
+        rear: false,
+        backwards: false,
+        nameless: false,
+    };
+
+    /// The place of a share of an edge, in its words, as attributes.
+    fn place(&self, edge: &Edge, share: f64) -> String {
+        let share = if edge.turned { 1.0 - share } else { share };
+        if self.metres {
+            format!("pos=\"{:.4}\"", share * edge.length)
+        } else {
+            format!("intrinsicCoord=\"{share:.9}\"")
+        }
+    }
+}
+
 /// A track from switch to switch, with the joints on it.
 struct Edge {
     ends: [(usize, usize); 2],
     joints: Vec<(usize, f64)>,
     length: f64,
+    /// Whether the file measures it from the other end.
+    turned: bool,
 }
 
 /// The layout of `station` as railML.
 pub fn railml(station: &Station, version: Version) -> String {
+    written(station, version, &Dialect::PLAIN)
+}
+
+/// The same in a dialect.
+pub fn written(station: &Station, version: Version, dialect: &Dialect) -> String {
     let description = Description { station: station.clone(), ..Description::default() };
     let model = description.model().unwrap_or_else(|errors| panic!("{errors}"));
-    let edges = edges(&model);
+    let mut edges = edges(&model);
+    for (number, edge) in edges.iter_mut().enumerate() {
+        edge.turned = dialect.turned > 0 && number % dialect.turned == 0;
+    }
     let mut text = String::new();
     let number = if version == Version::V31 { "3.1" } else { "3.2" };
     let namespace = format!("https://www.railml.org/schemas/{number}");
@@ -37,12 +92,12 @@ pub fn railml(station: &Station, version: Version) -> String {
     );
     let _ = writeln!(text, "  <metadata><dc:title>{name}</dc:title></metadata>\n  <infrastructure id=\"is\">");
     topology(&mut text, &model, &edges);
-    functional(&mut text, &model, &edges);
+    functional(&mut text, &model, &edges, dialect);
     let _ = writeln!(text, "  </infrastructure>\n  <interlocking>");
     let assets = if version == Version::V31 { "assetsForIL" } else { "assetsForInterlocking" };
     let list = if version == Version::V31 { "assetsForILs" } else { "assetsForInterlockings" };
     let _ = writeln!(text, "    <{list}>\n      <{assets} id=\"il\">");
-    interlocking(&mut text, station, &model, version);
+    interlocking(&mut text, &model, version, dialect);
     let _ = writeln!(text, "      </{assets}>\n    </{list}>\n  </interlocking>\n</railML>");
     text
 }
@@ -89,7 +144,7 @@ fn edges(model: &Model) -> Vec<Edge> {
             joint = if joint == left { right } else { left };
             track = next;
         };
-        edges.push(Edge { ends: [(from, first), end], joints, length });
+        edges.push(Edge { ends: [(from, first), end], joints, length, turned: false });
     }
     edges
 }
@@ -100,7 +155,8 @@ fn end_of(edges: &[Edge], track: usize, joint: usize) -> (usize, usize) {
         .iter()
         .enumerate()
         .find_map(|(number, edge)| edge.ends.iter().position(|end| *end == (track, joint)).map(|end| (number, end)));
-    found.expect("every leg is the end of an edge")
+    let (number, end) = found.expect("every leg is the end of an edge");
+    (number, if edges[number].turned { 1 - end } else { end })
 }
 
 fn topology(text: &mut String, model: &Model, edges: &[Edge]) {
@@ -125,7 +181,9 @@ fn topology(text: &mut String, model: &Model, edges: &[Edge]) {
     text.push_str("      </netRelations>\n    </topology>\n");
 }
 
-fn functional(text: &mut String, model: &Model, edges: &[Edge]) {
+fn functional(text: &mut String, model: &Model, edges: &[Edge], dialect: &Dialect) {
+    let name =
+        |name: &str| if dialect.nameless { String::new() } else { format!("<name name=\"{name}\" language=\"en\"/>") };
     let spots: BTreeMap<usize, (usize, f64)> = edges
         .iter()
         .enumerate()
@@ -137,35 +195,44 @@ fn functional(text: &mut String, model: &Model, edges: &[Edge]) {
         let (edge, end) = end_of(edges, usize::MAX, number);
         let _ = writeln!(
             text,
-            "        <bufferStop id=\"bs{number}\"><name name=\"{}\" language=\"en\"/><spotLocation id=\"bs{number}l\" netElementRef=\"ne{edge}\" intrinsicCoord=\"{end}\"/></bufferStop>",
-            joint.name
+            "        <bufferStop id=\"bs{number}\">{}<spotLocation id=\"bs{number}l\" netElementRef=\"ne{edge}\" intrinsicCoord=\"{end}\"/></bufferStop>",
+            name(&joint.name)
         );
     }
     text.push_str("      </bufferStops>\n      <trainDetectionElements>\n");
     for (joint, (edge, at)) in &spots {
         let _ = writeln!(
             text,
-            "        <trainDetectionElement id=\"tde{joint}\" type=\"insulatedRailJoint\"><name name=\"{}\" language=\"en\"/><spotLocation id=\"tde{joint}l\" netElementRef=\"ne{edge}\" intrinsicCoord=\"{at:.9}\"/></trainDetectionElement>",
-            model.graph.joints[*joint].name
+            "        <trainDetectionElement id=\"tde{joint}\" type=\"insulatedRailJoint\">{}<spotLocation id=\"tde{joint}l\" netElementRef=\"ne{edge}\" {}/></trainDetectionElement>",
+            name(&model.graph.joints[*joint].name),
+            dialect.place(&edges[*edge], *at)
         );
     }
     text.push_str("      </trainDetectionElements>\n      <signalsIS>\n");
     for (id, route) in signals(model) {
         let (edge, at) = spots[&route.start];
         let toward_end = runs_to_end(model, &edges[edge], route);
-        let direction = if toward_end { "normal" } else { "reverse" };
+        let direction = if toward_end == edges[edge].turned { "reverse" } else { "normal" };
+        // No farther than half way to the next joint or the end of the edge.
+        let here = at * edges[edge].length;
+        let others = edges[edge].joints.iter().map(|(_, other)| *other).chain([0.0, edges[edge].length]);
+        let room =
+            others.map(|other| (other - here).abs()).filter(|room| *room > 0.001).fold(f64::INFINITY, f64::min) / 2.0;
+        let ahead = dialect.offset.clamp(-room, room);
+        let at = (here + if toward_end { ahead } else { -ahead }) / edges[edge].length;
         let _ = writeln!(
             text,
-            "        <signalIS id=\"{id}\" isSwitchable=\"true\"><name name=\"{}\" language=\"en\"/><spotLocation id=\"{id}l\" netElementRef=\"ne{edge}\" intrinsicCoord=\"{at:.9}\" applicationDirection=\"{direction}\"/></signalIS>",
-            route.signal
+            "        <signalIS id=\"{id}\" isSwitchable=\"true\">{}<spotLocation id=\"{id}l\" netElementRef=\"ne{edge}\" {} applicationDirection=\"{direction}\"/></signalIS>",
+            name(&route.signal),
+            dialect.place(&edges[edge], at)
         );
     }
     text.push_str("      </signalsIS>\n      <switchesIS>\n");
     for (number, point) in model.points.iter().enumerate() {
         let _ = writeln!(
             text,
-            "        <switchIS id=\"sw{number}\" type=\"ordinarySwitch\" continueCourse=\"left\" branchCourse=\"right\"><name name=\"{}\" language=\"en\"/><leftBranch netRelationRef=\"nr{number}n\"/><rightBranch netRelationRef=\"nr{number}r\"/></switchIS>",
-            point.name
+            "        <switchIS id=\"sw{number}\" type=\"ordinarySwitch\" continueCourse=\"left\" branchCourse=\"right\">{}<leftBranch netRelationRef=\"nr{number}n\"/><rightBranch netRelationRef=\"nr{number}r\"/></switchIS>",
+            name(&point.name)
         );
     }
     text.push_str("      </switchesIS>\n    </functionalInfrastructure>\n");
@@ -178,6 +245,16 @@ fn signals(model: &Model) -> BTreeMap<String, &Route> {
         signals.insert(signal_id(route), route);
     }
     signals
+}
+
+/// What a route's exit refers to.
+fn exit_id(model: &Model, route: &Route, dialect: &Dialect) -> String {
+    let onward = |other: &&Route| other.start == route.exit && Some(other.entry) == route.last();
+    match model.routes.iter().find(onward) {
+        Some(other) if dialect.to_signals => format!("il{}", signal_id(other)),
+        _ if model.graph.joints[route.exit].end == Some(EndKind::Buffer) => format!("bs{}", route.exit),
+        _ => format!("tde{}", route.exit),
+    }
 }
 
 fn signal_id(route: &Route) -> String {
@@ -199,14 +276,17 @@ fn runs_to_end(model: &Model, edge: &Edge, route: &Route) -> bool {
     before == Some(route.entry)
 }
 
-fn interlocking(text: &mut String, station: &Station, model: &Model, version: Version) {
+fn interlocking(text: &mut String, model: &Model, version: Version, dialect: &Dialect) {
     let name_of = if version == Version::V31 { "assetName" } else { "objectName" };
+    let name = |name: &str| {
+        if dialect.nameless { String::new() } else { format!("<{name_of} name=\"{name}\" language=\"en\"/>") }
+    };
     text.push_str("        <tvdSections>\n");
     for (number, circuit) in model.circuits.iter().enumerate() {
         let _ = write!(
             text,
-            "          <tvdSection id=\"tvd{number}\" technology=\"trackCircuit\"><{name_of} name=\"{}\" language=\"en\"/>",
-            circuit.name
+            "          <tvdSection id=\"tvd{number}\" technology=\"trackCircuit\">{}",
+            name(&circuit.name)
         );
         for joint in model.graph.borders(number) {
             match model.graph.joints[joint].end {
@@ -234,18 +314,29 @@ fn interlocking(text: &mut String, station: &Station, model: &Model, version: Ve
         let release = u32::from(route.release.0) * model.values.cycle_ms / 1000;
         let _ = writeln!(
             text,
-            "          <route id=\"rt{number}\" approachReleaseDelay=\"PT{release}S\">\n            <{name_of} name=\"{}\" language=\"en\"/>",
-            route.name
+            "          <route id=\"rt{number}\" approachReleaseDelay=\"PT{release}S\">\n            {}",
+            name(&route.name)
         );
         for (place, passed) in route.path.iter().flat_map(|place| &place.passed).enumerate() {
             let side = if passed.position == Position::Normal { "left" } else { "right" };
-            let _ = writeln!(
-                text,
-                "            <facingSwitchInPosition id=\"rt{number}p{place}\" inPosition=\"{side}\"><refersToSwitch ref=\"swil{}\"/></facingSwitchInPosition>",
-                passed.point
-            );
+            let inner = format!("inPosition=\"{side}\"><refersToSwitch ref=\"swil{}\"/>", passed.point);
+            let _ = if dialect.wrapped {
+                writeln!(
+                    text,
+                    "            <facingSwitchInPosition id=\"rt{number}p{place}\"><relatedSwitchAndPosition {inner}</relatedSwitchAndPosition></facingSwitchInPosition>"
+                )
+            } else {
+                writeln!(
+                    text,
+                    "            <facingSwitchInPosition id=\"rt{number}p{place}\" {inner}</facingSwitchInPosition>"
+                )
+            };
         }
-        for circuit in route.circuits() {
+        let mut listed: Vec<usize> = dialect.rear.then_some(route.entry).into_iter().chain(route.circuits()).collect();
+        if dialect.backwards {
+            listed.reverse();
+        }
+        for circuit in listed {
             let _ = writeln!(text, "            <hasTvdSection ref=\"tvd{circuit}\"/>");
         }
         let _ = writeln!(
@@ -255,9 +346,8 @@ fn interlocking(text: &mut String, station: &Station, model: &Model, version: Ve
         );
         let _ = writeln!(
             text,
-            "            <routeExit id=\"rt{number}x\"><refersTo ref=\"{}{}\"/></routeExit>\n          </route>",
-            if model.graph.joints[route.exit].end == Some(EndKind::Buffer) { "bs" } else { "tde" },
-            route.exit
+            "            <routeExit id=\"rt{number}x\"><refersTo ref=\"{}\"/></routeExit>\n          </route>",
+            exit_id(model, route, dialect)
         );
     }
     text.push_str("        </routes>\n        <overlaps>\n");
@@ -282,5 +372,4 @@ fn interlocking(text: &mut String, station: &Station, model: &Model, version: Ve
         }
     }
     text.push_str("        </conflictingRoutes>\n");
-    debug_assert_eq!(station.routes.len(), model.routes.len());
 }

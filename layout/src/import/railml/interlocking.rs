@@ -267,20 +267,21 @@ impl<'a> Reader<'a, '_> {
         sections: &BTreeSet<usize>,
         positions: &BTreeMap<usize, Position>,
     ) -> Result<Course, String> {
-        // First where a train stands in rear of every joint that is at or beyond a signal; then where one lies a little in rear of it.
-        for behind in [false, true] {
+        let listed = |circuit| sections.contains(&circuit);
+        let anywhere = [End { joint: None, last: None, beside: 0.0, behind: false }];
+        let ends_or_any = ends.unwrap_or(&anywhere);
+        // A listed section in which a signal stands near its begin is run over rather than left in rear. It is the other way round at an exit.
+        for (start_behind, end_behind) in [(true, false), (true, true), (false, false), (false, true)] {
             let mut found: Vec<Course> = Vec::new();
-            for start in starts {
-                let listed = |circuit| sections.contains(&circuit);
-                if start.behind && !(behind && listed(start.first)) {
-                    continue;
-                }
+            for start in starts.iter().filter(|start| start.behind == start_behind) {
                 let mut over = sections.clone();
                 over.remove(&start.rear);
+                if start.behind && !listed(start.first) {
+                    continue;
+                }
                 let within = (!sections.is_empty()).then_some(&over);
-                let anywhere = [End { joint: None, last: None, beside: 0.0, behind: false }];
-                for end in ends.unwrap_or(&anywhere) {
-                    if end.behind && !(behind && end.last.is_some_and(listed)) {
+                for end in ends_or_any.iter().filter(|end| end.behind == end_behind) {
+                    if end.behind && !end.last.is_some_and(listed) {
                         continue;
                     }
                     let sought = Sought {
@@ -305,14 +306,13 @@ impl<'a> Reader<'a, '_> {
                     found.push(Course { rear: start.rear, way, remarks });
                 }
             }
-            match found.len() {
-                0 => {}
-                1 => return found.pop().ok_or_else(String::new),
-                _ => {
-                    return Err(
-                        "the file leaves more than one way for it: a signal may be for either direction".to_owned()
-                    );
-                }
+            if found.len() > 1 {
+                let both =
+                    "the file leaves more than one way for it: its signal or its exit may be for either direction";
+                return Err(both.to_owned());
+            }
+            if let Some(course) = found.pop() {
+                return Ok(course);
             }
         }
         Err(self.astray(starts, ends, sections, positions))
