@@ -1,4 +1,4 @@
-//! Where the time went, by the clock and in processor time, phase by phase; and a case without its times.
+//! Where the time went, by the clock and in processor time, phase by phase; and a case without its times and other chance.
 
 use crate::case::{Case, Phase};
 use crate::inputs::measured;
@@ -76,7 +76,8 @@ pub fn named(phase: &Phase) -> String {
     phase.slowest.iter().map(|(name, seconds)| format!("{name} {seconds:.1}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The case without its times, for a comparison: what is left must be the same however it was run.
+/// The case without its times, for a comparison: what is left must be the same however it was run. Of what rejects a mutant the harness is
+/// left, and not the claims of the counterexample.
 pub fn without(mut case: Case) -> Case {
     case.provenance.seconds = 0.0;
     case.provenance.generated_unix = 0;
@@ -86,6 +87,8 @@ pub fn without(mut case: Case) -> Case {
     for one in &mut case.evidence {
         one.seconds = 0.0;
         one.engines.iter_mut().for_each(|engine| engine.seconds = 0.0);
+        // Which claims fail in the one counterexample that a solver gives is a matter of what was solved together.
+        one.killed_by.iter_mut().for_each(|by| *by = by.split(" (").next().unwrap_or_default().to_owned());
     }
     case.second_opinions.iter_mut().for_each(|one| one.seconds = 0.0);
     case.measurements.seconds = 0.0;

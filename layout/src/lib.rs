@@ -25,6 +25,7 @@ pub mod model;
 mod names;
 mod problem;
 mod rule;
+pub mod second;
 pub mod table;
 mod values;
 

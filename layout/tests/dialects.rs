@@ -73,8 +73,10 @@ fn expected(model: &Model, dialect: &Dialect) -> BTreeMap<String, Course> {
 }
 
 fn found(imported: &Imported) -> Result<BTreeMap<String, Course>, TestCaseError> {
-    let model =
-        imported.description.tracks().map_err(|errors| TestCaseError::fail(format!("{errors}\n{}", imported.report)))?;
+    let model = imported
+        .description
+        .tracks()
+        .map_err(|errors| TestCaseError::fail(format!("{errors}\n{}", imported.report)))?;
     let circuit = |number: usize| model.circuits[number].name.clone();
     let point = |number: usize| model.points[number].name.clone();
     Ok(model.routes.iter().map(|route| (route.name.clone(), course(&model, route, &circuit, &point))).collect())
@@ -95,6 +97,8 @@ fn every_dialect_of_a_station_is_imported_as_it_was_written() {
         let imported = import(&written(&station, version, &dialect))?;
         let (wanted, found) = (expected(&model(&station), &dialect), found(&imported)?);
         prop_assert_eq!(wanted, found, "{}", imported.report);
+        let second = imported.report.lacking.iter().find(|line| line.contains("second reading"));
+        prop_assert_eq!(second, None);
         Ok(())
     });
     result.unwrap_or_else(|error| panic!("{error}"));

@@ -207,7 +207,7 @@ fn a_machine_of_a_slip_that_cannot_be_told_apart_leaves_its_routes_out() {
 
 #[test]
 fn a_single_slip_has_no_fourth_way() {
-    let single = changed(SLIP, "<turningBranch netRelationRef=\"bd\"/>", "");
+    let single = changed(SLIP, "<turningBranch netRelationRef=\"nbd\"/>", "");
     let single = single.replace("doubleSwitchCrossing", "singleSwitchCrossing");
     left_out(&single, "bd", "it runs over a single slip where that has no way");
     assert_eq!(model(&imported(&single)).routes.len(), 3);

@@ -206,11 +206,21 @@ impl Checked {
     }
 }
 
-/// Every cell of the control table and every value in which two layouts differ.
+/// Every cell of the control table and every value in which two layouts differ; and where one of the files is railML, what a second reading
+/// of it finds in the other layout.
 fn compare(one: &Path, other: &Path) -> Result<Vec<String>, Errors> {
-    let of = |path: &Path| read_any(path).and_then(|read| Ok((read.description.model()?, read.description)));
-    let ((model, _), (other_model, _)) = (of(one)?, of(other)?);
-    Ok(atc_layout::compare::compare(&model, &other_model).iter().map(ToString::to_string).collect())
+    let (read, other_read) = (read_any(one)?.description, read_any(other)?.description);
+    let (model, other_model) = (read.model()?, other_read.model()?);
+    let mut told: Vec<String> =
+        atc_layout::compare::compare(&model, &other_model).iter().map(ToString::to_string).collect();
+    for (text, model, file) in [(&other_read.source.text, &model, other), (&read.source.text, &other_model, one)] {
+        // Whose text is no XML has been read as another form.
+        let found =
+            if text.trim_start().starts_with('<') { atc_layout::second::differences(text, model) } else { continue };
+        let found = found.unwrap_or_default();
+        told.extend(found.iter().map(|difference| format!("against {}: {difference}", file.display())));
+    }
+    Ok(told)
 }
 
 /// No route was imported: the reasons stand in the report, which is all that there is.

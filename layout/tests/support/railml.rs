@@ -17,6 +17,7 @@ pub enum Version {
 
 /// What the files of different tools have in different ways.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::struct_excessive_bools, reason = "each is a habit of some tool")]
 pub struct Dialect {
     /// Every so many net elements one is measured the other way round; 0 for none.
     pub turned: usize,

@@ -6,13 +6,17 @@ mod interlocking;
 mod limits;
 mod xml;
 
+use std::collections::BTreeSet;
+
 use super::complete::complete;
 use super::{Imported, Report};
 use crate::at::At;
+use crate::derive;
 use crate::description::Description;
 use crate::form::Station;
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
+use crate::second;
 use xml::Xml;
 
 /// Reads a railML file.
@@ -50,7 +54,7 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
         _ => report.defaulted.push(format!("the namespace {namespace:?} is read as railML 3.2")),
     }
     let xml = Xml::new(&document);
-    let mut problems = Vec::new();
+    let mut problems = twice(&document);
     let tracks = infrastructure::read(&xml, &mut report, &mut problems);
     if !problems.is_empty() {
         return Err(Errors::new(source, problems));
@@ -65,9 +69,47 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     let (branches, stretches) = placed.limits.count();
     report.taken.push(format!("speeds of {branches} branches and {stretches} stretches of track"));
     xml.unused(&mut report);
+    read_again(&source.text, &mut station, &mut report);
     complete(&mut station, "railML", &mut report);
     line_speeds(&placed, &mut station, &mut report);
+    read_again(&source.text, &mut station, &mut report);
+    report.taken.push(format!("{} routes that a second reading of the file finds the same", station.routes.len()));
     Ok(Imported { description: Description { station, source: source.clone() }, report })
+}
+
+/// Leaves out the routes that another reading of the file does not find as they are.
+fn read_again(text: &str, station: &mut Station, report: &mut Report) {
+    let model = derive::model(station, &mut Vec::new());
+    let found = second::differences(text, &model).unwrap_or_default();
+    for difference in &found {
+        report.lacking.push(match difference.route {
+            Some(_) => format!("{difference}; so says a second reading of the file, and it is left out"),
+            None => format!("{difference}; so says a second reading of the file"),
+        });
+    }
+    let wrong: BTreeSet<&String> = found.iter().filter_map(|difference| difference.route.as_ref()).collect();
+    station.routes.retain(|route| !wrong.contains(&route.name.value));
+    for route in &mut station.routes {
+        route.conflicts.retain(|other| !wrong.contains(&other.value));
+    }
+}
+
+/// Ids that two elements have and that something refers to: it may mean either.
+fn twice(document: &roxmltree::Document<'_>) -> Vec<Problem> {
+    let mut seen = std::collections::BTreeMap::new();
+    let mut problems = Vec::new();
+    let named = document.root().descendants().flat_map(|node| node.attributes());
+    let named: BTreeSet<&str> =
+        named.filter(|at| at.name() == "ref" || at.name().ends_with("Ref")).map(|at| at.value()).collect();
+    for node in document.root().descendants() {
+        let Some(id) = node.attribute("id").filter(|id| named.contains(id)) else { continue };
+        if let Some(first) = seen.insert(id, node) {
+            let what = format!("two elements have the id {id}: {} and {}", Xml::at(first), Xml::at(node));
+            let range = node.range().start..node.range().start + 1;
+            problems.push(Problem::new(Rule::NameTwice, &range, what, "give each its own"));
+        }
+    }
+    problems
 }
 
 /// A circuit counts as clear after the longest time that the file gives for one, if that is longer than the default.
