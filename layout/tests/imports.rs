@@ -256,8 +256,10 @@ fn left_out(report: &Report, route: &str, why: &str) -> bool {
 fn times_are_read_in_every_form_or_reported() {
     let whole = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"P0Y0M0DT0H2M0.5S\"");
     assert_eq!(whole.description.station.routes[0].release_ms.as_ref().map(|at| at.value), Some(120_500));
-    let day = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"P1D\"");
-    assert_eq!(day.description.station.routes[0].release_ms.as_ref().map(|at| at.value), Some(86_400_000));
+    let hour = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"PT1H\"");
+    assert_eq!(hour.description.station.routes[0].release_ms.as_ref().map(|at| at.value), Some(3_600_000));
+    let day = changed("approachReleaseDelay=\"PT45S\"", "approachReleaseDelay=\"P1D\"").report;
+    assert!(left_out(&day, "rA-B1", "its release time of 86400000 ms is more than 60 000 cycles"), "{day}");
     for wrong in ["P1M", "PT", "P", "45S", "PT-4S", "PT4X", "PT4S4S", "P4"] {
         let report = changed("approachReleaseDelay=\"PT45S\"", &format!("approachReleaseDelay=\"{wrong}\"")).report;
         let told = format!("the approachReleaseDelay {wrong:?} is no time that can be read");

@@ -256,6 +256,10 @@ impl<'a> Reader<'a, '_> {
         }
         let least = own.unwrap_or(self.station.times.release_ms.value);
         let longest = residual.map_or(least, |residual| residual.max(least));
+        let most = self.station.times.cycle_ms.value.saturating_mul(60_000);
+        if longest > most {
+            return Err(format!("its release time of {longest} ms is more than 60 000 cycles, {most} ms"));
+        }
         Ok((own.is_some() || longest > least).then_some(At::derived(longest)))
     }
 
