@@ -8,6 +8,8 @@
 //! * [`lives`]: what the ground counts on telegrams to live, held against what trains do.
 //! * [`Errors`]: every broken rule with its place in the file and what would be right.
 
+#![forbid(unsafe_code)]
+
 mod at;
 pub mod border;
 mod check;

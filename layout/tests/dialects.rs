@@ -18,7 +18,7 @@ use support::railml::{Dialect, Version, written};
 use support::random::{Shape, station};
 
 fn stations() -> u32 {
-    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(96)
+    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(48)
 }
 
 fn dialects() -> impl Strategy<Value = Dialect> {

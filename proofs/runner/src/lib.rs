@@ -9,6 +9,7 @@ pub mod campaign;
 mod cbmc;
 mod compile;
 mod control;
+pub mod importers;
 pub mod kani;
 mod loops;
 pub mod mutants;

@@ -4,6 +4,7 @@
 //! It is compiled once, into two programs; which mutants they run with is named in the environment when they start. With none named they
 //! run the kernel as it is.
 
+use crate::importers;
 use crate::mutants::{is_together, list};
 use crate::process::only_run;
 use crate::schemata::{Change, instrument, with_cells};
@@ -29,16 +30,19 @@ pub enum Program {
     Adversary,
     /// The command of `models/`.
     Models,
+    /// What imports stations of others.
+    Importers,
 }
 
 impl Program {
-    const ALL: [Self; 2] = [Self::Adversary, Self::Models];
+    const ALL: [Self; 3] = [Self::Adversary, Self::Models, Self::Importers];
 
     /// Its name in the checkout, the manifest that has it, and its source.
     const fn is(self) -> [&'static str; 3] {
         match self {
             Self::Adversary => ["adversary", "tests/Cargo.toml", "tests/src/bin/adversary.rs"],
             Self::Models => ["models", "models/Cargo.toml", "models/src/main.rs"],
+            Self::Importers => ["importers", "tests/Cargo.toml", "tests/src/bin/importers.rs"],
         }
     }
 
@@ -194,7 +198,7 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
 }
 
 /// Files by their path from the checkout.
-type Files = BTreeMap<PathBuf, Vec<u8>>;
+pub(crate) type Files = BTreeMap<PathBuf, Vec<u8>>;
 
 fn text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
@@ -232,6 +236,8 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
     }
     let names: Vec<&str> = chosen.iter().map(|mutant| mutant.name.as_str()).collect();
     rewrite(files, "kernel/src/lib.rs", |text| with_cells(text, names.len(), &selector(&names)))?;
+    let importers = importers::list(root)?;
+    importers::put_in(&importers, files)?;
     rewrite(files, "Cargo.toml", |text| {
         // Cargo tells packages apart by name and version, not by where the workspace is: without another version these crates would
         // stand in the place of the checkout's in `target/`.
@@ -245,13 +251,15 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
             once(text, &format!("[[bin]]\nname = \"{name}\""), &format!("[[bin]]\nname = \"{new}\""))
         })?;
         let begins = "fn main() -> ExitCode {\n";
-        rewrite(files, main, |text| once(text, begins, &format!("{begins}    atc_kernel::select();\n")))?;
+        let library = if program == Program::Importers { "atc_layout" } else { "atc_kernel" };
+        rewrite(files, main, |text| once(text, begins, &format!("{begins}    {library}::select();\n")))?;
     }
-    Ok(names.into_iter().map(ToOwned::to_owned).collect())
+    let all = names.into_iter().chain(importers.iter().map(|importer| importer.name.as_str()));
+    Ok(all.map(ToOwned::to_owned).collect())
 }
 
 /// What a program calls before anything else.
-fn selector(names: &[&str]) -> String {
+pub(crate) fn selector(names: &[&str]) -> String {
     let mut written = format!(
         "extern crate std;
          /// Selects the mutants that the environment names.
@@ -267,7 +275,11 @@ fn selector(names: &[&str]) -> String {
     written
 }
 
-fn rewrite(files: &mut Files, path: &str, change: impl FnOnce(&str) -> Result<String, String>) -> Result<(), String> {
+pub(crate) fn rewrite(
+    files: &mut Files,
+    path: &str,
+    change: impl FnOnce(&str) -> Result<String, String>,
+) -> Result<(), String> {
     let file = files.get_mut(Path::new(path)).ok_or_else(|| format!("{path} is not there"))?;
     let text = std::str::from_utf8(file).map_err(|error| format!("{path}: {error}"))?;
     *file = change(text).map_err(|error| format!("{path}: {error}"))?.into_bytes();

@@ -8,7 +8,8 @@ use std::time::Instant;
 
 #[test]
 fn each_known_fault_is_found_when_the_old_rule_is_put_back_and_not_without() {
-    let programs = build(&root(), &[Program::Adversary]).expect("the kernel with old rules compiles");
+    let programs =
+        build(&root(), &[Program::Adversary, Program::Importers]).expect("the kernel with old rules compiles");
     let known = programs.known().expect("the adversary knows faults");
     assert!(known.len() >= 11, "only {} faults", known.len());
     in_parallel(2, known.len(), |number| {

@@ -1,0 +1,34 @@
+//! Every wrong importer of `layout/mutants.toml` is found out: no wrong route is left, and some are left out.
+
+use atc_prover::importers::{list, routes, tried};
+use atc_prover::old_rules::{Program, build};
+use atc_prover::root;
+
+#[test]
+fn no_wrong_importer_leaves_a_wrong_route() {
+    let all = list(&root()).expect("layout/mutants.toml");
+    assert!(all.len() >= 25, "only {} wrong importers", all.len());
+    let programs = build(&root(), &[Program::Adversary, Program::Importers]).expect("the copy compiles");
+    let right = routes(&programs, &[]).expect("the right importer runs");
+    assert!(right.len() > 150, "only {} routes", right.len());
+    let mut missed = Vec::new();
+    for one in &all {
+        let tried = tried(&programs, &one.name, &right).expect("the wrong importer runs");
+        println!(
+            "{}: {} routes are left out, the second reading differs in {} stations, {} routes are wrong",
+            one.name,
+            tried.left_out,
+            tried.found_out,
+            tried.wrong.len()
+        );
+        tried.wrong.iter().skip(1).for_each(|wrong| println!("    {wrong}"));
+        match tried.wrong.first() {
+            Some(first) => missed.push(format!("{} ({}): {first}", one.name, one.what)),
+            None if tried.left_out + tried.found_out == 0 => {
+                missed.push(format!("{} ({}): nothing is different", one.name, one.what))
+            }
+            None => {}
+        }
+    }
+    assert!(missed.is_empty(), "not found out:\n{}", missed.join("\n"));
+}

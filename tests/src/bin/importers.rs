@@ -1,0 +1,151 @@
+//! Imports railML files of many kinds, and tells each route that comes of them in one line: what `layout/mutants.toml` must not change.
+//!
+//! A route of a wrong importer that the right one does not print is a wrong route. One that it lacks is a route that was left out: what it
+//! holds and excludes need not be there then. Positions may be held that the right importer does not: flank protection looks farther
+//! where a signal is left out. A circuit may be shorter: trains stop earlier then.
+
+#[path = "../../../layout/tests/support/mod.rs"]
+mod support;
+
+use std::process::ExitCode;
+
+use atc_layout::import::railml;
+use atc_layout::model::{Model, Route};
+use support::railml::{Dialect, Version, written};
+use support::random::{Shape, station};
+
+/// Files that are there.
+const FILES: [(&str, &str); 9] = [
+    ("passing-loop", include_str!("../../../layouts/passing-loop.railml.xml")),
+    ("junction", include_str!("../../../layouts/junction.railml.xml")),
+    ("terminus", include_str!("../../../layouts/terminus.railml.xml")),
+    ("station-30", include_str!("../../../layouts/station-30.railml.xml")),
+    ("chainage", include_str!("../../../layout/tests/files/chainage.railml.xml")),
+    ("head-on", include_str!("../../../layout/tests/files/head-on.railml")),
+    ("short2", include_str!("../../../layout/tests/files/short2.railml")),
+    ("dupbuf", include_str!("../../../layout/tests/files/dupbuf.railml")),
+    ("slip", include_str!("../../../layout/tests/files/slip.railml")),
+];
+
+/// A file with changes: its name, the file, and what stands for what.
+type Changed = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+/// Changes that give a file what it has not.
+const CHANGED: [Changed; 7] = [
+    // Files that are wrong: the right importer leaves a route out.
+    (
+        "a section too many",
+        "head-on",
+        &[("<hasTvdSection ref=\"tvd9\"/>", "<hasTvdSection ref=\"tvd9\"/><hasTvdSection ref=\"tvd4\"/>")],
+    ),
+    ("a section too few", "head-on", &[("<hasTvdSection ref=\"tvd9\"/>", "")]),
+    ("against a position", "head-on", &[("inPosition=\"left\"", "inPosition=\"right\"")]),
+    ("a signal turned", "head-on", &[("applicationDirection=\"reverse\"", "applicationDirection=\"normal\"")]),
+    // And some that are right.
+    ("single-slip", "slip", &[("<turningBranch netRelationRef=\"nbd\"/>", "")]),
+    (
+        "limits",
+        "head-on",
+        &[
+            ("<leftBranch netRelationRef=\"nr0n\"/>", "<leftBranch netRelationRef=\"nr0n\" branchingSpeed=\"60\"/>"),
+            (
+                "<rightBranch netRelationRef=\"nr0r\"/>",
+                "<rightBranch netRelationRef=\"nr0r\" branchingSpeed=\"40\" joiningSpeed=\"60\"/>",
+            ),
+            ("<rightBranch netRelationRef=\"nr1r\"/>", "<rightBranch netRelationRef=\"nr1r\" branchingSpeed=\"60\"/>"),
+            (
+                "<bufferStops>",
+                "<speeds><speedSection id=\"v1\" maxSpeed=\"30\"><linearLocation id=\"v1l\"><associatedNetElement netElementRef=\"ne1\" intrinsicCoordBegin=\"0.1\" intrinsicCoordEnd=\"0.4\"/></linearLocation></speedSection></speeds><bufferStops>",
+            ),
+            (
+                "<tvdSection id=\"tvd2\"",
+                "<tvdSection residualRouteCancellationDelay=\"PT90S\" partialRouteReleaseDelay=\"PT4S\" id=\"tvd2\"",
+            ),
+            ("<routeEntry id=\"rt0e\">", "<additionalRelation ref=\"rr\"/><routeEntry id=\"rt0e\">"),
+            (
+                "<conflictingRoutes>",
+                "<routeRelations><routeRelation id=\"rr\"><requiredSwitchPosition inPosition=\"left\"><refersToSwitch ref=\"swil1\"/></requiredSwitchPosition></routeRelation></routeRelations><conflictingRoutes><conflictingRoute id=\"c\"><refersToRoute ref=\"rt4\"/><conflictsWithRoute ref=\"rt6\"/></conflictingRoute>",
+            ),
+        ],
+    ),
+    ("long-overlap", "chainage", &[("timerValue=\"PT40S\"", "timerValue=\"PT100S\"")]),
+];
+
+/// The ways of tools: turned net elements, offsets of signals, metres, exits at signals.
+const DIALECTS: [Dialect; 4] = [
+    Dialect { turned: 2, offset: -30.0, to_signals: true, ..Dialect::PLAIN },
+    Dialect { metres: true, offset: 5.0, wrapped: true, ..Dialect::PLAIN },
+    Dialect { turned: 1, metres: true, rear: true, backwards: true, ..Dialect::PLAIN },
+    Dialect { turned: 3, nameless: true, to_signals: true, ..Dialect::PLAIN },
+];
+
+fn main() -> ExitCode {
+    for (name, text) in FILES {
+        tell(name, text);
+    }
+    for (name, of, changes) in CHANGED {
+        let Some((_, text)) = FILES.iter().find(|(name, _)| *name == of) else { return ExitCode::from(2) };
+        let mut text = (*text).to_owned();
+        for (from, to) in changes {
+            if !text.contains(from) {
+                eprintln!("{name}: {from} is not in {of}");
+                return ExitCode::from(2);
+            }
+            text = text.replacen(from, to, 1);
+        }
+        tell(name, &text);
+    }
+    for (number, dialect) in DIALECTS.iter().enumerate() {
+        for (tracks, bay, splits) in [(2, false, vec![2, 1]), (3, true, vec![1, 3]), (6, false, vec![3, 2, 1])] {
+            let shape = Shape { tracks, bay, lengths: vec![75, 220, 410, 130], splits };
+            tell(&format!("dialect {number} of {tracks} tracks"), &written(&station(&shape), Version::V31, dialect));
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn tell(name: &str, text: &str) {
+    let Ok(imported) = railml(name, text) else { return };
+    let Ok(model) = imported.description.tracks() else { return };
+    let differing = imported.report.lacking.iter().filter(|line| line.contains("second reading")).count();
+    println!("second\t{name}\t{differing} differences");
+    for route in &model.routes {
+        println!("route\t{name}\t{}\t{}", route.name, line(&model, route));
+        for circuit in route.circuits().chain([route.entry]).chain(route.overlap.iter().copied()) {
+            let circuit = &model.circuits[circuit];
+            println!("length\t{name}\t{}\t{}", circuit.name, circuit.length.0);
+        }
+        for (point, position) in route.positions() {
+            println!("holds\t{name}\t{}\t{} {position:?}", route.name, model.points[point].name);
+        }
+        for other in &route.conflicts {
+            println!("excludes\t{name}\t{}\t{}", route.name, model.routes[*other].name);
+        }
+    }
+}
+
+/// What the file says of a route.
+fn line(model: &Model, route: &Route) -> String {
+    let circuit = |number: usize| model.circuits[number].name.clone();
+    let joint = |number: usize| model.graph.joints[number].name.as_str();
+    let path: Vec<String> = route.circuits().map(circuit).collect();
+    let passed = route.path.iter().flat_map(|place| &place.passed);
+    let over = passed.map(|passed| {
+        let point = &model.points[passed.point];
+        format!("{} {:?} within {} ms", point.name, passed.position, point.throw_ms)
+    });
+    let overlap: Vec<String> = route.overlap.iter().map(|number| circuit(*number)).collect();
+    format!(
+        "at {} from {} by {} over {} to {}, {}; overlap {}; {} km/h; release {}, stay {}",
+        route.signal,
+        circuit(route.entry),
+        joint(route.start),
+        path.join(", "),
+        joint(route.exit),
+        over.collect::<Vec<_>>().join(", "),
+        overlap.join(", "),
+        model.values.speeds_kmh[usize::from(route.speed.0)],
+        route.release.0,
+        route.stay.0,
+    )
+}
