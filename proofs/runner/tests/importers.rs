@@ -25,7 +25,7 @@ fn no_wrong_importer_leaves_a_wrong_route() {
         match tried.wrong.first() {
             Some(first) => missed.push(format!("{} ({}): {first}", one.name, one.what)),
             None if tried.left_out + tried.found_out == 0 => {
-                missed.push(format!("{} ({}): nothing is different", one.name, one.what))
+                missed.push(format!("{} ({}): nothing is different", one.name, one.what));
             }
             None => {}
         }
