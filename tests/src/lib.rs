@@ -17,7 +17,8 @@ pub mod timing_chart;
 pub mod traffic;
 pub mod workload;
 
-/// The examples of the README, compiled and run.
+/// The examples of the READMEs, compiled and run.
 #[doc = include_str!("../../README.md")]
+#[doc = include_str!("../../kernel/README.md")]
 #[cfg(doctest)]
 pub struct Readme;
