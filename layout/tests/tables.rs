@@ -106,3 +106,22 @@ fn the_drawing_names_everything() {
         }
     }
 }
+
+#[test]
+fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed() {
+    let model = description(LOOP).model().unwrap();
+    let table = table::rendo::csv(&model);
+    let row = table.split("\r\n").find(|row| row.starts_with("W-1,")).unwrap();
+    assert_eq!(row, "W-1,W,P1 P2 E-1 1-W,P1T 1T P2T,P1 P2,P1T 1T,W1 60秒");
+    assert_eq!(table::rendo::compare(&model, &table), Ok(vec![]));
+    // Full-width brackets, another order of entries that have none.
+    let other = table.replace("(P1)", "（P1）").replace("P1 P2 E-1 1-W", "E-1、1-W　P2 P1");
+    assert_eq!(table::rendo::compare(&model, &other), Ok(vec![]));
+    let wrong = table.replacen("P1T 1T,W1", "1T P1T,W1", 1).replacen("60秒", "90秒", 1);
+    let found = table::rendo::compare(&model, &wrong).unwrap();
+    let told: Vec<String> = found.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["route W-1: 進路区分鎖錠: P1T 1T | 1T P1T", "route W-1: 接近鎖錠: W1 60秒 | W1 90秒"]);
+    let missing = table.split_inclusive("\r\n").filter(|row| !row.starts_with("W-1,")).collect::<String>();
+    assert_eq!(table::rendo::compare(&model, &missing).unwrap().len(), 1);
+    assert!(table::rendo::compare(&model, "進路,色\r\n").unwrap_err().contains("the column \"色\" is not known"));
+}

@@ -26,7 +26,8 @@ pub enum LayoutCommand {
     Compare {
         /// A layout in any form; `-` for standard input
         one: PathBuf,
-        /// Another one. A railML file is also read a second time, by other code, and its routes held against the first
+        /// Another one, or a table in the columns of `table --form rendo` (.csv). A railML file is also read a second time, by other code, and
+        /// its routes held against the first
         other: PathBuf,
     },
     /// Writes a railML 3 file or an OSRD infrastructure as a layout in TOML; the report goes to standard error
@@ -41,7 +42,7 @@ pub enum LayoutCommand {
     Table {
         #[command(flatten)]
         layout: LayoutFile,
-        /// HTML to be printed and signed, or values for a spreadsheet
+        /// In which form
         #[arg(long, value_enum, default_value_t = Form::Html)]
         form: Form,
         /// Where the table goes [default: standard output]
@@ -80,8 +81,12 @@ pub struct LayoutFile {
 /// A form of the control table.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Form {
+    /// To be printed and signed
     Html,
+    /// Comma-separated values, for a spreadsheet
     Csv,
+    /// The same in the columns of a Japanese interlocking table (連動図表)
+    Rendo,
 }
 
 /// What a command has to say: text for a file or standard output, and remarks for standard error.
@@ -126,6 +131,7 @@ pub fn run(command: LayoutCommand) -> Result<Done, Errors> {
             let text = match form {
                 Form::Html => table::html(&description.station.name, &model, &draw::svg(&description.station, &model)),
                 Form::Csv => table::csv(&model),
+                Form::Rendo => table::rendo::csv(&model),
             };
             (text, output, String::new())
         }
@@ -209,6 +215,9 @@ impl Checked {
 /// Every cell of the control table and every value in which two layouts differ; and where one of the files is railML, what a second reading
 /// of it finds in the other layout.
 fn compare(one: &Path, other: &Path) -> Result<Vec<String>, Errors> {
+    if other.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
+        return against_table(one, other);
+    }
     let (read, other_read) = (read_any(one)?.description, read_any(other)?.description);
     let (model, other_model) = (read.model()?, other_read.model()?);
     let mut told: Vec<String> =
@@ -221,6 +230,16 @@ fn compare(one: &Path, other: &Path) -> Result<Vec<String>, Errors> {
         told.extend(found.iter().map(|difference| format!("against {}: {difference}", file.display())));
     }
     Ok(told)
+}
+
+/// Every cell in which a Japanese interlocking table differs from a layout.
+fn against_table(layout: &Path, table: &Path) -> Result<Vec<String>, Errors> {
+    let model = read_any(layout)?.description.model()?;
+    let source = Source { name: table.display().to_string(), ..Source::default() };
+    let wrong = |what: String| Errors::one(&source, Problem::new(Rule::Form, &(0..0), what, "save it as CSV in UTF-8"));
+    let text = std::fs::read_to_string(table).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    let found = table::rendo::compare(&model, &text).map_err(wrong)?;
+    Ok(found.iter().map(ToString::to_string).collect())
 }
 
 /// No route was imported: the reasons stand in the report, which is all that there is.

@@ -24,6 +24,11 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Answers JSON lines (protocol 1) from standard input on standard output
+    #[command(after_help = "A session, to be typed line by line:\n  \
+        {\"start\":{\"protocol\":1,\"machine\":\"block-count\",\"config\":{\"sections\":3,\"max_trains\":3,\"tail_hold_sections\":1}}}\n  \
+        {\"step\":{\"check_in\":false,\"check_out\":false,\"present\":[],\"reset\":0}}\n  \
+        {\"stop\":{}}\n\
+        Every line gets one reply. Read replies while you send: after some 36,000 unread ones both sides wait.")]
     Serve,
     /// Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
     Chart(ChartArgs),

@@ -122,6 +122,9 @@ impl fmt::Display for Fault {
 /// If `line` is not JSON, or not an object with exactly one of the three keys.
 pub fn request(line: &str) -> Result<Request<'_>, Fault> {
     const FORMS: &str = r#"a request is {"start":{…}}, {"step":{…}} or {"stop":{}}"#;
+    if line.starts_with('\u{feff}') {
+        return Err(Fault { column: Some(1), what: format!("a byte order mark; save the text without it; {FORMS}") });
+    }
     if line.trim_ascii().is_empty() {
         return Err(Fault::whole(format!("the line is empty; {FORMS}")));
     }
@@ -135,7 +138,37 @@ pub fn request(line: &str) -> Result<Request<'_>, Fault> {
 pub fn body<T: DeserializeOwned>(line: &str, body: &RawValue) -> Result<T, Fault> {
     let offset = offset(line, body);
     object(body, offset)?;
-    read(body.get(), offset)
+    read(body.get(), offset).or_else(|fault| {
+        // JSON has one kind of number: 10.0 is the whole number 10, and JSON Schema takes it for one.
+        let text = body.get();
+        let whole = text.contains(".0").then(|| without_fractions(text)).filter(|whole| whole != text);
+        whole.and_then(|whole| read(&whole, offset).ok()).ok_or(fault)
+    })
+}
+
+/// The text with every number like `10.0` outside strings as `10`.
+fn without_fractions(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let (mut in_string, mut escaped) = (false, false);
+    let mut rest = text;
+    while let Some(letter) = rest.chars().next() {
+        let after_digit = out.ends_with(|before: char| before.is_ascii_digit());
+        if !in_string && letter == '.' && after_digit {
+            let digits = &rest[1..];
+            let zeros = digits.len() - digits.trim_start_matches('0').len();
+            let next = digits[zeros..].chars().next();
+            let ends = next.is_none_or(|next| !next.is_ascii_digit() && next != 'e' && next != 'E');
+            if zeros > 0 && ends {
+                rest = &digits[zeros..];
+                continue;
+            }
+        }
+        in_string ^= letter == '"' && !escaped;
+        escaped = in_string && letter == '\\' && !escaped;
+        out.push(letter);
+        rest = &rest[letter.len_utf8()..];
+    }
+    out
 }
 
 /// Reads the body of a start, which borrows from `line`.
@@ -173,4 +206,21 @@ fn read<'a, T: Deserialize<'a>>(text: &'a str, offset: usize) -> Result<T, Fault
         // A text of one line; only whitespace could make it more.
         Fault { column: (error.line() == 1).then_some(error.column() + offset), what }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{request, without_fractions};
+
+    #[test]
+    fn a_fraction_of_nothing_is_left_out_and_no_other() {
+        let text = r#"{"a":10.0,"b":[1.00,2.5,3.0e2],"c":"4.0 \" 5.0","d":-7.0}"#;
+        assert_eq!(without_fractions(text), r#"{"a":10,"b":[1,2.5,3.0e2],"c":"4.0 \" 5.0","d":-7}"#);
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_named() {
+        let fault = request("\u{feff}{\"stop\":{}}").expect_err("it is no JSON");
+        assert!(fault.what.starts_with("a byte order mark"), "{fault}");
+    }
 }

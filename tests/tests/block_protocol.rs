@@ -157,7 +157,7 @@ fn every_malformed_step() {
         (present("2"), "integer `2`, expected a list of section numbers"),
         (quiet(r#""reset":256"#), "reset is 256; a verified number of trains is 0 to 255, or null"),
         (quiet(r#""reset":-1"#), "integer `-1`, expected u32"),
-        (quiet(r#""reset":1.0"#), "floating point `1.0`, expected u32"),
+        (quiet(r#""reset":1.5"#), "floating point `1.5`, expected u32"),
         (quiet(r#""reset":"0""#), "string \"0\", expected u32"),
         (quiet(r#""reset":false"#), "boolean `false`, expected u32"),
         (quiet(r#""ahead_hold_sections":17"#), "ahead_hold_sections is 17; it must be 0 to 16 sections"),

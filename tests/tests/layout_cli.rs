@@ -211,7 +211,7 @@ fn files_and_commands_that_are_not_there() {
         (&["draw", "."], 1, "cannot be read"),
         (&["table", "junction.toml", "-o", "no/such/table.html"], 1, "no/such/table.html cannot be written"),
         (&["import", "junction.railml.xml", "-o", "no/such/j.toml"], 1, "no/such/j.toml cannot be written"),
-        (&["table", "junction.toml", "--form", "pdf"], 2, "[possible values: html, csv]"),
+        (&["table", "junction.toml", "--form", "pdf"], 2, "[possible values: html, csv, rendo]"),
         (&["check"], 2, "<FILE>"),
         (&["paint", "junction.toml"], 2, "unrecognized subcommand 'paint'"),
     ] {

@@ -103,7 +103,7 @@ fn every_malformed_line_in_aspect_acceptance() {
         (r#"{"stop":[]}"#, "expected an object, found []"),
         (r#"{"stop":{"now":true}}"#, "unknown field `now`"),
         (ASPECT, "a start inside a case of aspect-acceptance, which goes on"),
-        ("\u{feff}{\"stop\":{}}", "expected value"),
+        ("\u{feff}{\"stop\":{}}", "a byte order mark"),
     ];
     check_malformed(ASPECT, r#"{"step":{"detected_km_h":[25]}}"#, &cases);
 }

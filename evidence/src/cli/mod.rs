@@ -84,7 +84,7 @@ pub struct Run {
     /// Only this part of the railway (aspect, supervision, block, …): its theorems, wrong kernels, models and tests.
     #[arg(long, conflicts_with = "shard")]
     part: Option<String>,
-    /// Start nothing that would not end in so many seconds; the same command again goes on from there. A part has 170 by itself.
+    /// Start nothing that would not end in so many seconds; the same command again goes on from there. A part has 150 by itself.
     #[arg(long, value_name = "SECONDS")]
     within: Option<u64>,
     /// Only this shard, such as 2/4; `safety-case merge` joins them.
@@ -144,7 +144,7 @@ pub struct Run {
 }
 
 /// A part is for work on it: it ends within three minutes.
-const PART_SECONDS: u64 = 170;
+const PART_SECONDS: u64 = 150;
 
 impl Run {
     /// The seconds in which it is to end, if there is a limit.

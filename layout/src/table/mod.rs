@@ -1,6 +1,7 @@
 //! The control table: what each route needs, excludes and releases, for an engineer to check by eye.
 
 mod html;
+pub mod rendo;
 mod row;
 
 pub use html::{escape, html};

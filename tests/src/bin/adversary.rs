@@ -91,7 +91,8 @@ fn run() -> Result<ExitCode, String> {
         (Some(number), _) => stations::random(number),
         (None, file) => {
             let file = file.as_deref().unwrap_or("layouts/passing-loop.toml");
-            atc_layout::read(file).map_err(|error| error.to_string())?
+            // Of any form: an imported station is hunted on as well.
+            atc_layout::import::read_any(file).map_err(|error| error.to_string())?.description
         }
     };
     let (mut device, ground) = device::kernel(&description).map_err(|error| error.to_string())?;
