@@ -44,6 +44,25 @@ fn all_weapons_on_every_station() {
     }
 }
 
+/// An imported station has faster trains and shorter circuits at its borders than one that was made for its line. There a train once came over
+/// the border faster than it could stop in the one circuit that the neighbour had found clear (`neighbour-turns-alike`), on the terminus
+/// after 203 481 cycles of this seed.
+#[test]
+fn imported_stations_with_all_weapons() {
+    for (name, cycles) in
+        [("terminus", 300_000), ("passing-loop", 100_000), ("junction", 100_000), ("station-30", 50_000)]
+    {
+        let (mut kernel, ground) = device::kernel(&stations::imported(name)).expect("a sound layout");
+        let sought = Family::ALL.to_vec();
+        let wanted = Hunt { seed: 41, cycles, episode: known::EPISODE, arsenal: Arsenal::ALL, sought };
+        let (find, tally) = hunt(&mut *kernel, &ground, &wanted);
+        assert_eq!(tally.discarded, 0, "{name}");
+        let told = find.as_ref().map(|find| words::tell(&mut *kernel, &ground, find));
+        assert_eq!(told, None, "{name}");
+        assert!(tally.trains > 10, "{name}: no traffic: {tally:?}");
+    }
+}
+
 /// In ordinary running, without any weapon, trains run and nothing happens to them: the ground itself makes no accident.
 #[test]
 fn ordinary_running_is_safe() {

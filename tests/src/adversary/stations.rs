@@ -19,6 +19,15 @@ pub fn of(name: &str) -> Description {
     atc_layout::read(path).expect("the layouts of the project are sound")
 }
 
+/// The same as it comes of its railML file: with the defaults of the import, such as the speed of the line.
+///
+/// # Panics
+/// If there is none of this name.
+pub fn imported(name: &str) -> Description {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../layouts").join(format!("{name}.railml.xml"));
+    atc_layout::import::read_any(path).expect("the layouts of the project are sound").description
+}
+
 /// A random station: a single line with 2 to 4 tracks between two ladders of points, of random lengths and speeds.
 ///
 /// # Panics

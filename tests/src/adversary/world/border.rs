@@ -11,6 +11,13 @@ fn margin(ground: &Ground) -> i64 {
     5_000 + ground.fastest * ground.life * ground.cycle_ms / 1000
 }
 
+/// The highest speed at which the neighbour lets a train over the border: from it the train stops, once its telegram is as old as it may
+/// be, within the outermost circuit, which is all that the neighbour has found clear (`neighbour-turns-alike`).
+fn over_border(ground: &Ground, outermost: usize) -> i64 {
+    let aged = ground.brake * ground.life * ground.cycle_ms / 1000;
+    (aged * aged + 2 * ground.brake * ground.lengths[outermost]).isqrt() - aged
+}
+
 impl World<'_> {
     pub(super) fn send(&mut self, line: usize, arrival: Arrival) {
         let it = &self.ground.lines[line];
@@ -19,6 +26,7 @@ impl World<'_> {
             let at = OUTSIDE_MM - NEIGHBOUR_SIGNAL_MM;
             // It passes the signal at a speed at which it can keep to a restriction behind the border.
             let slow = self.truth.restricted[it.outermost].0.min(self.ground.fastest);
+            let slow = slow.min(over_border(self.ground, it.outermost));
             let room = (NEIGHBOUR_SIGNAL_MM - margin(self.ground) - 5_000).max(0);
             let most = (slow * slow + 2 * self.ground.brake * room).isqrt();
             let speed = arrival.speed.min(most).min(self.ground.fastest);
