@@ -9,7 +9,7 @@ pub use html::{escape, html};
 use crate::model::Model;
 use row::Row;
 
-/// The heads of the columns of [`csv`].
+/// The heads of the columns of [`csv()`].
 pub const COLUMNS: [&str; 20] = [
     "route",
     "signal",
