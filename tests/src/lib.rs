@@ -1,7 +1,6 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
 //! is checked against, sessions and drawn charts, trains under way, and the input of the benchmarks.
 
-pub mod adversary;
 pub mod approach;
 pub mod block_chart;
 pub mod busy_station;

@@ -13,9 +13,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the programs are compiled from.
-const FOLDERS: [&str; 10] =
-    ["arithmetic", "evidence", "kernel", "layout", "layouts", "models", "oracle", "proofs", "tests", "waveform"];
+/// What the programs read besides the members of the workspace.
+const DATA: &str = "layouts";
 
 /// The names of the mutants to select, with commas.
 const VARIABLE: &str = "ATC_OLD_RULES";
@@ -26,7 +25,7 @@ const VERSION: &str = "9";
 /// A program that is compiled from the copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// The adversary of `tests/`.
+    /// The adversary of `tests/adversary/`.
     Adversary,
     /// The command of `models/`.
     Models,
@@ -40,9 +39,9 @@ impl Program {
     /// Its name in the checkout, the manifest that has it, and its source.
     const fn is(self) -> [&'static str; 3] {
         match self {
-            Self::Adversary => ["adversary", "tests/Cargo.toml", "tests/src/bin/adversary.rs"],
+            Self::Adversary => ["adversary", "tests/adversary/Cargo.toml", "tests/adversary/src/bin/adversary.rs"],
             Self::Models => ["models", "models/Cargo.toml", "models/src/main.rs"],
-            Self::Importers => ["importers", "tests/Cargo.toml", "tests/src/bin/importers.rs"],
+            Self::Importers => ["importers", "tests/adversary/Cargo.toml", "tests/adversary/src/bin/importers.rs"],
         }
     }
 
@@ -74,7 +73,7 @@ impl Programs {
         Ok(command)
     }
 
-    /// The faults that the adversary knows, each with the mutants that put the old rule back: `tests/src/adversary/known.rs`.
+    /// The faults that the adversary knows, each with the mutants that put the old rule back: `tests/adversary/src/known.rs`.
     ///
     /// # Errors
     /// The adversary does not say them, or one of the mutants is not in it.
@@ -166,7 +165,7 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
     let _lock = only_run(&folder)?;
     let sources = folder.join("sources");
     let mut files = BTreeMap::new();
-    for name in FOLDERS {
+    for name in folders(root)? {
         read(root, &PathBuf::from(name), &mut files)?;
     }
     for name in ["Cargo.toml", "Cargo.lock"] {
@@ -180,10 +179,8 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
     // As the tests are built, as in ci/evidence: what others have written is there already.
     cargo.args(["--workspace", "--test", "contracts"]);
     cargo.arg("--target-dir").arg(root.join("target"));
-    // Nothing here runs the waveforms, and the hunts are short: optimised, these take a minute to compile.
-    for (package, level) in [("atc-waveform", 0), ("atc-tests", 1)] {
-        cargo.arg("--config").arg(format!("profile.{profile}.package.{package}.opt-level={level}"));
-    }
+    // The hunts are short: optimised, it takes longer to compile than it runs.
+    cargo.arg("--config").arg(format!("profile.{profile}.package.atc-adversary.opt-level=1"));
     for program in programs {
         cargo.args(["--bin", &program.name()]);
     }
@@ -199,6 +196,18 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
 
 /// Files by their path from the checkout.
 pub(crate) type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+/// What the programs are compiled from: the workspace's folders, and the data.
+fn folders(root: &Path) -> Result<BTreeSet<String>, String> {
+    let path = root.join("Cargo.toml");
+    let manifest: toml::Table =
+        toml::from_str(&text(&path)?).map_err(|error| format!("{}: {error}", path.display()))?;
+    let members =
+        manifest.get("workspace").and_then(|workspace| workspace.get("members")).and_then(|all| all.as_array());
+    let members = members.ok_or_else(|| format!("{}: no members of the workspace", path.display()))?;
+    let folder = |member: &str| member.split('/').next().unwrap_or_default().to_owned();
+    Ok(members.iter().filter_map(|member| member.as_str()).map(folder).chain([DATA.to_owned()]).collect())
+}
 
 fn text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))

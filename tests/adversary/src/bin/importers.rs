@@ -4,7 +4,7 @@
 //! holds and excludes need not be there then. Positions may be held that the right importer does not: flank protection looks farther
 //! where a signal is left out. A circuit may be shorter: trains stop earlier then.
 
-#[path = "../../../layout/tests/support/mod.rs"]
+#[path = "../../../../layout/tests/support/mod.rs"]
 mod support;
 
 use std::process::ExitCode;
@@ -16,15 +16,15 @@ use support::random::{Shape, station};
 
 /// Files that are there.
 const FILES: [(&str, &str); 9] = [
-    ("passing-loop", include_str!("../../../layouts/passing-loop.railml.xml")),
-    ("junction", include_str!("../../../layouts/junction.railml.xml")),
-    ("terminus", include_str!("../../../layouts/terminus.railml.xml")),
-    ("station-30", include_str!("../../../layouts/station-30.railml.xml")),
-    ("chainage", include_str!("../../../layout/tests/files/chainage.railml.xml")),
-    ("head-on", include_str!("../../../layout/tests/files/head-on.railml")),
-    ("short2", include_str!("../../../layout/tests/files/short2.railml")),
-    ("dupbuf", include_str!("../../../layout/tests/files/dupbuf.railml")),
-    ("slip", include_str!("../../../layout/tests/files/slip.railml")),
+    ("passing-loop", include_str!("../../../../layouts/passing-loop.railml.xml")),
+    ("junction", include_str!("../../../../layouts/junction.railml.xml")),
+    ("terminus", include_str!("../../../../layouts/terminus.railml.xml")),
+    ("station-30", include_str!("../../../../layouts/station-30.railml.xml")),
+    ("chainage", include_str!("../../../../layout/tests/files/chainage.railml.xml")),
+    ("head-on", include_str!("../../../../layout/tests/files/head-on.railml")),
+    ("short2", include_str!("../../../../layout/tests/files/short2.railml")),
+    ("dupbuf", include_str!("../../../../layout/tests/files/dupbuf.railml")),
+    ("slip", include_str!("../../../../layout/tests/files/slip.railml")),
 ];
 
 /// A file with changes: its name, the file, and what stands for what.

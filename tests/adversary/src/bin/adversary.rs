@@ -1,4 +1,4 @@
-//! Hunts for accidents: see `atc_tests::adversary`.
+//! Hunts for accidents: see `atc_adversary`.
 //!
 //! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N] [--small yes|no]`
 //! `adversary --known`
@@ -10,10 +10,10 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use atc_tests::adversary::arsenal::Arsenal;
-use atc_tests::adversary::hunt::{Hunt, hunt, minimise};
-use atc_tests::adversary::judge::Family;
-use atc_tests::adversary::{device, known, stations, words};
+use atc_adversary::arsenal::Arsenal;
+use atc_adversary::hunt::{Hunt, hunt, minimise};
+use atc_adversary::judge::Family;
+use atc_adversary::{device, known, stations, words};
 
 struct Wanted {
     layout: Option<String>,

@@ -15,7 +15,7 @@ pub const NAMES: [&str; 4] = ["passing-loop", "junction", "terminus", "station-3
 /// # Panics
 /// If there is none of this name.
 pub fn of(name: &str) -> Description {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../layouts").join(format!("{name}.toml"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../layouts").join(format!("{name}.toml"));
     atc_layout::read(path).expect("the layouts of the project are sound")
 }
 
@@ -24,7 +24,7 @@ pub fn of(name: &str) -> Description {
 /// # Panics
 /// If there is none of this name.
 pub fn imported(name: &str) -> Description {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../layouts").join(format!("{name}.railml.xml"));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../layouts").join(format!("{name}.railml.xml"));
     atc_layout::import::read_any(path).expect("the layouts of the project are sound").description
 }
 

@@ -3,11 +3,11 @@
 //! The kernel of November 22 had every fault of `known::KNOWN`. That each is found with the old rule put back, and not without, is a test of
 //! the prover (`proofs/runner/tests/old_rules.rs`), which knows how to put it back. More cycles: the program `adversary` of this crate.
 
-use atc_tests::adversary::arsenal::Arsenal;
-use atc_tests::adversary::conditions::broken;
-use atc_tests::adversary::hunt::{Hunt, hunt, minimise, replay};
-use atc_tests::adversary::judge::Family;
-use atc_tests::adversary::{device, known, stations, words};
+use atc_adversary::arsenal::Arsenal;
+use atc_adversary::conditions::broken;
+use atc_adversary::hunt::{Hunt, hunt, minimise, replay};
+use atc_adversary::judge::Family;
+use atc_adversary::{device, known, stations, words};
 
 /// With the weapons that were once enough for each known fault nothing is found in the kernel as it is.
 #[test]
