@@ -475,6 +475,11 @@ impl<'a> Reader<'a, '_> {
         let mut required = Vec::new();
         for id in references(node, "additionalRelation") {
             let relation = self.xml.id(id).ok_or_else(|| format!("its relation {id} does not exist"))?;
+            let asks = relation.children().filter(|child| child.tag_name().name().starts_with("required"));
+            for other in asks.filter(|child| child.tag_name().name() != "requiredSwitchPosition") {
+                let what = other.tag_name().name();
+                return Err(format!("the {} asks for a {what}, which no layout holds", Xml::at(relation)));
+            }
             required.extend(children(relation, "requiredSwitchPosition"));
         }
         self.positions_of(required)
