@@ -124,8 +124,8 @@ fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed(
     let missing = table.split_inclusive("\r\n").filter(|row| !row.starts_with("W-1,")).collect::<String>();
     assert_eq!(table::rendo::compare(&model, &missing).unwrap().len(), 1);
     // What the table does not have it does not confirm.
-    let names: String =
-        table.split_inclusive("\r\n").map(|row| format!("{}\r\n", row.split(',').next().unwrap())).collect();
+    let names: Vec<&str> = table.split_terminator("\r\n").map(|row| row.split(',').next().unwrap()).collect();
+    let names = names.join("\r\n");
     let found = table::rendo::compare(&model, &names).unwrap();
     assert_eq!(found.len(), 6, "{found:?}");
     assert_eq!(found[0].to_string(), "the table: column 信号機: there | not there");
