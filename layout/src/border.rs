@@ -138,6 +138,12 @@ fn line((one, number): (Station<'_>, usize), (two, number_there): (Station<'_>, 
         );
         wrong(what, format!("give both segments a speed_kmh of {}", speed.min(its_speed)));
     }
+    let (table, its_table) = (model.values.speeds_kmh, other_model.values.speeds_kmh);
+    if table != its_table {
+        let what =
+            format!("the codes mean {table:?} km/h in {here} and {its_table:?} in {there}, and a train has one table");
+        wrong(what, "give both files the same speeds_kmh".to_owned());
+    }
     if segment.outward == other.outward {
         let what = format!("the line leads out to the same side in {here} and in {there}");
         wrong(what, "change left and right over in one of the files: a telegram says left or right".to_owned());

@@ -106,10 +106,13 @@ fn cells(model: &Model) -> Cells {
     all
 }
 
-fn station(values: &Values) -> [(&'static str, String); 9] {
+fn station(values: &Values) -> [(&'static str, String); 12] {
     [
         ("cycle ms", values.cycle_ms.to_string()),
         ("clear ms", (u32::from(values.clear) * values.cycle_ms).to_string()),
+        ("shunt loss ms", (u32::from(values.loss) * values.cycle_ms).to_string()),
+        ("residual ms", values.ms(values.residual).to_string()),
+        ("standstill ms", values.ms(values.standstill).to_string()),
         ("settle ms", (u32::from(values.settle) * values.cycle_ms).to_string()),
         ("start ms", values.ms(values.start).to_string()),
         ("turn ms", values.ms(values.turn).to_string()),

@@ -7,6 +7,7 @@ use atc_kernel::interlocking::{
     SegmentSet,
 };
 
+use crate::check;
 use crate::form::{self, Position};
 use crate::model::{self, Model, Note};
 use crate::problem::{Errors, Problem, Source};
@@ -116,6 +117,7 @@ pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
     let plan = Box::new(plan::<R, P, N, S>(&model));
     let names = Names::of(station, &model);
     plan.check(&mut |broken| problems.push(of_plan(broken, &plan, &names, &model)));
+    check::lines(station, &model, &mut problems);
     if !problems.is_empty() {
         return Err(Errors::new(source, problems));
     }

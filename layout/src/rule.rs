@@ -63,6 +63,8 @@ pub enum Rule {
     TelegramLives,
     /// The circuits of a segment follow each other outward from the station.
     SegmentOrder,
+    /// Where the line goes on unseen, a segment of plain line ends: trains come from there.
+    LineWithoutSegment,
     /// The entry of a route is plain track: no point lies in it, and no other track crosses it.
     EntryNotPlain,
     /// A route comes from the segment whose first circuit is its entry, and goes out to the one whose first circuit follows its end.
@@ -130,6 +132,7 @@ impl Rule {
             }
             Self::TelegramLives => "the ground counts on telegrams for as long as trains act on them",
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
+            Self::LineWithoutSegment => "where the line goes on unseen, the outermost circuit of a segment ends",
             Self::EntryNotPlain => "no point and no crossing lies in the entry of a route",
             Self::SegmentElsewhere => {
                 "a route comes from the segment that it enters from, and goes out to the one that follows its end"

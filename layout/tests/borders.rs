@@ -85,6 +85,20 @@ fn views_that_overlap() {
     refused(&one, &long, "E2 is 300 m long here and 400 m in Neighbour");
 }
 
+/// A code means the same speed on both sides: a train has one table.
+#[test]
+fn codes_agree() {
+    let one = station("One", "", "line = \"b\"");
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    assert!(held(&one, &other).is_ok());
+    other.station.braking.speeds_kmh.value = vec![25, 45, 55, 65, 75, 90];
+    refused(
+        &one,
+        &other,
+        "the codes mean [0, 15, 25, 45, 55, 65, 75, 90] km/h in One and [0, 25, 45, 55, 65, 75, 90, 0]",
+    );
+}
+
 /// Both call the way to the other one right: no telegram could be told from one for the other direction.
 #[test]
 fn left_and_right_agree() {

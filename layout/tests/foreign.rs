@@ -12,6 +12,7 @@ const SHORT: &str = include_str!("files/short2.railml");
 const DUPLICATE: &str = include_str!("files/dupbuf.railml");
 const SCISSORS: &str = include_str!("files/scissors.toml");
 const SLIP: &str = include_str!("files/slip.railml");
+const CROSSING: &str = include_str!("files/crossing.railml");
 
 fn imported(text: &str) -> Imported {
     railml("station.railml", text).unwrap_or_else(|errors| panic!("{errors}"))
@@ -225,6 +226,76 @@ fn where_the_file_leaves_several_ways_none_is_taken() {
     assert_eq!(circuits(&model(&imported(&text)), "A-C"), ["A", "X", "C"]);
     let text = changed(&text, "<routeExit><refersTo ref=\"dC\"/></routeExit>", "<hasTvdSection ref=\"tX\"/>");
     left_out(&text, "ac", "more than one way");
+}
+
+/// The third attack: a crossing that is no switch was passed over in silence, and both routes over it showed proceed.
+#[test]
+fn tracks_that_cross_are_one_circuit_or_the_file_is_refused() {
+    for (id, section) in [("ra", "tXA"), ("rc", "tXC")] {
+        left_out(CROSSING, id, &format!("its section has no place (tvdSection {section}"));
+    }
+    // Where one section has all four borders the routes exclude each other.
+    let both = "<hasDemarcatingTraindetector ref=\"dA\"/><hasDemarcatingTraindetector ref=\"dA2\"/>";
+    let four = format!("{both}<hasDemarcatingTraindetector ref=\"dC\"/><hasDemarcatingTraindetector ref=\"dC2\"/>");
+    let text = changed(CROSSING, both, &four).replace("<hasTvdSection ref=\"tXC\"/>", "<hasTvdSection ref=\"tXA\"/>");
+    let model = model(&imported(&text));
+    assert_eq!(circuits(&model, "A-out"), ["A", "XA"]);
+    assert_eq!(circuits(&model, "C-out"), ["C", "XA"]);
+    let unsaid = changed(CROSSING, "<straightBranch netRelationRef=\"nc\"/>", "");
+    let errors = railml("station.railml", &unsaid).expect_err("which tracks cross is not known");
+    assert!(errors.to_string().contains("does not name the two net relations of the tracks that cross"), "{errors}");
+}
+
+/// The file without its crossing, and with this in its place.
+fn with_in_place_of_the_crossing(text: &str) -> String {
+    let (before, rest) = CROSSING.split_once("<crossings>").expect("there is a crossing");
+    let (_, after) = rest.split_once("</crossings>").expect("it ends");
+    format!("{before}{text}{after}")
+}
+
+/// The third attack: a limit that could not be read, or whose place was not known, was none.
+#[test]
+fn a_limit_is_never_raised() {
+    let speed = |limit: &str, place: &str| {
+        with_in_place_of_the_crossing(&format!(
+            "<speeds><speedSection id=\"sp\" maxSpeed=\"{limit}\">{place}</speedSection></speeds>"
+        ))
+    };
+    let on = "<linearLocation><associatedNetElement netElementRef=\"a\"/></linearLocation>";
+    for limit in ["25 km/h", "25,0", "0", ""] {
+        left_out(&speed(limit, on), "ra", "its limit of 0 km/h is below the lowest code");
+    }
+    for place in [on, "<spotLocation netElementRef=\"a\" pos=\"960\"/>", &on.replace("\"a\"", "\"macro\"")] {
+        let model = model(&imported(&speed("25", place)));
+        assert_eq!(model.values.speeds_kmh[usize::from(route(&model, "A-out").speed.0)], 25, "{place}");
+    }
+}
+
+/// The third attack: what a relation asks for besides points was passed over.
+#[test]
+fn a_route_that_asks_for_what_no_layout_holds_is_left_out() {
+    let relation = "</routes><routeRelations><routeRelation id=\"rel\"><requiredDerailerPosition/></routeRelation></routeRelations>";
+    let text = changed(&with_in_place_of_the_crossing(""), "</routes>", relation);
+    let text =
+        changed(&text, "<assetName name=\"A-out\"/>", "<assetName name=\"A-out\"/><additionalRelation ref=\"rel\"/>");
+    left_out(&text, "ra", "asks for a requiredDerailerPosition, which no layout holds");
+    assert_eq!(model(&imported(&text)).routes.len(), 1);
+}
+
+/// The third attack: distances were those of level track.
+#[test]
+fn the_steepest_gradient_of_a_file_holds_everywhere() {
+    let curve = |gradient: &str| {
+        with_in_place_of_the_crossing(&format!(
+            "<geometryCurves><gradientCurve id=\"g\" gradient=\"{gradient}\"/></geometryCurves>"
+        ))
+    };
+    let level = model(&imported(&with_in_place_of_the_crossing("")));
+    let steep = model(&imported(&curve("-24.5")));
+    assert!(steep.values.braking[7] > level.values.braking[7], "{:?}", steep.values.braking);
+    for unread in ["steep", "-500"] {
+        assert!(railml("station.railml", &curve(unread)).unwrap_err().to_string().contains("‰ are possible"));
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod support;
 
+use atc_layout::At;
 use atc_layout::Rule;
 use atc_layout::form::Position;
 use atc_layout::import::{Imported, Report, osrd, railml};
@@ -304,6 +305,24 @@ fn an_osrd_infrastructure_becomes_a_layout() {
     assert!(
         osrd("x.json", &OSRD.replace("\"track\": \"d\"", "\"track\": \"e\"")).unwrap_err().breaks(Rule::NoSuchName)
     );
+}
+
+/// The third attack: both were passed over, and the report said that the file says nothing of them.
+#[test]
+fn limits_and_gradients_of_an_osrd_infrastructure_hold_everywhere() {
+    let limits = "\"speed_sections\": [{\"speed_limit\": 16.666666666666668}, {\"speed_limit_by_tag\": {\"freight\": 15.2}}, {}], \"switches\"";
+    let text = OSRD.replacen("\"switches\"", limits, 1);
+    let imported = osrd("loop.json", &text).unwrap_or_else(|errors| panic!("{errors}"));
+    let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+    // 54.7 km/h: the highest code that is not over it.
+    assert!(
+        compiled.model.routes.iter().all(|route| compiled.model.values.speeds_kmh[usize::from(route.speed.0)] == 45)
+    );
+    assert!(!imported.report.to_string().contains("[speed]: the defaults"), "{}", imported.report);
+    let slopes = "\"length\": 400.0, \"slopes\": [{\"gradient\": 3.0}, {\"gradient\": -10.5}]";
+    let text = OSRD.replacen("\"length\": 400.0", slopes, 1);
+    let imported = osrd("loop.json", &text).unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(imported.description.station.circuits.iter().all(|circuit| circuit.gradient == Some(At::derived(11))));
 }
 
 proptest! {

@@ -386,6 +386,20 @@ fn segment_order() {
     breaks(&text, Rule::SegmentOrder, "segment East: a train cannot run through E2 to E3 without turning back");
 }
 
+/// The third attack: a block was confirmed on the circuit where the neighbour's train came in, and a train sent against it.
+#[test]
+fn line_without_segment() {
+    let start = LOOP.find("[[segment]]\nname = \"West\"").unwrap();
+    let end = LOOP.find("[[segment]]\nname = \"East\"").unwrap();
+    let text = format!("{}{}", &LOOP[..start], &LOOP[end..]);
+    let text = change(&text, "name = \"1-W\"", "entry", "short_overlap = \"the line goes on\"\nentry");
+    let text = change(&text, "name = \"2-W\"", "entry", "short_overlap = \"the line goes on\"\nentry");
+    breaks(&text, Rule::LineWithoutSegment, "the line goes on at a, and W2 there is not the outermost circuit");
+    // A segment that does not reach so far.
+    let text = change(LOOP, "name = \"West\"", "[\"W1\", \"W2\"]", "[\"W1\"]");
+    breaks(&text, Rule::LineWithoutSegment, "the line goes on at a, and W2 there is not the outermost circuit");
+}
+
 #[test]
 fn beyond_apart() {
     breaks(

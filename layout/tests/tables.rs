@@ -123,5 +123,16 @@ fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed(
     assert_eq!(told, ["route W-1: 進路区分鎖錠: P1T 1T | 1T P1T", "route W-1: 接近鎖錠: W1 60秒 | W1 90秒"]);
     let missing = table.split_inclusive("\r\n").filter(|row| !row.starts_with("W-1,")).collect::<String>();
     assert_eq!(table::rendo::compare(&model, &missing).unwrap().len(), 1);
+    // What the table does not have it does not confirm.
+    let names: Vec<&str> = table.split_terminator("\r\n").map(|row| row.split(',').next().unwrap()).collect();
+    let names = names.join("\r\n");
+    let found = table::rendo::compare(&model, &names).unwrap();
+    assert_eq!(found.len(), 6, "{found:?}");
+    assert_eq!(found[0].to_string(), "the table: column 信号機: there | not there");
+    let short = table.replace(row, "W-1,W");
+    let found = table::rendo::compare(&model, &short).unwrap();
+    assert_eq!(found.len(), 5, "{found:?}");
+    assert_eq!(found[1].to_string(), "route W-1: 信号制御: P1T 1T P2T | nothing");
+    assert!(table::rendo::compare(&model, &table.replace(row, &format!("{row},x"))).unwrap_err().contains("8 cells"));
     assert!(table::rendo::compare(&model, "進路,色\r\n").unwrap_err().contains("the column \"色\" is not known"));
 }

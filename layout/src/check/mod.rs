@@ -4,6 +4,8 @@ mod ends;
 mod routes;
 mod station;
 
+pub use station::lines;
+
 use crate::form::Station;
 use crate::model::Model;
 use crate::problem::Problem;

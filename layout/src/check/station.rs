@@ -7,8 +7,8 @@ use atc_kernel::time::Ticks;
 
 use crate::derive::way::{Step, through};
 use crate::form::{EndKind, Station};
-use crate::graph::Passed;
-use crate::model::{Model, Positions, Route};
+use crate::graph::{Kind, Passed};
+use crate::model::{Model, Positions, Route, Segment};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -60,6 +60,30 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     segments(station, model, problems);
     fouling(station, model, problems);
     twice(model, problems);
+}
+
+/// A train may come in wherever the line goes on unseen. Only on a segment does the kernel ask whose trains may be under way before it sends
+/// one, or confirms a block.
+pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
+    for (number, joint) in model.graph.joints.iter().enumerate() {
+        let last = model.graph.circuits_at(number).next();
+        let is_end = |segment: &Segment| last.is_some() && segment.circuits.last().copied() == last;
+        // What a point leads off to is held against its flank protection.
+        let is_leg = |track: &usize| matches!(model.graph.tracks[*track].kind, Kind::Point(_));
+        if joint.end != Some(EndKind::Line) || joint.tracks.iter().any(is_leg) || model.segments.iter().any(is_end) {
+            continue;
+        }
+        let given = station.ends.iter().find(|end| end.joint.value == joint.name);
+        let span = given.map_or(&joint.span, |end| &end.joint.span);
+        let circuit = last.map_or("", |last| model.circuits.get(last).map_or("", |circuit| circuit.name.as_str()));
+        let what = format!(
+            "the line goes on at {}, and {circuit} there is not the outermost circuit of a segment: a train may come in while a block is confirmed \
+             or another train is sent",
+            joint.name
+        );
+        let right = "list the circuits from the station to there in a [[segment]], or declare the end as a buffer";
+        problems.push(Problem::new(Rule::LineWithoutSegment, span, what, right));
+    }
 }
 
 /// Two routes of one signal and one path are one route with two names, or the way of one of them is not the one that was meant.

@@ -9,6 +9,8 @@ use crate::form::{EndKind, Position, Segment, Station};
 use crate::graph::Graph;
 use crate::model::Guard;
 use crate::names::Names;
+use crate::problem::Problem;
+use crate::rule::Rule;
 
 /// Fills in segments of plain line, missing flank protection and missing overlaps.
 pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
@@ -55,6 +57,29 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
     }
 }
 
+/// The steepest gradient of a file, in thousandths, holds for all circuits, either way.
+///
+/// # Errors
+/// It is steeper than any railway.
+pub fn steepest(
+    gradients: impl Iterator<Item = f64>,
+    station: &mut Station,
+    report: &mut Report,
+) -> Result<(), Problem> {
+    let Some(steepest) = gradients.map(|gradient| gradient.abs().ceil()).max_by(f64::total_cmp) else { return Ok(()) };
+    if !(0.0..=127.0).contains(&steepest) {
+        let what = format!("the file has a gradient of {steepest} ‰");
+        return Err(Problem::new(Rule::Range, &(0..0), what, "up to 127 ‰ are possible"));
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "it is in the range of the type")]
+    let steepest = steepest as i8;
+    report.taken.push(format!("{steepest} ‰ everywhere: the steepest gradient of the file"));
+    for circuit in &mut station.circuits {
+        circuit.gradient = Some(At::derived(steepest));
+    }
+    Ok(())
+}
+
 /// Makes a segment of the circuits between an open end of the line and the first circuit that a route holds.
 fn segments(station: &mut Station, report: &mut Report) {
     let mut ignored = Vec::new();
@@ -70,7 +95,7 @@ fn segments(station: &mut Station, report: &mut Report) {
         let mut circuits = Vec::new();
         let mut at = (joint, graph.circuits_at(joint).next());
         while let (from, Some(circuit)) = at {
-            if used.contains(&circuit) || circuits.len() >= 16 {
+            if used.contains(&circuit) {
                 break;
             }
             used.insert(circuit);
@@ -79,7 +104,8 @@ fn segments(station: &mut Station, report: &mut Report) {
             let [way] = ways.as_slice() else { break };
             at = (way.exit, graph.across(way.exit, circuit));
         }
-        if circuits.is_empty() || station.segments.len() >= 8 {
+        // However many there are: a line that is left out is one on which nobody asks whose trains are under way.
+        if circuits.is_empty() {
             continue;
         }
         let listed: Vec<At<String>> =

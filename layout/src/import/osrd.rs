@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Deserialize;
 
-use super::complete::complete;
+use super::complete::{complete, steepest};
 use super::network::{Cut, Divided, Edge, EdgeEnd, Network, Side, Switch};
 use super::search::{Sought, search};
 use super::{Imported, Report};
@@ -27,12 +27,30 @@ struct Infra {
     buffer_stops: Vec<Spot>,
     #[serde(default)]
     routes: Vec<Run>,
+    #[serde(default)]
+    speed_sections: Vec<SpeedSection>,
+}
+
+/// Limits in metres a second, for all trains and for some.
+#[derive(Deserialize)]
+struct SpeedSection {
+    #[serde(default)]
+    speed_limit: Option<f64>,
+    #[serde(default)]
+    speed_limit_by_tag: BTreeMap<String, f64>,
+}
+
+#[derive(Deserialize)]
+struct Slope {
+    gradient: f64,
 }
 
 #[derive(Deserialize)]
 struct TrackSection {
     id: String,
     length: f64,
+    #[serde(default)]
+    slopes: Vec<Slope>,
 }
 
 #[derive(Deserialize)]
@@ -116,13 +134,31 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     ));
     report.taken.push(format!("{} switches as {} points", infra.switches.len(), station.points.len()));
     routes(&infra, &network, &divided, &mut station, &mut report);
-    for name in ["times", "braking", "speed", "longest_train_m"] {
+    let slowest = slowest(&infra, &mut station, &mut report);
+    let slopes = infra.track_sections.iter().flat_map(|section| &section.slopes).map(|slope| slope.gradient);
+    steepest(slopes, &mut station, &mut report).map_err(|problem| Errors::new(source, vec![problem]))?;
+    for name in ["times", "braking", "speed", "longest_train_m"].iter().filter(|name| !slowest || **name != "speed") {
         report.defaulted.push(format!("[{name}]: the defaults of the layout form; the file says nothing of them"));
     }
     complete(&mut station, "OSRD", &mut report);
     // The text is no layout file, so places in it would lead astray; names do.
     let description = Description { station, source: Source { name: source.name.clone(), text: String::new() } };
     Ok(Imported { description, report })
+}
+
+/// The lowest limit of the file holds for all tracks. Whether it has one that says anything.
+fn slowest(infra: &Infra, station: &mut Station, report: &mut Report) -> bool {
+    let given =
+        infra.speed_sections.iter().flat_map(|one| one.speed_limit.iter().chain(one.speed_limit_by_tag.values()));
+    // Whole km/h, rounded down; what is lost in the digits of metres a second is far less than a thousandth.
+    let kmh = given.map(|metres| (metres * 3.6 + 0.001).floor()).min_by(f64::total_cmp);
+    let highest = station.braking.speeds_kmh.iter().max().copied().unwrap_or(0);
+    let Some(kmh) = kmh.filter(|kmh| *kmh < f64::from(highest)) else { return kmh.is_some() };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of the type")]
+    let kmh = kmh.clamp(0.0, f64::from(highest)) as u16;
+    report.taken.push(format!("{kmh} km/h everywhere: the lowest limit of the file"));
+    station.speed.line_kmh = Some(At::derived(kmh));
+    true
 }
 
 fn name_of(source: &Source) -> String {

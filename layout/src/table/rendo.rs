@@ -93,7 +93,12 @@ pub fn compare(model: &Model, text: &str) -> Result<Vec<Differing>, String> {
             found.push(Differing { about, column: whole, one: None, other: there(true) });
             continue;
         };
-        for (head, cell) in heads.iter().zip(&row) {
+        if row.len() > heads.len() {
+            return Err(format!("the route {name} has {} cells, and the table has {} columns", row.len(), heads.len()));
+        }
+        for (at, head) in heads.iter().enumerate() {
+            // A cell that is not there is an empty one.
+            let cell = row.get(at).unwrap_or_default();
             let place = COLUMNS.iter().position(|column| *column == head.trim()).unwrap_or_default();
             let in_order = [3, 5].contains(&place);
             if !same(&own[place], cell, in_order) {
@@ -101,6 +106,10 @@ pub fn compare(model: &Model, text: &str) -> Result<Vec<Differing>, String> {
                 found.push(Differing { about: about.clone(), column: head.trim().to_owned(), one, other });
             }
         }
+    }
+    for column in COLUMNS.iter().filter(|column| !heads.iter().any(|head| head.trim() == **column)) {
+        let (about, column) = ("the table".to_owned(), format!("column {column}"));
+        found.push(Differing { about, column, one: Some("there".to_owned()), other: None });
     }
     for name in mine.keys().filter(|name| !seen.contains(*name)) {
         let (about, column) = (format!("route {name}"), "the whole of it".to_owned());

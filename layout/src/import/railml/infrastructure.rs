@@ -69,6 +69,11 @@ impl Places<'_> {
         Some((edge, *self.lengths.get(edge)?))
     }
 
+    /// Every edge and its length in metres.
+    pub fn edges(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.lengths.iter().copied().enumerate()
+    }
+
     /// Metres from the begin of the net element that `at` names, by a linear coordinate.
     pub fn by_chainage(&self, at: Node<'_, '_>, linear: Node<'_, '_>, length: f64) -> Option<f64> {
         let measures = self.measures.get(at.attribute("netElementRef")?)?;
@@ -132,6 +137,7 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     let places = Places { edges, lengths, measures };
     tracks.limits = Limits::read(xml, &places, report);
     switches(xml, &relations, &mut tracks, report);
+    crossings(xml, &relations, &mut tracks, problems);
     links(&relations, &mut tracks, report);
     let Places { edges, measures, .. } = places;
     let mut lost = Vec::new();
@@ -359,6 +365,34 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
             .push(format!("normal position of {}: left (no preferredPosition or continueCourse)", assumed.join(", ")));
     }
     report.taken.push(format!("{} switches", tracks.network.switches.len()));
+}
+
+/// Crossings that are no switches: two tracks that cross. A file that does not say which cannot be read: their routes would not exclude each other.
+fn crossings(xml: &Xml<'_>, relations: &Relations<'_>, tracks: &mut Tracks<'_>, problems: &mut Vec<Problem>) {
+    for node in xml.all("crossing") {
+        let tracks_of = |node: Node<'_, '_>| -> Vec<(EdgeEnd, EdgeEnd)> {
+            let named = node.children().filter_map(|child| child.attribute("netRelationRef"));
+            named.filter_map(|id| relations.get(id).copied()).collect()
+        };
+        let network = &mut tracks.network;
+        let [one, other] = tracks_of(node)[..] else {
+            let what =
+                format!("the {} does not name the two net relations of the tracks that cross there", Xml::at(node));
+            let range = node.range().start..node.range().start + 1;
+            let right = "name both as straightBranch, or describe it as a switchIS of the type simpleCrossing";
+            problems.push(Problem::new(Rule::Form, &range, what, right));
+            continue;
+        };
+        let number = |network: &mut Network, way: (EdgeEnd, EdgeEnd)| {
+            let same = |link: &(EdgeEnd, EdgeEnd)| *link == way || *link == (way.1, way.0);
+            network.links.iter().position(same).unwrap_or_else(|| {
+                network.links.push(way);
+                network.links.len() - 1
+            })
+        };
+        let pair = [number(network, one), number(network, other)];
+        network.crossings.push(pair);
+    }
 }
 
 /// A crossing with slips becomes two points toe to toe; one without, two tracks that cross.

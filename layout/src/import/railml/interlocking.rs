@@ -475,6 +475,11 @@ impl<'a> Reader<'a, '_> {
         let mut required = Vec::new();
         for id in references(node, "additionalRelation") {
             let relation = self.xml.id(id).ok_or_else(|| format!("its relation {id} does not exist"))?;
+            let mut asks = relation.children().map(|child| child.tag_name().name());
+            let is_other = |what: &&str| what.starts_with("required") && *what != "requiredSwitchPosition";
+            if let Some(what) = asks.find(is_other) {
+                return Err(format!("the {} asks for a {what}, which no layout holds", Xml::at(relation)));
+            }
             required.extend(children(relation, "requiredSwitchPosition"));
         }
         self.positions_of(required)

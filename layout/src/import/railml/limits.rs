@@ -23,18 +23,25 @@ impl Limits {
     pub fn read(xml: &Xml<'_>, places: &Places<'_>, report: &mut Report) -> Self {
         let mut stretches = Vec::new();
         for section in xml.all("speedSection") {
-            let Some(limit) = section.attribute("maxSpeed").and_then(kmh) else {
+            // What cannot be read may be anything: no route is taken over it. What cannot be placed may be anywhere.
+            let limit = section.attribute("maxSpeed").and_then(kmh).unwrap_or_else(|| {
                 report.lacking.push(format!("a speed of the {}: its maxSpeed is no number above 0", Xml::at(section)));
-                continue;
+                0
+            });
+            let mut anywhere = |why: &str| {
+                report
+                    .lacking
+                    .push(format!("a place for the {}: {why}; {limit} km/h hold everywhere", Xml::at(section)));
+                places.edges().map(|(edge, length)| (edge, 0.0, length, limit)).collect::<Vec<_>>()
             };
             let locations = ["linearLocation", "areaLocation"].into_iter().flat_map(|name| children(section, name));
             let on: Vec<_> = locations.flat_map(|at| children(at, "associatedNetElement")).collect();
             if on.is_empty() {
-                report.lacking.push(format!("a place for the {}: it names no net element", Xml::at(section)));
+                stretches.extend(anywhere("it names no net element"));
             }
             for at in on {
                 let Some((edge, length)) = at.attribute("netElementRef").and_then(|id| places.edge(id)) else {
-                    report.lacking.push(format!("a place for the {}: its net element is not known", Xml::at(section)));
+                    stretches.extend(anywhere("its net element is not known"));
                     continue;
                 };
                 let place = |share: &str, metres: &str, linear: &str| {
@@ -54,7 +61,7 @@ impl Limits {
     /// Enters the limits of a branch: it may be run over either way, so the lower one holds.
     pub fn branch(&mut self, point: usize, position: Position, branch: roxmltree::Node<'_, '_>) {
         let given = ["branchingSpeed", "joiningSpeed"].into_iter().filter_map(|name| branch.attribute(name));
-        if let Some(limit) = given.filter_map(kmh).min() {
+        if let Some(limit) = given.map(|text| kmh(text).unwrap_or(0)).min() {
             let lowest = self.branches.entry((point, position)).or_insert(limit);
             *lowest = limit.min(*lowest);
         }

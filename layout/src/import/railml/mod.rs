@@ -8,7 +8,7 @@ mod xml;
 
 use std::collections::BTreeSet;
 
-use super::complete::complete;
+use super::complete::{complete, steepest};
 use super::{Imported, Report};
 use crate::at::At;
 use crate::derive;
@@ -62,6 +62,10 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     let mut station = Station { name: xml.title().unwrap_or_else(|| "railML".to_owned()), ..Station::default() };
     let placed = circuits::write(&xml, tracks, &mut station, &mut report);
     clear_time(&xml, &mut station, &mut report);
+    let gradients = document.descendants().filter_map(|node| Some((node, node.attribute("gradient")?)));
+    // One that cannot be read may be any.
+    let gradients = gradients.map(|(_, text)| text.trim().parse::<f64>().unwrap_or(f64::INFINITY));
+    steepest(gradients, &mut station, &mut report).map_err(|problem| Errors::new(source, vec![problem]))?;
     interlocking::write(&xml, &placed, &mut station, &mut report);
     for name in ["times", "braking", "speed", "longest_train_m"] {
         report.defaulted.push(format!("[{name}]: the defaults of the layout form; the file says nothing of them"));
