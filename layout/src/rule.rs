@@ -35,7 +35,7 @@ pub enum Rule {
     PositionContradicts,
     /// A point's detectors cover the circuit it lies in and those in which it is fouled.
     DetectorsIncomplete,
-    /// The approach covers the braking distance and what the train runs while its telegram ages.
+    /// The approach covers the braking distance, and what the train runs while its telegram ages and while it is not reported.
     ApproachTooShort,
     /// Circuits of an approach lead to the signal.
     ApproachApart,
@@ -112,7 +112,9 @@ impl Rule {
             Self::DetectorsIncomplete => {
                 "a point's detectors cover the circuit it lies in and those in which it is fouled"
             }
-            Self::ApproachTooShort => "the approach covers the braking distance and the age of a telegram",
+            Self::ApproachTooShort => {
+                "the approach covers the braking distance, the age of a telegram and the longest loss of shunt"
+            }
             Self::ApproachApart => "the circuits of an approach lead to the signal",
             Self::DriveUnderThrow => "the drive time is not shorter than the stroke of the points",
             Self::ReleaseUnderThrow => {

@@ -112,7 +112,7 @@ fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed(
     let model = description(LOOP).model().unwrap();
     let table = table::rendo::csv(&model);
     let row = table.split("\r\n").find(|row| row.starts_with("W-1,")).unwrap();
-    assert_eq!(row, "W-1,W,P1 P2 E-1 1-W,P1T 1T P2T,P1 P2,P1T 1T,W1 60秒");
+    assert_eq!(row, "W-1,W,P1 P2 E-1 1-W,P1T 1T P2T,P1 P2,P1T 1T,W2 W1 60秒");
     assert_eq!(table::rendo::compare(&model, &table), Ok(vec![]));
     // Full-width brackets, another order of entries that have none.
     let other = table.replace("(P1)", "（P1）").replace("P1 P2 E-1 1-W", "E-1、1-W　P2 P1");

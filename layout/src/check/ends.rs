@@ -79,8 +79,10 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
         };
         let what = format!("route {}: the approach reaches {covered} m back from the signal, where {why}", route.name);
         let right = format!(
-            "{} m are needed: the braking distance, and what a train runs in {} ms",
-            route.approach_m, model.values.telegram_age_ms
+            "{} m are needed: the braking distance, and what a train runs in {} ms and in the {} ms in which it may not be reported",
+            route.approach_m,
+            model.values.telegram_age_ms,
+            u32::from(model.values.loss) * model.values.cycle_ms
         );
         problems.push(Problem::new(Rule::ApproachTooShort, span, what, right));
     }

@@ -221,13 +221,16 @@ fn aged(speed_kmh: u16, age_ms: u32) -> u16 {
     u16::try_from(metres).unwrap_or(u16::MAX)
 }
 
-/// How far back an approach must reach for trains of `speed_kmh`: braking distance and what is run while a telegram ages.
+/// How far back an approach must reach for trains of `speed_kmh`: braking distance, and what is run while a telegram ages and while the train
+/// is not reported.
 pub fn approach_m(values: &Values, speed_kmh: u16) -> u32 {
     // The first code that is at least as fast: its distance is not shorter.
     let code = (1..MAX_CODES).find(|code| values.speeds_kmh[*code] >= speed_kmh);
     let longest = || values.braking.iter().map(|distance| distance.0).filter(|metres| *metres < u16::MAX).max();
-    match code {
+    let reported = match code {
         Some(code) => u32::from(values.braking[code].0),
         None => u32::from(longest().unwrap_or(0)).saturating_add(u32::from(aged(speed_kmh, values.telegram_age_ms))),
-    }
+    };
+    let unreported_ms = u32::from(values.loss).saturating_mul(values.cycle_ms);
+    reported.saturating_add(u32::from(aged(speed_kmh, unreported_ms)))
 }
