@@ -117,10 +117,10 @@ fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed(
     // Full-width brackets, another order of entries that have none.
     let other = table.replace("(P1)", "（P1）").replace("P1 P2 E-1 1-W", "E-1、1-W　P2 P1");
     assert_eq!(table::rendo::compare(&model, &other), Ok(vec![]));
-    let wrong = table.replacen("P1T 1T,W1", "1T P1T,W1", 1).replacen("60秒", "90秒", 1);
+    let wrong = table.replacen("P1T 1T,W2 W1", "1T P1T,W2 W1", 1).replacen("60秒", "90秒", 1);
     let found = table::rendo::compare(&model, &wrong).unwrap();
     let told: Vec<String> = found.iter().map(ToString::to_string).collect();
-    assert_eq!(told, ["route W-1: 進路区分鎖錠: P1T 1T | 1T P1T", "route W-1: 接近鎖錠: W1 60秒 | W1 90秒"]);
+    assert_eq!(told, ["route W-1: 進路区分鎖錠: P1T 1T | 1T P1T", "route W-1: 接近鎖錠: W2 W1 60秒 | W2 W1 90秒"]);
     let missing = table.split_inclusive("\r\n").filter(|row| !row.starts_with("W-1,")).collect::<String>();
     assert_eq!(table::rendo::compare(&model, &missing).unwrap().len(), 1);
     // What the table does not have it does not confirm.
