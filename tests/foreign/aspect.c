@@ -1,5 +1,5 @@
 // Aspect acceptance, written from spec/aspect.md alone, without the kernel. It speaks protocol 1 of oracle/README.md.
-// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 aspect.c -o aspect; with -DFAULT=1 to 12 it has a fault on purpose.
+// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 aspect.c -o aspect; with --fault 1 to 12 it has a fault on purpose.
 #include "json.h"
 
 enum { MOST_ASPECTS = 16, MOST_CYCLES = 60000 };
@@ -150,7 +150,7 @@ static bool step(const struct json *input) {
     return true;
 }
 
-int main(void) {
+int main(int count, char **arguments) {
     static const struct machine machine = {"aspect-acceptance", start, step};
-    return json_serve(&machine);
+    return json_serve(&machine, count, arguments);
 }

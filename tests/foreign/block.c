@@ -1,5 +1,5 @@
 // Block counting, written from spec/block.md alone, without the kernel. It speaks protocol 1 of oracle/README.md.
-// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 block.c -o block; with -DFAULT=1 to 14 it has a fault on purpose.
+// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 block.c -o block; with --fault 1 to 14 it has a fault on purpose.
 #include "json.h"
 
 enum { MOST_SECTIONS = 16, MOST_CYCLES = 60000 };
@@ -117,7 +117,7 @@ static bool step(const struct json *input) {
     return true;
 }
 
-int main(void) {
+int main(int count, char **arguments) {
     static const struct machine machine = {"block-count", start, step};
-    return json_serve(&machine);
+    return json_serve(&machine, count, arguments);
 }

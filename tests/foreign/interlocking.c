@@ -1,6 +1,6 @@
 // Interlocking and ATC, written from spec/interlocking.md alone, without the kernel. It speaks protocol 1 of
 // oracle/README.md, for a plan in the kernel's own terms, which it takes as one that keeps the rules of LAY-1.
-// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with -DFAULT=1 to 30 it has a fault on purpose.
+// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with --fault 1 to 36 it has a fault on purpose.
 #include "json.h"
 
 enum { CIRCUITS = 64, POINTS = 32, ROUTES = 64, PLACES = 16, SEGMENTS = 8, CODES = 8, NAME = 64 };
@@ -261,7 +261,7 @@ static bool line_blocked(int s) { return (plan.segment[s].circuits & now.blocked
 
 static bool out_allowed(int r) {
     int s = plan.route[r].to;
-    return s < 0 || (!line_blocked(s) && (consent & one(s)) && now.travel[s] == AWAY);
+    return s < 0 || (!line_blocked(s) && ((consent & one(s)) || FAULTY(15)) && now.travel[s] == AWAY);
 }
 
 // ---- routes follow their trains -----------------------------------------------------------------------------------
@@ -281,7 +281,7 @@ static void follow_rear(int r, bool set_still) {
     }
     if (state->rear == APPROACH && outer_clear) state->rear = ENTRY;
     if (state->rear == ENTRY && entry_clear) state->rear = SWEPT;
-    if (state->since >= route->release) state->rear = SWEPT;
+    if (state->since >= route->release || FAULTY(3)) state->rear = SWEPT;
 }
 
 static void follow(int r) {
@@ -304,30 +304,31 @@ static void follow(int r) {
         follow_rear(r, false);
         if (state->head < route->length) {
             int before = state->head > 0 ? route->place[state->head - 1] : route->entry;
-            if ((now.occupied & one(route->place[state->head])) && (now.occupied & one(before))) state->head++;
+            if ((now.occupied & one(route->place[state->head])) && ((now.occupied & one(before)) || FAULTY(6))) state->head++;
         }
         int last = route->length - 1;
         bool last_occupied = last >= 0 && (now.occupied & one(route->place[last]));
         bool overlap_clear = !(route->overlap & now.occupied);
         // One place.
         if (state->tail < state->head && state->rear == SWEPT && !(now.occupied & one(route->place[state->tail]))) {
-            bool further = state->tail == last ? (now.occupied & route->beyond) != 0 : state->tail + 1 < state->head;
+            bool further = state->tail == last ? (now.occupied & route->beyond) != 0 || FAULTY(5) : state->tail + 1 < state->head || FAULTY(4);
             if (further) state->tail++;
+            if (FAULTY(36) && further && state->tail < state->head && !(now.occupied & one(route->place[state->tail]))) state->tail++;
         }
         // The overlap.
-        if (state->tail == last && state->head == route->length && state->rear == SWEPT && last_occupied) {
+        if (state->tail == last && state->head == route->length && (state->rear == SWEPT || FAULTY(32)) && last_occupied) {
             if (state->stood < route->stay) state->stood++;
         } else {
             state->stood = 0;
         }
-        bool stands = state->tail == last && state->stood >= route->stay;
+        bool stands = state->tail == last && state->stood + (FAULTY(31) ? 1 : 0) >= route->stay;
         if (state->overlap && overlap_clear && (state->tail == route->length || stands)) state->overlap = false;
         if (state->tail == route->length && !state->overlap) {
             idle(r);
             return;
         }
     }
-    if (state->phase == RELEASING && state->since >= route->release && !((held_path(r) | held_overlap(r)) & now.occupied)) idle(r);
+    if (state->phase == RELEASING && state->since >= route->release && (!((held_path(r) | held_overlap(r)) & now.occupied) || FAULTY(9))) idle(r);
 }
 
 // ---- requests -----------------------------------------------------------------------------------------------------
@@ -336,7 +337,7 @@ static const char *set_route(int r) {
     const struct route *route = &plan.route[r];
     struct route_state *state = &now.route[r];
     if (state->phase == RELEASING && state->head > 0) {
-        if (((held_path(r) | held_overlap(r)) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
+        if ((held_path(r) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
         state->phase = IN_USE;
         return NULL;
     }
@@ -344,14 +345,15 @@ static const char *set_route(int r) {
     for (int other = 0; other < plan.routes; other++) {
         if (now.route[other].phase == IDLE) continue;
         set path = held_path(other), overlap = held_overlap(other);
-        if (route->conflicts & one(other)) return "conflict";
+        if ((route->conflicts & one(other)) && !FAULTY(11)) return "conflict";
         if ((route->path & path) || ((route->path & overlap) && !(plan.route[other].continuing & one(r)))) return "path-held";
-        if ((route->overlap & overlap) || ((route->overlap & path) && !(route->continuing & one(other)))) return "overlap-held";
+        if (((route->overlap & overlap) && !FAULTY(12)) || ((route->overlap & path) && !(route->continuing & one(other)))) return "overlap-held";
         for (int p = 0; p < plan.points; p++) {
             enum position want = wanted_point(r, p), held = held_point(other, p);
-            if (want && held && want != held) return "point-locked";
+            if (want && held && want != held && !FAULTY(13)) return "point-locked";
         }
     }
+    if (FAULTY(14) && ((route->path | route->overlap) & now.blocked)) return "blocked";
     if ((route->path | route->overlap) & now.occupied) return "occupied";
     if (((route->path | route->overlap) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
     if (route->from >= 0 && now.travel[route->from] != TOWARD) return "direction";
@@ -370,13 +372,13 @@ static const char *withdraw(int r) {
     const struct route *route = &plan.route[r];
     struct route_state *state = &now.route[r];
     if (state->phase == IDLE) return "not-held";
-    bool path_clear = !(route->path & now.occupied), approach_clear = !state->proved || !(route->approach & now.occupied);
+    bool path_clear = !(route->path & now.occupied), approach_clear = !state->proved || !(route->approach & now.occupied) || FAULTY(8);
     if (state->phase < IN_USE && path_clear && approach_clear) {
         idle(r);
         return NULL;
     }
+    if (!FAULTY(7) || state->phase != RELEASING) state->since = 0;
     state->phase = RELEASING;
-    state->since = 0;
     return NULL;
 }
 
@@ -398,7 +400,7 @@ static const char *turn_toward(int s) {
     }
     if (line_blocked(s)) return "blocked";
     if (now.travel[s] == TOWARD) return NULL;
-    if (out || !in || (!clear && now.before[s] != TOWARD)) return "direction";
+    if (out || !in || (!clear && now.before[s] != TOWARD && !FAULTY(18))) return "direction";
     now.travel[s] = now.before[s] = TOWARD;
     return NULL;
 }
@@ -409,8 +411,8 @@ static const char *turn_away(int s) {
     for (int r = 0; r < plan.routes; r++)
         if (plan.route[r].from == s && now.route[r].phase != IDLE && now.route[r].tail == 0) return "direction";
     if (!clear) return "direction";
-    if (!(consent & one(s)) || now.turned[s] < plan.turn || line_blocked(s)) {
-        now.travel[s] = NEITHER;
+    if (!(consent & one(s)) || now.turned[s] < plan.turn - (FAULTY(16) ? 1 : 0) || line_blocked(s)) {
+        if (!FAULTY(17)) now.travel[s] = NEITHER;
         return "waiting";
     }
     now.travel[s] = now.before[s] = AWAY;
@@ -465,14 +467,14 @@ static void find_grants(void) {
         const struct route_state *state = &now.route[r];
         if (proceed[r]) {
             grant(route->entry, route->place[route->length - 1], route->to, route->right, route->path);
-        } else if (state->phase == IN_USE) {
+        } else if (state->phase == IN_USE || (state->phase == RELEASING && FAULTY(10))) {
             int front = -1;
             for (int i = state->tail; i < route->length; i++)
                 if (now.occupied & one(route->place[i])) front = i;
-            if (front < 0 || front >= state->head || !points_sound(r, front)) continue;
+            if (front < 0 || front >= state->head || !(points_sound(r, front) || FAULTY(24))) continue;
             set circuits = 0;
             int end = front;
-            while (end + 1 < route->length && place_sound(r, end + 1)) circuits |= one(route->place[++end]);
+            while (end + 1 < route->length && (place_sound(r, end + 1) || FAULTY(29))) circuits |= one(route->place[++end]);
             grant(route->place[front], route->place[end], end == route->length - 1 ? route->to : -1, route->right, circuits);
             // The train in the throat.
             if (front == route->length - 1 && route->to >= 0 && outward(route->to)) grant_line(route->to, route->place[front], 0, 1);
@@ -490,7 +492,7 @@ static const struct grant *grant_from(int circuit) {
     const struct grant *found = NULL;
     for (int i = 0; i < granted; i++) {
         if (grants[i].from != circuit) continue;
-        if (found) return NULL; // ATC-2: it is not known whose train stands there
+        if (found && !FAULTY(23)) return NULL; // ATC-2: it is not known whose train stands there
         found = &grants[i];
     }
     return found;
@@ -500,7 +502,7 @@ static int circuit_limit(int circuit) {
     int limit = now.limit[circuit], over = plan.codes - 1, held = plan.codes - 1;
     bool is_held = false;
     for (int r = 0; r < plan.routes; r++) {
-        if (plan.route[r].path & one(circuit) && plan.route[r].code < over) over = plan.route[r].code;
+        if (plan.route[r].path & one(circuit) && plan.route[r].code < over && !FAULTY(26)) over = plan.route[r].code;
         if (held_path(r) & one(circuit)) {
             is_held = true;
             if (plan.route[r].code < held) held = plan.route[r].code;
@@ -558,11 +560,11 @@ static void telegram(bool *first, int circuit, bool all) {
     set circuits = 0;
     const struct grant *next = now.occupied & one(circuit) ? grant_from(circuit) : NULL;
     bool right = next && next->right;
-    for (int i = 0; i < 4 && next && next->right == right; i++) {
+    for (int i = 0; i < (FAULTY(28) ? 3 : 4) && next && next->right == right; i++) {
         circuits |= next->circuits;
         at = next->end;
         struct grant line = {0};
-        int to = next->to;
+        int to = FAULTY(30) ? -1 : next->to;
         next = grant_from(at);
         if (to >= 0 && plan.segment[to].throat == at && outward(to)) {
             int before = granted;
@@ -580,8 +582,8 @@ static void telegram(bool *first, int circuit, bool all) {
         }
     }
     if (circuits) {
-        int64_t distance = 0;
-        set under = body(circuit);
+        int64_t distance = FAULTY(27) ? plan.metres[circuit] : 0;
+        set under = FAULTY(25) ? 0 : body(circuit);
         for (int c = 0; c < plan.circuits; c++)
             if (circuits & one(c)) distance += plan.metres[c];
         for (int i = 0; i < plan.codes; i++)
@@ -623,7 +625,7 @@ static bool read_orders(const struct json *value, struct orders *orders) {
         orders->restrict_ |= one(at);
     }
     for (int i = 0; i < plan.codes; i++)
-        if (plan.speed[i] <= all) orders->code = i;
+        if (plan.speed[i] <= all) orders->code = FAULTY(34) && i + 1 < plan.codes ? i + 1 : i;
     return true;
 }
 
@@ -669,21 +671,21 @@ static bool step(const struct json *input) {
     for (int c = 0; c < plan.circuits; c++) {
         if (reported & one(c)) now.seen_clear[c] = 0;
         else if (now.seen_clear[c] < plan.clear) now.seen_clear[c]++;
-        if (now.seen_clear[c] >= plan.clear) now.occupied &= ~one(c);
+        if (now.seen_clear[c] >= plan.clear - (FAULTY(1) ? 1 : 0)) now.occupied &= ~one(c);
         else now.occupied |= one(c);
     }
     for (int p = 0; p < plan.points; p++) {
         if (!detected[p] || detected[p] != now.stands[p]) now.stood[p] = 0;
         else if (now.stood[p] < 255) now.stood[p]++;
         now.stands[p] = detected[p];
-        settled[p] = now.stood[p] >= plan.settle ? detected[p] : NOWHERE;
+        settled[p] = now.stood[p] >= plan.settle || FAULTY(2) ? detected[p] : NOWHERE;
     }
-    bool starting = now.cycles < plan.start;
+    bool starting = now.cycles < plan.start - (FAULTY(35) ? 1 : 0);
     if (starting) now.cycles++;
 
     // Orders: a block and a restriction are always carried out.
     now.blocked = (now.blocked & ~orders.unblock) | orders.block;
-    now.confirmed &= now.blocked;
+    if (!FAULTY(20)) now.confirmed &= now.blocked;
     for (int c = 0; c < plan.circuits; c++) {
         if (orders.lift & one(c)) now.limit[c] = plan.codes - 1;
         if (orders.restrict_ & one(c)) now.limit[c] = orders.code;
@@ -715,7 +717,7 @@ static bool step(const struct json *input) {
             if (now.route[r].phase == PROVISIONAL && held_point(r, p)) want = held_point(r, p);
             if (now.route[r].phase > PROVISIONAL && held_point(r, p)) locked = true;
         }
-        now.drives[p] = want && want != detected[p] && !locked && !(plan.detectors[p] & now.occupied) ? want : NOWHERE;
+        now.drives[p] = want && want != detected[p] && !locked && (!(plan.detectors[p] & now.occupied) || FAULTY(21)) ? want : NOWHERE;
         if (now.drives[p]) now.stood[p] = 0;
     }
 
@@ -726,9 +728,9 @@ static bool step(const struct json *input) {
         if (all_points_sound(r) && clear_and_unblocked(r) && out_allowed(r)) {
             state->phase = SET;
             state->proved = true;
-            state->rear = APPROACH;
+            state->rear = plan.route[r].cab ? ENTRY : APPROACH;
             follow_rear(r, true);
-        } else if (++state->driving >= plan.route[r].drive) {
+        } else if (++state->driving >= plan.route[r].drive + (FAULTY(22) ? 1 : 0)) {
             state->phase = FAILED;
         }
     }
@@ -741,7 +743,7 @@ static bool step(const struct json *input) {
         bool safe = true;
         for (int s = 0; s < plan.segments; s++) {
             if (!(plan.segment[s].circuits & one(c))) continue;
-            if ((line_and_throat(s) & now.occupied) || now.travel[s] == TOWARD || now.turned[s] < plan.turn) safe = false;
+            if (((FAULTY(19) ? plan.segment[s].circuits : line_and_throat(s)) & now.occupied) || now.travel[s] == TOWARD || now.turned[s] < plan.turn) safe = false;
             for (int r = 0; r < plan.routes; r++)
                 if (plan.route[r].to == s && now.route[r].phase != IDLE) safe = false;
         }
@@ -773,7 +775,7 @@ static bool step(const struct json *input) {
         }
     set silent = 0;
     for (int s = 0; s < plan.segments; s++)
-        for (int i = plan.segment[s].length - plan.segment[s].shared; i < plan.segment[s].length && now.travel[s] != TOWARD; i++)
+        for (int i = plan.segment[s].length - plan.segment[s].shared; i < plan.segment[s].length && (now.travel[s] != TOWARD || FAULTY(33)); i++)
             if (i >= 0) silent |= one(plan.segment[s].circuit[i]);
     printf("},\"telegrams\":{");
     first = true;
@@ -801,7 +803,7 @@ static bool step(const struct json *input) {
     return true;
 }
 
-int main(void) {
+int main(int count, char **arguments) {
     static const struct machine machine = {"interlocking", start, step};
-    return json_serve(&machine);
+    return json_serve(&machine, count, arguments);
 }

@@ -7,13 +7,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-// The fault that is seeded on purpose: 0 is none. `-DFAULT=3` seeds the third.
+// The fault that is seeded on purpose: 0 is none. `--fault 3` or `-DFAULT=3` seeds the third.
 #ifndef FAULT
 #define FAULT 0
 #endif
-#define FAULTY(n) (FAULT == (n))
+static int seeded = FAULT;
+#define FAULTY(n) (seeded == (n))
 
 enum kind { J_NULL, J_FALSE, J_TRUE, J_NUMBER, J_STRING, J_ARRAY, J_OBJECT };
 
@@ -306,7 +308,13 @@ struct machine {
 };
 
 // Protocol 1: one reply to each line.
-static inline int json_serve(const struct machine *machine) {
+static inline int json_serve(const struct machine *machine, int count, char **arguments) {
+    if (count == 3 && strcmp(arguments[1], "--fault") == 0) {
+        seeded = atoi(arguments[2]);
+    } else if (count != 1) {
+        fprintf(stderr, "usage: %s [--fault NUMBER]\n", arguments[0]);
+        return 2;
+    }
     static const char *const start_fields[] = {"protocol", "machine", "config", NULL};
     static const char *const none[] = {NULL};
     struct json *line;

@@ -7,13 +7,20 @@ SYNC = "0111111111111110"
 FRAME = 106
 
 
+def one_byte(rest):
+    for _ in range(8):
+        rest = (rest << 1 ^ 0x1021) & 0xFFFF if rest & 0x8000 else rest << 1
+    return rest
+
+
+REMAINDERS = [one_byte(byte << 8) for byte in range(256)]
+
+
 def check(data):
     """TEL-3: the remainder by x^16 + x^12 + x^5 + 1, from sixteen ones."""
     rest = 0xFFFF if FAULT != 1 else 0
     for byte in data:
-        rest ^= byte << 8
-        for _ in range(8):
-            rest = (rest << 1 ^ 0x1021) & 0xFFFF if rest & 0x8000 else rest << 1
+        rest = (rest << 8 & 0xFFFF) ^ REMAINDERS[rest >> 8 ^ byte]
     return rest
 
 
@@ -124,16 +131,19 @@ class Codec:
             found = decode(bits)
             return {"error": found} if isinstance(found, str) else {"telegram": found}
         found = []
-        for bit in bits:
-            if bit == ".":
+        for number, part in enumerate(bits.split(".")):
+            if number > 0:  # a bit time without a bit
                 self.heard = "" if FAULT != 11 else self.heard
-            else:
-                self.heard = (self.heard + bit)[-FRAME:]
-                if len(self.heard) == FRAME and self.heard.startswith(SYNC):
-                    telegram = decode(self.heard)
-                    if not isinstance(telegram, str):
-                        found.append({"last_bit": self.times, "telegram": telegram})
-            self.times += 1 if bit != "." or FAULT != 12 else 0
+                self.times += 1 if FAULT != 12 else 0
+            text = self.heard + part
+            at = text.find(SYNC)
+            while 0 <= at <= len(text) - FRAME:
+                telegram = decode(text[at : at + FRAME])
+                if not isinstance(telegram, str):
+                    found.append({"last_bit": self.times + at + FRAME - 1 - len(self.heard), "telegram": telegram})
+                at = text.find(SYNC, at + 1)
+            self.times += len(part)
+            self.heard = text[1 - FRAME :]
         return {"telegrams": found}
 
 

@@ -8,6 +8,10 @@ from decimal import Decimal
 FAULT = int(sys.argv[sys.argv.index("--fault") + 1]) if "--fault" in sys.argv else 0
 
 
+WRITER = json.JSONEncoder(separators=(",", ":"))
+READER = json.JSONDecoder(object_pairs_hook=lambda pairs: once(pairs), parse_float=Decimal, parse_constant=lambda word: constant(word))
+
+
 class Malformed(Exception):
     """What is asked for is not a request of this machine."""
 
@@ -62,7 +66,7 @@ def constant(word):
 def read(line):
     """The one value of a line."""
     try:
-        return json.loads(line, object_pairs_hook=once, parse_float=Decimal, parse_constant=constant)
+        return READER.decode(line.decode())
     except (ValueError, RecursionError) as error:
         raise Malformed("the line is no JSON") from error
 
@@ -103,5 +107,5 @@ def serve(name, start):
             reply = {"malformed": {"reason": str(error)}}
         except Rejected as error:
             reply = {"rejected": {"reason": str(error)}}
-        sys.stdout.write(json.dumps(reply, separators=(",", ":")) + "\n")
+        sys.stdout.write(WRITER.encode(reply) + "\n")
         sys.stdout.flush()
