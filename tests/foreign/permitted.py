@@ -8,6 +8,7 @@ from wire import FAULT, Malformed, Rejected, fields, number, whole
 
 SPEED = 65535  # tenths of km/h
 LENGTH = 2**32 - 1  # mm
+ANY = 2**63
 
 
 def pattern(brake, gradient, metres):
@@ -60,12 +61,14 @@ class Permitted:
         ms = {name: whole(config[name], 0, 2**32 - 1) for name in times}
         if not isinstance(config["speeds_km_h"], list):
             raise Malformed("speeds are a list")
-        self.speeds = [whole(speed, 0, SPEED, 10) for speed in config["speeds_km_h"]]
-        lowest = whole(config["lowest_limit_km_h"], 0, SPEED, 10)
+        self.speeds = [whole(speed, -ANY, ANY, 10) for speed in config["speeds_km_h"]]
+        lowest = whole(config["lowest_limit_km_h"], -ANY, ANY, 10)
         self.brake = whole(config["brake_mm_s2"], 0, 2**32 - 1)
-        self.margin = whole(config["margin_m"], 0, 65535)
-        self.worst = whole(config["worst_gradient_permille"], -128, 127)
+        self.margin = whole(config["margin_m"], 0, 2**32 - 1)
+        self.worst = whole(config["worst_gradient_permille"], -(2**31), 2**31 - 1)
         window, run = whole(config["window"], 0, 2**32 - 1), whole(config["run"], 0, 2**32 - 1)
+        if self.margin > 65535 or not -128 <= self.worst <= 127 or any(not 0 <= speed <= SPEED for speed in self.speeds):
+            raise Rejected("margin, gradient or a speed is out of range")
         if not 1 <= len(self.speeds) <= 16 or any(a >= b for a, b in zip(self.speeds, self.speeds[1:])):
             raise Rejected("the speeds are 1 to 16 that rise")
         if lowest not in self.speeds:
@@ -96,9 +99,9 @@ class Permitted:
             if target is not None:
                 target.age += 1
                 target.to_stop = max(0, target.to_stop - moved)
-                if target.age > self.life:
+                if target.age > self.life + (1 if FAULT == 6 else 0):
                     setattr(self, name, None)
-        self.subs = [[*entry[:3], entry[3] + 1] for entry in self.subs if entry[3] + 1 <= self.fixed_life]
+        self.subs = [[*entry[:3], entry[3] + 1] for entry in self.subs if entry[3] + 1 <= self.fixed_life or FAULT == 7]
 
     def pass_fix(self, fix, moved):
         """PER-10, in a cycle without a main telegram: the first distance measured since the last one counts."""
@@ -108,25 +111,25 @@ class Permitted:
             self.fix = fix
 
     def hear_main(self, main, moved):
-        before = self.main.last
         used, since = self.main.hear(main["section"], main["counter"])
-        fix = self.fix if before is not None and before[0] == main["section"] else None
-        self.fix = None
+        fix = self.fix  # of this section: a telegram that is used has one of its section before it
+        if used or FAULT != 8:
+            self.fix = None
         if not used:
             return
         beyond = (main["beyond_exit_m"] or 0) * 1000
-        to_stop = max(0, min(LENGTH, beyond + (fix or 0)) - moved)
+        to_stop = max(0, min(LENGTH, beyond + (fix or 0)) - (moved if FAULT != 9 else 0))
         old = self.target
-        if old is not None and old.section != main["section"]:
+        if old is not None and old.section != main["section"] and FAULT != 11:
             self.behind = old
         elif old is not None and old.beyond == beyond:
-            to_stop = max(to_stop, old.to_stop)
+            to_stop = max(to_stop, old.to_stop) if FAULT != 10 else to_stop
         self.target = Target(main["section"], main["speed_rank"], beyond, to_stop, since)
 
     def hear_sub(self, sub):
         used, since = self.sub.hear(sub["section"], sub["counter"])
         if used:
-            limit = min(sub["curve_rank"], sub["restriction_rank"])
+            limit = min(sub["curve_rank"], sub["restriction_rank"]) if FAULT != 13 else sub["curve_rank"]
             self.subs = [[sub["section"], sub["gradient_permille"], limit, since]] + [
                 entry for entry in self.subs if entry[0] != sub["section"]
             ]
@@ -135,14 +138,14 @@ class Permitted:
     def by_target(self, target):
         """The speed by a target: rank, limits and pattern."""
         known = next((entry for entry in self.subs if entry[0] == target.section), None)
-        gradient = known[1] if known else self.worst
+        gradient = known[1] if known else self.worst if FAULT != 12 else 0
         if known:
             limit = self.speeds[known[2]]
         else:
             limit = self.speeds[self.lowest]
             if target is self.target and self.behind is not None:
                 limit = max(limit, self.by_target(self.behind))
-        metres = min(65535, max(0, target.to_stop // 1000 - self.margin))
+        metres = min(65535, max(0, target.to_stop // 1000 - (self.margin if FAULT != 14 else 0)))
         return min(self.speeds[target.rank], limit, pattern(self.brake, gradient, metres))
 
     def step(self, value):
@@ -163,6 +166,8 @@ class Permitted:
         self.pass_time(moved)
         self.line = line or self.line
         ranks = len(self.speeds)
+        if main is not None and FAULT == 18 and main["speed_rank"] >= ranks:
+            main["speed_rank"] = 0
         if main is not None and main["speed_rank"] < ranks:
             self.hear_main(main, moved)
         else:
@@ -170,16 +175,16 @@ class Permitted:
         if sub is not None and sub["curve_rank"] < ranks and sub["restriction_rank"] < ranks:
             self.hear_sub(sub)
 
-        fresh = self.target is not None and self.target.age <= self.fresh
+        fresh = self.target is not None and self.target.age <= self.fresh - (1 if FAULT == 15 else 0)
         digital = self.by_target(self.target) if self.target is not None else None
         if fresh and code is not None:
-            speed, basis = min(code, digital), "both"
+            speed, basis = (min if FAULT != 16 else max)(code, digital), "both"
         elif self.line == "analog":
             speed, basis = (code, "analog") if code is not None else (None, "nothing")
         elif fresh:
             speed, basis = digital, "pattern"
         elif code is None:
-            speed, basis = None, "nothing"
+            speed, basis = (None if FAULT != 17 else 0), "nothing"
         elif digital is not None:
             speed, basis = min(code, digital), "running-down"
         else:
