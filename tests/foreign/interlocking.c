@@ -316,7 +316,8 @@ static void follow(int r) {
             if (FAULTY(36) && further && state->tail < state->head && !(now.occupied & one(route->place[state->tail]))) state->tail++;
         }
         // The overlap.
-        if (state->tail == last && state->head == route->length && (state->rear == SWEPT || FAULTY(32)) && last_occupied) {
+        if (state->tail == last && state->head == route->length && (state->rear == SWEPT || FAULTY(32)) && last_occupied &&
+            (route->length > 1 || state->stood > 0 || !(now.occupied & one(route->entry)) || FAULTY(23))) {
             if (state->stood < route->stay) state->stood++;
         } else {
             state->stood = 0;
@@ -492,7 +493,7 @@ static const struct grant *grant_from(int circuit) {
     const struct grant *found = NULL;
     for (int i = 0; i < granted; i++) {
         if (grants[i].from != circuit) continue;
-        if (found && !FAULTY(23)) return NULL; // ATC-2: it is not known whose train stands there
+        if (found) return NULL; // ATC-2: it is not known whose train stands there
         found = &grants[i];
     }
     return found;

@@ -140,16 +140,15 @@ fn spoken(line: &str) -> Option<Value> {
 }
 
 /// The implementation agrees on every line, and with each of its faults it does not.
-pub fn holds(name: &str, faults: u32, requests: &[String], run: impl Fn() -> Command + Sync) {
-    let replies = expected(requests);
+pub fn holds(name: &str, faults: u32, requests: &[String], replies: &[String], run: impl Fn() -> Command + Sync) {
     let steps = requests.iter().filter(|line| line.starts_with(r#"{"step""#)).count();
     let (unfound, faithful) = thread::scope(|scope| {
-        let faithful = scope.spawn(|| difference(run(), requests, &replies));
+        let faithful = scope.spawn(|| difference(run(), requests, replies));
         let mut unfound = Vec::new();
         for fault in 1..=faults {
             let mut faulty = run();
             faulty.args(["--fault", &fault.to_string()]);
-            if difference(faulty, requests, &replies).is_none() {
+            if difference(faulty, requests, replies).is_none() {
                 unfound.push(fault);
             }
         }

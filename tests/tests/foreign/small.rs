@@ -71,7 +71,8 @@ pub fn aspect(seed: u64, steps: usize) -> Vec<String> {
             "interruption_ms": down(&mut draw, limit),
         });
         lines.push(start("aspect-acceptance", &config));
-        let limits = [operate, shortened, recovery, recovery + mask, limit, operate - shortened, recovery + mask - shortened];
+        let limits =
+            [operate, shortened, recovery, recovery + mask, limit, operate - shortened, recovery + mask - shortened];
         let (mut on, mut left) = (vec![false; speeds.len()], vec![0_i64; speeds.len()]);
         for _ in 0..1500 {
             for place in 0..speeds.len() {
@@ -115,7 +116,8 @@ pub fn block(seed: u64, steps: usize) -> Vec<String> {
         for _ in 0..1000 {
             if in_left <= 0 {
                 check_in = !check_in;
-                in_left = if check_in { draw.one(&[1, 1, 2, pass, pass + 1, pass + 2]) } else { draw.one(&[1, 2, 3, 5, 9]) };
+                in_left =
+                    if check_in { draw.one(&[1, 1, 2, pass, pass + 1, pass + 2]) } else { draw.one(&[1, 2, 3, 5, 9]) };
             }
             if out_left <= 0 {
                 check_out = !check_out;
@@ -136,14 +138,16 @@ pub fn block(seed: u64, steps: usize) -> Vec<String> {
             }
             if draw.chance(80) {
                 let heard = i64::try_from(present.len()).expect("few");
-                input["reset"] = if draw.chance(800) { heard } else { draw.one(&[0, 1, sections, most, most + 1, 255]) }.into();
+                input["reset"] =
+                    if draw.chance(800) { heard } else { draw.one(&[0, 1, sections, most, most + 1, 255]) }.into();
                 if draw.chance(700) {
                     (check_in, check_out) = (false, false);
                 }
             } else if draw.chance(20) {
                 input["reset"] = Value::Null;
             } else if draw.chance(1) {
-                input[draw.one(&["present", "reset", "ahead_hold_sections", "ahead_entered", "other"])] = nonsense(&mut draw);
+                input[draw.one(&["present", "reset", "ahead_hold_sections", "ahead_entered", "other"])] =
+                    nonsense(&mut draw);
             }
             input["check_in"] = check_in.into();
             input["check_out"] = check_out.into();
@@ -278,7 +282,8 @@ pub fn permitted(seed: u64, steps: usize) -> Vec<String> {
         lines.push(start("permitted-speed", &config));
         let (mut section, mut main, mut sub) = (1, draw.from(0, 255), draw.from(0, 255));
         let (mut code, mut beyond, mut rank) = (draw.one(&speed_list), json!(100), 0);
-        let (often, seldom, measured) = (draw.one(&[200, 500, 800]), draw.one(&[100, 300, 600]), draw.one(&[0, 100, 500]));
+        let (often, seldom, measured) =
+            (draw.one(&[200, 500, 800]), draw.one(&[100, 300, 600]), draw.one(&[0, 100, 500]));
         let fast = draw.one(&[0, 1000, 5000, 20000]);
         for _ in 0..400 {
             let moved = draw.from(0, fast);
@@ -292,10 +297,12 @@ pub fn permitted(seed: u64, steps: usize) -> Vec<String> {
             section = if draw.chance(50) { draw.from(1, 3) } else { section };
             code = if draw.chance(100) { draw.one(&speed_list) } else { code };
             if draw.chance(100) {
-                beyond = draw.one(&[Value::Null, json!(0), json!(50), json!(100), json!(300), json!(1000), json!(65535)]);
+                beyond =
+                    draw.one(&[Value::Null, json!(0), json!(50), json!(100), json!(300), json!(1000), json!(65535)]);
             }
             rank = if draw.chance(100) { draw.from(0, ranks.min(15)) } else { rank };
-            let advance = |draw: &mut Draw| if draw.chance(700) { 1 } else { draw.one(&[0, 1, window, window + 1, 2, 128, 255]) };
+            let advance =
+                |draw: &mut Draw| if draw.chance(700) { 1 } else { draw.one(&[0, 1, window, window + 1, 2, 128, 255]) };
             if draw.chance(often) {
                 main = (main + advance(&mut draw)) % 256;
                 let of = if draw.chance(970) { section } else { draw.from(1, 4) };
@@ -311,7 +318,8 @@ pub fn permitted(seed: u64, steps: usize) -> Vec<String> {
                 });
             }
             if draw.chance(measured) {
-                input["to_exit_m"] = draw.one(&[json!(0), json!(100), json!(500), json!(1234.567), json!(4_294_967.295)]);
+                input["to_exit_m"] =
+                    draw.one(&[json!(0), json!(100), json!(500), json!(1234.567), json!(4_294_967.295)]);
             }
             if draw.chance(1) {
                 input[draw.one(&["line", "moved_m", "main", "to_exit_m", "other"])] = nonsense(&mut draw);

@@ -18,6 +18,8 @@ struct Plan {
     routes: Vec<String>,
     /// The entry of each route.
     entries: Vec<String>,
+    /// The routes that continue each route, or the route itself.
+    onward: BTreeMap<String, Vec<String>>,
     /// From end to end.
     ways: Vec<Vec<String>>,
 }
@@ -53,7 +55,7 @@ impl Route<'_> {
             "name": self.name, "heading": self.heading, "entry": [self.approach[0]], "approach": self.approach,
             "path": path, "overlap": overlap, "beyond": [self.beyond], "continuing": self.continuing,
             "conflicts": self.conflicts, "from": self.from, "to": self.to, "cab_signalled": cab,
-            "drive_cycles": draw.from(1, 7), "release_cycles": draw.from(1, 8), "stay_cycles": draw.from(1, 5),
+            "drive_cycles": draw.from(1, 7), "release_cycles": draw.one(&[1, 2, 4, 8, 20]), "stay_cycles": draw.from(1, 5),
             "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]),
         })
     }
@@ -67,6 +69,8 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
     // The last point of the station, its circuit, and the tracks before it.
     let (last, throat, far) = if long { ("P4", "D", ["3", "4"]) } else { ("P2", "B", ["1", "2"]) };
     let mut routes: Vec<Route> = Vec::new();
+    // From the tracks to M in one route, or in two, the first of one place; the plan may have both.
+    let short = long && draw.chance(500);
     let middle = draw.one(&["1", "2"]);
     let middle_far = draw.one(&["3", "4"]);
     for track in ["1", "2"] {
@@ -93,10 +97,24 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
             overlap: ("", String::new()),
             beyond: "W1",
             continuing: vec![],
-            conflicts: vec![onward.clone()],
+            conflicts: if short { vec![onward.clone(), format!("{track}-B")] } else { vec![onward.clone()] },
             from: &[],
             to: &["West"],
         });
+        if short {
+            routes.push(Route {
+                name: format!("{track}-B"),
+                heading: "right",
+                approach: vec![circuit, "A", "W1"],
+                path: vec![("B", at("P2", track))],
+                overlap: ("M", String::new()),
+                beyond: "M",
+                continuing: vec!["B-M".to_owned()],
+                conflicts: vec![format!("{track}-W")],
+                from: &[],
+                to: &[],
+            });
+        }
         if long {
             routes.push(Route {
                 name: onward,
@@ -123,6 +141,20 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
                 to: &[],
             });
         }
+    }
+    if short {
+        routes.push(Route {
+            name: "B-M".to_owned(),
+            heading: "right",
+            approach: vec!["B", "1T", "2T"],
+            path: vec![("M", String::new())],
+            overlap: ("C", at("P3", middle_far)),
+            beyond: "C",
+            continuing: vec!["M-3".to_owned(), "M-4".to_owned()],
+            conflicts: vec![],
+            from: &[],
+            to: &[],
+        });
     }
     for track in far {
         let circuit = match track {
@@ -194,7 +226,8 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
         .iter()
         .map(|name| json!({"name": name, "length_m": draw.one(&[20, 60, 120, 300, 400, 800])}))
         .collect();
-    let detectors: Vec<Value> = points.iter().map(|(name, circuit)| json!({"name": name, "detectors": [circuit]})).collect();
+    let detectors: Vec<Value> =
+        points.iter().map(|(name, circuit)| json!({"name": name, "detectors": [circuit]})).collect();
     let json = json!({
         "station": "foreign", "cycle_ms": 1000, "clear_cycles": draw.from(1, 4),
         "settle_cycles": draw.one(&[0, 0, 1, 2, 3]), "start_cycles": draw.one(&[0, 0, 3, 7]), "turn_cycles": draw.from(1, 6),
@@ -229,6 +262,15 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
         points: points.iter().map(|(name, _)| (*name).to_owned()).collect(),
         segments: own(&["West", "East"]),
         entries: routes.iter().map(|route| route.approach[0].to_owned()).collect(),
+        onward: routes
+            .iter()
+            .map(|route| {
+                (
+                    route.name.clone(),
+                    if route.continuing.is_empty() { vec![route.name.clone()] } else { route.continuing.clone() },
+                )
+            })
+            .collect(),
         routes: routes.iter().map(|route| route.name.clone()).collect(),
         ways,
         json,
@@ -363,7 +405,8 @@ impl<'a> Walk<'a> {
         if draw.chance(200) {
             let speed = draw.one(&[0, 5, 25, 30, 90]);
             let circuits = [draw.one(all), draw.one(all)];
-            orders["restrict"] = circuits.into_iter().map(|circuit| (circuit, Value::from(speed))).collect::<Map<_, _>>().into();
+            orders["restrict"] =
+                circuits.into_iter().map(|circuit| (circuit, Value::from(speed))).collect::<Map<_, _>>().into();
         }
         if draw.chance(600) {
             orders["lift"] = if draw.chance(500) { all.clone() } else { one(draw) }.into();
@@ -375,14 +418,23 @@ impl<'a> Walk<'a> {
         let held = output["routes"].as_object().cloned().unwrap_or_default();
         let segment = draw.one(&self.plan.segments);
         if draw.chance(self.sense) {
-            let permitted = output["permits"].as_array().is_some_and(|names| names.iter().any(|name| *name == *segment));
+            let permitted =
+                output["permits"].as_array().is_some_and(|names| names.iter().any(|name| *name == *segment));
             if draw.chance(300) && (self.consent.contains(&segment) || !permitted) {
                 let to = if self.consent.contains(&segment) { "away" } else { "toward" };
                 return json!({"turn": segment, "to": to});
             }
-            if let Some((route, _)) = held.iter().find(|(_, phase)| *phase == "failed" || (*phase == "set" && draw.chance(50))) {
+            if let Some((route, _)) =
+                held.iter().find(|(_, phase)| *phase == "failed" || (*phase == "set" && draw.chance(50)))
+            {
                 if draw.chance(500) {
                     return json!({ "withdraw": route });
+                }
+            }
+            if let Some(route) = held.keys().nth(usize::try_from(draw.from(0, 2)).expect("small")) {
+                // What a train will need next.
+                if draw.chance(500) {
+                    return json!({ "set": draw.one(&self.plan.onward[route]) });
                 }
             }
             let routes = self.plan.routes.iter().zip(&self.plan.entries);
@@ -402,7 +454,11 @@ impl<'a> Walk<'a> {
             45..63 => json!({ "withdraw": draw.one(&self.plan.routes) }),
             63..75 => json!({"drive": draw.one(&self.plan.points), "to": draw.one(&["normal", "reverse"])}),
             75..99 => json!({"turn": segment, "to": draw.one(&["toward", "away"])}),
-            _ => draw.one(&[json!({"set": "none"}), json!({"turn": "West", "to": "left"}), json!({"set": "W-1", "to": 1})]),
+            _ => draw.one(&[
+                json!({"set": "none"}),
+                json!({"turn": "West", "to": "left"}),
+                json!({"set": "W-1", "to": 1}),
+            ]),
         }
     }
 
@@ -417,7 +473,8 @@ impl<'a> Walk<'a> {
             }
         }
         let detected = self.points.iter().map(|(name, point)| (name.clone(), Value::from(point.stands)));
-        let mut input = json!({"occupied": occupied, "detected": detected.collect::<Map<_, _>>(), "consent": self.consent});
+        let mut input =
+            json!({"occupied": occupied, "detected": detected.collect::<Map<_, _>>(), "consent": self.consent});
         if draw.chance(50) {
             input["all_telegrams"] = true.into();
         }
@@ -433,28 +490,33 @@ impl<'a> Walk<'a> {
     }
 }
 
-pub fn interlocking(seed: u64, steps: usize, oracle: Command) -> Vec<String> {
+/// The requests and the oracle's replies.
+pub fn interlocking(seed: u64, steps: usize, oracle: Command) -> (Vec<String>, Vec<String>) {
     let mut draw = Draw::new(seed);
     let mut asked = Asked::new(oracle);
     let mut lines = small::malformed();
+    let mut replies: Vec<String> = lines.iter().map(|line| asked.ask(line)).collect();
     while lines.len() < steps {
         let long = draw.chance(600);
         let plan = plan(&mut draw, long);
-        let start = json!({"start": {"protocol": 1, "machine": "interlocking", "config": {"plan": plan.json}}}).to_string();
+        let start =
+            json!({"start": {"protocol": 1, "machine": "interlocking", "config": {"plan": plan.json}}}).to_string();
         let reply = asked.ask(&start);
         assert!(reply.starts_with(r#"{"started""#), "{reply}\n{start}");
         lines.push(start);
+        replies.push(reply);
         let mut walk = Walk::new(&mut draw, &plan);
         let begins = draw.one(&[0, 0, 1, 8]);
         let mut output = json!({});
         for cycle in 0..500 {
             let step = json!({ "step": walk.step(&mut draw, cycle == begins, &output) }).to_string();
-            let reply: Value = serde_json::from_str(&asked.ask(&step)).expect("JSON");
-            output = reply["output"].clone();
+            let reply = asked.ask(&step);
+            output = serde_json::from_str::<Value>(&reply).expect("JSON")["output"].take();
             lines.push(step);
+            replies.push(reply);
         }
-        asked.ask(r#"{"stop":{}}"#);
+        replies.push(asked.ask(r#"{"stop":{}}"#));
         lines.push(r#"{"stop":{}}"#.to_owned());
     }
-    lines
+    (lines, replies)
 }
