@@ -65,7 +65,7 @@ impl Route<'_> {
 fn plan(draw: &mut Draw, long: bool) -> Plan {
     let position = |track: &str| if track == "1" || track == "3" { "normal" } else { "reverse" };
     let at = |point: &str, track: &str| format!("{point}={}", position(track));
-    let (overlaps, flank, cab) = (draw.chance(700), draw.chance(500), draw.from(0, 2));
+    let (overlaps, flank) = (draw.chance(700), draw.chance(500));
     // The last point of the station, its circuit, and the tracks before it.
     let (last, throat, far) = if long { ("P4", "D", ["3", "4"]) } else { ("P2", "B", ["1", "2"]) };
     let mut routes: Vec<Route> = Vec::new();
@@ -222,28 +222,10 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
         circuits.extend(["M", "C", "3T", "4T", "D"]);
         points.extend([("P3", "C"), ("P4", "D")]);
     }
-    let lengths: Vec<Value> = circuits
-        .iter()
-        .map(|name| json!({"name": name, "length_m": draw.one(&[20, 60, 120, 300, 400, 800])}))
-        .collect();
-    let detectors: Vec<Value> =
-        points.iter().map(|(name, circuit)| json!({"name": name, "detectors": [circuit]})).collect();
-    let json = json!({
-        "station": "foreign", "cycle_ms": 1000, "clear_cycles": draw.from(1, 4),
-        "settle_cycles": draw.one(&[0, 0, 1, 2, 3]), "start_cycles": draw.one(&[0, 0, 3, 7]), "turn_cycles": draw.from(1, 6),
-        "speeds_km_h": [0, 15, 25, 45, 55, 65, 75, 90],
-        "braking_m": draw.one(&[[0, 20, 50, 110, 160, 220, 290, 410], [0, 20, 50, 300, 700, 1200, 1700, 2500]]),
-        "circuits": lengths, "points": detectors,
-        "segments": [
-            {"name": "West", "circuits": ["W1", "W2"], "throat": ["A"], "outward": "left", "shared": draw.from(0, 2)},
-            {"name": "East", "circuits": ["E1", "E2"], "throat": [throat], "outward": "right", "shared": draw.from(0, 2)},
-        ],
-        "routes": routes.iter().map(|route| {
-            let own = draw.chance(500);
-            route.json(draw, cab == 1 || (cab == 2 && own), overlaps)
-        }).collect::<Vec<_>>(),
-    });
-    let own = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<String>>();
+    let segments = vec![
+        json!({"name": "West", "circuits": ["W1", "W2"], "throat": ["A"], "outward": "left", "shared": draw.from(0, 2)}),
+        json!({"name": "East", "circuits": ["E1", "E2"], "throat": [throat], "outward": "right", "shared": draw.from(0, 2)}),
+    ];
     let mut ways = Vec::new();
     for near in ["1T", "2T"] {
         for beyond in if long { vec!["3T", "4T"] } else { vec![""] } {
@@ -257,23 +239,87 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
             ways.push(own(&way));
         }
     }
+    whole(draw, (&circuits, &points, &segments), &routes, ways, overlaps)
+}
+
+/// One track of eight circuits with a signal at each: routes of one place, that may all be set before one train.
+fn row(draw: &mut Draw) -> Plan {
+    let circuits = ["C0", "C1", "C2", "C3", "C4", "C5", "C6", "C7"];
+    let at = |circuit: &str| if circuit == "C4" { "P=normal".to_owned() } else { String::new() };
+    let mut routes: Vec<Route> = (0..6)
+        .map(|place| Route {
+            name: format!("R{place}"),
+            heading: "right",
+            approach: circuits[place.max(1) - 1..=place].iter().rev().copied().collect(),
+            path: vec![(circuits[place + 1], at(circuits[place + 1]))],
+            overlap: (circuits[place + 2], at(circuits[place + 2])),
+            beyond: circuits[place + 2],
+            continuing: if place < 5 { vec![format!("R{}", place + 1)] } else { vec![] },
+            conflicts: vec![],
+            from: &[],
+            to: &[],
+        })
+        .collect();
+    routes.push(Route {
+        name: "L".to_owned(),
+        heading: "left",
+        approach: vec!["C7"],
+        path: vec![("C6", String::new()), ("C5", String::new())],
+        overlap: ("C4", at("C4")),
+        beyond: "C4",
+        continuing: vec![],
+        conflicts: vec![],
+        from: &[],
+        to: &[],
+    });
+    let way = own(&circuits);
+    let back = way.iter().rev().cloned().collect();
+    let overlaps = draw.chance(700);
+    whole(draw, (&circuits, &[("P", "C4")], &[]), &routes, vec![way.clone(), way.clone(), way, back], overlaps)
+}
+
+fn own(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
+}
+
+/// With lengths and times that are drawn.
+fn whole(
+    draw: &mut Draw,
+    (circuits, points, segments): (&[&str], &[(&str, &str)], &[Value]),
+    routes: &[Route],
+    ways: Vec<Vec<String>>,
+    overlaps: bool,
+) -> Plan {
+    let cab = draw.from(0, 2);
+    let lengths: Vec<Value> = circuits
+        .iter()
+        .map(|name| json!({"name": name, "length_m": draw.one(&[20, 60, 120, 300, 400, 800])}))
+        .collect();
+    let detectors: Vec<Value> =
+        points.iter().map(|(name, circuit)| json!({"name": name, "detectors": [circuit]})).collect();
+    let onward = |route: &Route| {
+        let this = vec![route.name.clone()];
+        (route.name.clone(), if route.continuing.is_empty() { this } else { route.continuing.clone() })
+    };
     Plan {
-        circuits: own(&circuits),
+        json: json!({
+            "station": "foreign", "cycle_ms": 1000, "clear_cycles": draw.from(1, 4),
+            "settle_cycles": draw.one(&[0, 0, 1, 2, 3]), "start_cycles": draw.one(&[0, 0, 3, 7]),
+            "turn_cycles": draw.from(1, 6), "speeds_km_h": [0, 15, 25, 45, 55, 65, 75, 90],
+            "braking_m": draw.one(&[[0, 20, 50, 110, 160, 220, 290, 410], [0, 20, 50, 300, 700, 1200, 1700, 2500]]),
+            "circuits": lengths, "points": detectors, "segments": segments,
+            "routes": routes.iter().map(|route| {
+                let own = draw.chance(500);
+                route.json(draw, cab == 1 || (cab == 2 && own), overlaps)
+            }).collect::<Vec<_>>(),
+        }),
+        circuits: own(circuits),
         points: points.iter().map(|(name, _)| (*name).to_owned()).collect(),
-        segments: own(&["West", "East"]),
+        segments: segments.iter().filter_map(|segment| segment["name"].as_str()).map(ToOwned::to_owned).collect(),
         entries: routes.iter().map(|route| route.approach[0].to_owned()).collect(),
-        onward: routes
-            .iter()
-            .map(|route| {
-                (
-                    route.name.clone(),
-                    if route.continuing.is_empty() { vec![route.name.clone()] } else { route.continuing.clone() },
-                )
-            })
-            .collect(),
+        onward: routes.iter().map(onward).collect(),
         routes: routes.iter().map(|route| route.name.clone()).collect(),
         ways,
-        json,
     }
 }
 
@@ -416,11 +462,14 @@ impl<'a> Walk<'a> {
 
     fn request(&self, draw: &mut Draw, occupied: &BTreeSet<String>, output: &Value) -> Value {
         let held = output["routes"].as_object().cloned().unwrap_or_default();
-        let segment = draw.one(&self.plan.segments);
+        let mut segment = "none".to_owned();
+        if !self.plan.segments.is_empty() {
+            segment = draw.one(&self.plan.segments);
+        }
         if draw.chance(self.sense) {
             let permitted =
                 output["permits"].as_array().is_some_and(|names| names.iter().any(|name| *name == *segment));
-            if draw.chance(300) && (self.consent.contains(&segment) || !permitted) {
+            if !self.plan.segments.is_empty() && draw.chance(300) && (self.consent.contains(&segment) || !permitted) {
                 let to = if self.consent.contains(&segment) { "away" } else { "toward" };
                 return json!({"turn": segment, "to": to});
             }
@@ -497,8 +546,11 @@ pub fn interlocking(seed: u64, steps: usize, oracle: Command) -> (Vec<String>, V
     let mut lines = small::malformed();
     let mut replies: Vec<String> = lines.iter().map(|line| asked.ask(line)).collect();
     while lines.len() < steps {
-        let long = draw.chance(600);
-        let plan = plan(&mut draw, long);
+        let plan = match draw.from(0, 9) {
+            0..4 => plan(&mut draw, true),
+            4..7 => plan(&mut draw, false),
+            _ => row(&mut draw),
+        };
         let start =
             json!({"start": {"protocol": 1, "machine": "interlocking", "config": {"plan": plan.json}}}).to_string();
         let reply = asked.ask(&start);
