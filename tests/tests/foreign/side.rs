@@ -85,14 +85,14 @@ impl Drop for Asked {
 /// What the oracle replies to these lines.
 pub fn expected(requests: &[String]) -> Vec<String> {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut asked = Asked::new(fed(oracle(), requests, &folder));
+    let mut asked = Asked::new(fed(&oracle(), requests, &folder));
     let replies: Vec<String> = std::iter::from_fn(|| asked.reply()).collect();
     assert_eq!(replies.len(), requests.len(), "one reply to each line");
     replies
 }
 
 /// The command with these lines as its input. They are in a file: nobody has to write while the replies are read.
-fn fed(command: Command, requests: &[String], folder: &TempDir) -> Command {
+fn fed(command: &Command, requests: &[String], folder: &TempDir) -> Command {
     let path = folder.path().join("requests.jsonl");
     fs::write(&path, requests.join("\n") + "\n").expect("it is written");
     let mut shell = Command::new("sh");
@@ -101,7 +101,7 @@ fn fed(command: Command, requests: &[String], folder: &TempDir) -> Command {
 }
 
 /// The first line to which the command replies otherwise, if there is one, with both replies.
-pub fn difference(command: Command, requests: &[String], expected: &[String]) -> Option<(usize, String)> {
+pub fn difference(command: &Command, requests: &[String], expected: &[String]) -> Option<(usize, String)> {
     let folder = tempfile::tempdir().expect("a folder");
     let mut asked = Asked::new(fed(command, requests, &folder));
     for (at, line) in expected.iter().enumerate() {
@@ -143,12 +143,12 @@ fn spoken(line: &str) -> Option<Value> {
 pub fn holds(name: &str, faults: u32, requests: &[String], replies: &[String], run: impl Fn() -> Command + Sync) {
     let steps = requests.iter().filter(|line| line.starts_with(r#"{"step""#)).count();
     let (unfound, faithful) = thread::scope(|scope| {
-        let faithful = scope.spawn(|| difference(run(), requests, replies));
+        let faithful = scope.spawn(|| difference(&run(), requests, replies));
         let mut unfound = Vec::new();
         for fault in 1..=faults {
             let mut faulty = run();
             faulty.args(["--fault", &fault.to_string()]);
-            if difference(faulty, requests, replies).is_none() {
+            if difference(&faulty, requests, replies).is_none() {
                 unfound.push(fault);
             }
         }

@@ -61,27 +61,56 @@ impl Route<'_> {
     }
 }
 
+fn at(point: &str, track: &str) -> String {
+    format!("{point}={}", if track == "1" || track == "3" { "normal" } else { "reverse" })
+}
+
 /// Two tracks between the points P1 and P2; or two such loops, with one track between them.
 fn plan(draw: &mut Draw, long: bool) -> Plan {
-    let position = |track: &str| if track == "1" || track == "3" { "normal" } else { "reverse" };
-    let at = |point: &str, track: &str| format!("{point}={}", position(track));
     let (overlaps, flank) = (draw.chance(700), draw.chance(500));
-    // The last point of the station, its circuit, and the tracks before it.
-    let (last, throat, far) = if long { ("P4", "D", ["3", "4"]) } else { ("P2", "B", ["1", "2"]) };
-    let mut routes: Vec<Route> = Vec::new();
     // From the tracks to M in one route, or in two, the first of one place; the plan may have both.
     let short = long && draw.chance(500);
-    let middle = draw.one(&["1", "2"]);
+    let mut routes = near(draw, long, if flank { " P5=normal" } else { "" }, short);
+    routes.extend(far(draw, long));
+    let throat = if long { "D" } else { "B" };
+    let mut circuits = vec!["W2", "W1", "A", "1T", "2T", "B", "E1", "E2", "X"];
+    let mut points = vec![("P1", "A"), ("P2", "B"), ("P5", "X")];
+    if long {
+        circuits.extend(["M", "C", "3T", "4T", "D"]);
+        points.extend([("P3", "C"), ("P4", "D")]);
+    }
+    let segments = vec![
+        json!({"name": "West", "circuits": ["W1", "W2"], "throat": ["A"], "outward": "left", "shared": draw.from(0, 2)}),
+        json!({"name": "East", "circuits": ["E1", "E2"], "throat": [throat], "outward": "right", "shared": draw.from(0, 2)}),
+    ];
+    let mut ways = Vec::new();
+    for near in ["1T", "2T"] {
+        for beyond in if long { vec!["3T", "4T"] } else { vec![""] } {
+            let mut way = vec!["W2", "W1", "A", near, "B"];
+            if long {
+                way.extend(["M", "C", beyond, "D"]);
+            }
+            way.extend(["E1", "E2"]);
+            ways.push(own(&way));
+            way.reverse();
+            ways.push(own(&way));
+        }
+    }
+    whole(draw, (&circuits, &points, &segments), &routes, ways, overlaps)
+}
+
+/// The routes of the tracks 1 and 2, those from and to the line in the west among them.
+fn near(draw: &mut Draw, long: bool, flank: &str, short: bool) -> Vec<Route<'static>> {
+    let mut routes: Vec<Route> = Vec::new();
     let middle_far = draw.one(&["3", "4"]);
     for track in ["1", "2"] {
         let circuit = if track == "1" { "1T" } else { "2T" };
-        let side = if flank { " P5=normal" } else { "" };
         let onward = if long { format!("{track}-M") } else { format!("{track}-E") };
         routes.push(Route {
             name: format!("W-{track}"),
             heading: "right",
             approach: draw.one(&[vec!["W1"], vec!["W1", "W2"]]),
-            path: vec![("A", at("P1", track) + side), (circuit, String::new())],
+            path: vec![("A", at("P1", track) + flank), (circuit, String::new())],
             overlap: ("B", at("P2", track)),
             beyond: "B",
             continuing: vec![onward.clone()],
@@ -156,6 +185,15 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
             to: &[],
         });
     }
+    routes
+}
+
+/// The routes from and to the line in the east, and of the tracks 3 and 4 if there are any.
+fn far(draw: &mut Draw, long: bool) -> Vec<Route<'static>> {
+    // The last point of the station, its circuit, and the tracks before it.
+    let (last, throat, far) = if long { ("P4", "D", ["3", "4"]) } else { ("P2", "B", ["1", "2"]) };
+    let mut routes: Vec<Route> = Vec::new();
+    let middle = draw.one(&["1", "2"]);
     for track in far {
         let circuit = match track {
             "1" => "1T",
@@ -216,30 +254,7 @@ fn plan(draw: &mut Draw, long: bool) -> Plan {
             });
         }
     }
-    let mut circuits = vec!["W2", "W1", "A", "1T", "2T", "B", "E1", "E2", "X"];
-    let mut points = vec![("P1", "A"), ("P2", "B"), ("P5", "X")];
-    if long {
-        circuits.extend(["M", "C", "3T", "4T", "D"]);
-        points.extend([("P3", "C"), ("P4", "D")]);
-    }
-    let segments = vec![
-        json!({"name": "West", "circuits": ["W1", "W2"], "throat": ["A"], "outward": "left", "shared": draw.from(0, 2)}),
-        json!({"name": "East", "circuits": ["E1", "E2"], "throat": [throat], "outward": "right", "shared": draw.from(0, 2)}),
-    ];
-    let mut ways = Vec::new();
-    for near in ["1T", "2T"] {
-        for beyond in if long { vec!["3T", "4T"] } else { vec![""] } {
-            let mut way = vec!["W2", "W1", "A", near, "B"];
-            if long {
-                way.extend(["M", "C", beyond, "D"]);
-            }
-            way.extend(["E1", "E2"]);
-            ways.push(own(&way));
-            way.reverse();
-            ways.push(own(&way));
-        }
-    }
-    whole(draw, (&circuits, &points, &segments), &routes, ways, overlaps)
+    routes
 }
 
 /// One track of eight circuits with a signal at each: routes of one place, that may all be set before one train.
@@ -475,10 +490,9 @@ impl<'a> Walk<'a> {
             }
             if let Some((route, _)) =
                 held.iter().find(|(_, phase)| *phase == "failed" || (*phase == "set" && draw.chance(50)))
+                && draw.chance(500)
             {
-                if draw.chance(500) {
-                    return json!({ "withdraw": route });
-                }
+                return json!({ "withdraw": route });
             }
             if let Some(route) = held.keys().nth(usize::try_from(draw.from(0, 2)).expect("small")) {
                 // What a train will need next.
