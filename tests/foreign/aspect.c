@@ -44,11 +44,15 @@ static bool start(const struct json *config) {
     state.last = -1;
     for (const struct json *item = json_first(aspects); item; item = json_next(item)) {
         int64_t speed;
-        if (!json_scaled(item, 1, INT64_MAX / 100, &speed)) {
+        struct json size = *item; // of a negative number: its size
+        bool negative = item->kind == J_NUMBER && *item->text == '-';
+        size.text += negative;
+        size.size -= negative;
+        if (!json_scaled(&size, 1, INT64_MAX / 100, &speed)) {
             json_malformed("an aspect is a speed in whole tenths of km/h");
             return false;
         }
-        if (state.aspects == MOST_ASPECTS || speed > 65535 || (state.aspects > 0 && speed <= state.speed[state.aspects - 1])) {
+        if (state.aspects == MOST_ASPECTS || negative || speed > 65535 || (state.aspects > 0 && speed <= state.speed[state.aspects - 1])) {
             json_rejected("TIME-4: the aspects are 1 to 16 speeds that rise");
             return false;
         }
