@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use atc_kernel::speed::KmhTenths;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::decimal::{self, NotWhole};
+use crate::decimal::{self, NotWhole, Plain};
 
 /// A speed, in tenths of km/h. On the wire a JSON number of km/h, such as `45` or `44.9`.
 ///
@@ -47,11 +48,17 @@ impl Kmh {
 }
 
 /// The text, cut to a length that is fit for a message.
-pub(crate) fn shorten(text: &str) -> Cow<'_, str> {
+pub fn shorten(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
         None => Cow::Borrowed(text),
+    }
+}
+
+impl From<KmhTenths> for Kmh {
+    fn from(speed: KmhTenths) -> Self {
+        Self(speed.0.into())
     }
 }
 
@@ -84,6 +91,16 @@ impl<'de> Deserialize<'de> for Kmh {
     }
 }
 
+/// Where TOML gives it: a speed beyond the range becomes its end.
+impl<'de> Deserialize<'de> for Plain<Kmh> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)?;
+        let tenths = decimal::whole(value, 1)
+            .ok_or_else(|| D::Error::custom(format_args!("{value} km/h is not a whole number of tenths")))?;
+        Ok(Self(Kmh(i32::try_from(tenths).unwrap_or(if tenths < 0 { i32::MIN } else { i32::MAX }))))
+    }
+}
+
 impl JsonSchema for Kmh {
     fn schema_name() -> Cow<'static, str> {
         "Kmh".into()
@@ -97,8 +114,13 @@ impl JsonSchema for Kmh {
     }
 }
 
+/// A speed with its tenth, for tables: `45.0`.
+pub(crate) fn fixed(speed: KmhTenths) -> String {
+    format!("{}.{}", speed.0 / 10, speed.0 % 10)
+}
+
 /// The schema of a speed that may be null but not missing. (An `Option` may be missing.)
-pub(crate) enum KmhOrNull {}
+pub enum KmhOrNull {}
 
 impl JsonSchema for KmhOrNull {
     fn schema_name() -> Cow<'static, str> {

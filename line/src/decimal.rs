@@ -61,6 +61,20 @@ pub(crate) fn parts(number: &str, decimals: u8) -> Result<i64, NotWhole> {
     Ok(if negative { -parts } else { parts })
 }
 
+/// A number that TOML has read in binary, as a whole number of parts; none if it is not within a millionth of one. A number beyond ±2⁵²
+/// parts becomes the end of that range.
+#[expect(clippy::cast_possible_truncation, reason = "clamped to ±2⁵²")]
+#[expect(clippy::cast_precision_loss, reason = "2⁵² is a double")]
+pub(crate) fn whole(value: f64, decimals: u8) -> Option<i64> {
+    let scaled = value * 10_f64.powi(decimals.into());
+    let nearest = scaled.round();
+    ((scaled - nearest).abs() < 1e-6 || scaled.is_infinite()).then_some(nearest.clamp(-(FAR as f64), FAR as f64) as i64)
+}
+
+/// A value that TOML gives: read in binary, and refused unless it is a whole number of parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Plain<T>(pub T);
+
 /// A JSON exponent; one beyond `i64` is the end of that range, halved so that sums stay in it.
 fn parse_exponent(text: &str) -> Option<i64> {
     const FAR: i64 = i64::MAX / 2;
@@ -126,6 +140,14 @@ macro_rules! quantity {
             }
         }
 
+        impl<'de> Deserialize<'de> for Plain<$name> {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let value = f64::deserialize(deserializer)?;
+                let parts = whole(value, $decimals).map(|parts| Self($name(parts)));
+                parts.ok_or_else(|| D::Error::custom(format_args!(concat!("{} is not a whole number of ", $part), value)))
+            }
+        }
+
         impl JsonSchema for $name {
             fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
@@ -157,7 +179,7 @@ quantity!(
 );
 
 /// The schema of a value that may be null but not missing. (An `Option` may be missing.)
-pub(crate) struct OrNull<T>(PhantomData<T>);
+pub struct OrNull<T>(PhantomData<T>);
 
 impl<T: JsonSchema> JsonSchema for OrNull<T> {
     fn schema_name() -> Cow<'static, str> {
