@@ -11,6 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use crate::kmh::shorten;
+use crate::refusal::Refusal;
+use crate::rule::Rule;
 
 /// The largest number of parts that is told apart from infinity; a double holds every whole number up to it.
 const FAR: i64 = 1 << 52;
@@ -71,9 +73,37 @@ pub(crate) fn whole(value: f64, decimals: u8) -> Option<i64> {
     ((scaled - nearest).abs() < 1e-6 || scaled.is_infinite()).then_some(nearest.clamp(-(FAR as f64), FAR as f64) as i64)
 }
 
-/// A value that TOML gives: read in binary, and refused unless it is a whole number of parts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Plain<T>(pub T);
+/// A quantity in whole parts of its unit.
+pub(crate) trait Quantity: Sized {
+    /// How many decimals its unit has.
+    const DECIMALS: u8;
+    /// Its unit.
+    const UNIT: &'static str;
+    /// What it is a whole number of.
+    const PARTS: &'static str;
+
+    /// So many parts.
+    fn of(parts: i64) -> Self;
+}
+
+/// A number that TOML gives; `field` is its path in the file.
+///
+/// # Errors
+/// If it is no whole number of parts.
+pub(crate) fn given<Q: Quantity>(field: &str, value: f64) -> Result<Q, Refusal> {
+    whole(value, Q::DECIMALS).map(Q::of).ok_or_else(|| {
+        let what = format!("{field} is {value} {}; it must be a whole number of {}", Q::UNIT, Q::PARTS);
+        Refusal::new(Rule::Range, field, what)
+    })
+}
+
+/// The same for a list.
+///
+/// # Errors
+/// The first that is no whole number of parts.
+pub(crate) fn list<Q: Quantity>(field: &str, values: &[f64]) -> Result<Vec<Q>, Refusal> {
+    values.iter().enumerate().map(|(place, value)| given(&format!("{field}[{place}]"), *value)).collect()
+}
 
 /// A JSON exponent; one beyond `i64` is the end of that range, halved so that sums stay in it.
 fn parse_exponent(text: &str) -> Option<i64> {
@@ -140,11 +170,13 @@ macro_rules! quantity {
             }
         }
 
-        impl<'de> Deserialize<'de> for Plain<$name> {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let value = f64::deserialize(deserializer)?;
-                let parts = whole(value, $decimals).map(|parts| Self($name(parts)));
-                parts.ok_or_else(|| D::Error::custom(format_args!(concat!("{} is not a whole number of ", $part), value)))
+        impl Quantity for $name {
+            const DECIMALS: u8 = $decimals;
+            const UNIT: &'static str = $of;
+            const PARTS: &'static str = $part;
+
+            fn of(parts: i64) -> Self {
+                Self(parts)
             }
         }
 

@@ -5,16 +5,13 @@
 
 use serde::Deserialize;
 
-use crate::decimal::{Decibels, Metres, Plain};
-use crate::kmh::Kmh;
-
 /// A line. Milliseconds, metres and km/h; a speed has at most one decimal.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     pub name: String,
     pub cycle_ms: u32,
-    pub aspects_km_h: Vec<Plain<Kmh>>,
+    pub aspects_km_h: Vec<f64>,
     pub times: Times,
     #[serde(default)]
     pub supervision: Supervision,
@@ -51,8 +48,8 @@ pub struct Times {
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Supervision {
-    pub maximum_km_h: Option<Plain<Kmh>>,
-    pub release_margin_km_h: Option<Plain<Kmh>>,
+    pub maximum_km_h: Option<f64>,
+    pub release_margin_km_h: Option<f64>,
 }
 
 /// `[detection]`: what all blocks have in common.
@@ -82,7 +79,7 @@ pub struct Block {
 #[serde(deny_unknown_fields)]
 pub struct Signal {
     /// The speeds that ranks in telegrams mean; without it the aspects.
-    pub speeds_km_h: Option<Vec<Plain<Kmh>>>,
+    pub speeds_km_h: Option<Vec<f64>>,
     pub frame_ms: u32,
     pub window: u32,
     pub run: u32,
@@ -95,7 +92,7 @@ pub struct Signal {
     pub heard_beyond_exit_m: u16,
     pub delay_ms: u32,
     pub worst_gradient_permille: i32,
-    pub lowest_limit_km_h: Plain<Kmh>,
+    pub lowest_limit_km_h: f64,
     pub reaction_ms: u32,
     pub release_ms: u32,
     pub restriction_lead_ms: u32,
@@ -108,19 +105,19 @@ pub struct Section {
     pub number: u16,
     pub length_m: u16,
     pub gradient_permille: i32,
-    pub limit_km_h: Plain<Kmh>,
+    pub limit_km_h: f64,
 }
 
 /// `[position]`. Levels and differences in dB, in steps of 0.01.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Position {
-    pub spacing_m: Plain<Metres>,
-    pub lowest_db: Vec<Plain<Decibels>>,
-    pub highest_db: Vec<Plain<Decibels>>,
-    pub tolerance_db: Plain<Decibels>,
-    pub floor_db: Plain<Decibels>,
-    pub correction_db: Option<[Plain<Decibels>; 2]>,
+    pub spacing_m: f64,
+    pub lowest_db: Vec<f64>,
+    pub highest_db: Vec<f64>,
+    pub tolerance_db: f64,
+    pub floor_db: f64,
+    pub correction_db: Option<[f64; 2]>,
 }
 
 /// `[codes]`: the code frequencies of the two carriers.
@@ -163,7 +160,7 @@ pub struct Station {
     /// What it is called in this file; without it, as its layout calls it.
     pub name: Option<String>,
     /// The speeds that telegrams name for the layout's codes 1, 2, …; without it, the codes' own.
-    pub code_speeds_km_h: Option<Vec<Plain<Kmh>>>,
+    pub code_speeds_km_h: Option<Vec<f64>>,
 }
 
 /// `[[border]]`: between two stations, or between a station and the counted blocks.

@@ -9,7 +9,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::decimal::{self, NotWhole, Plain};
+use crate::decimal::{self, NotWhole, Quantity};
 
 /// A speed, in tenths of km/h. On the wire a JSON number of km/h, such as `45` or `44.9`.
 ///
@@ -43,7 +43,7 @@ impl Kmh {
                 NotWhole::TooFine => format!("{number} km/h is not a whole number of tenths"),
             })
         })?;
-        Ok(Self(i32::try_from(tenths).unwrap_or(if tenths < 0 { i32::MIN } else { i32::MAX })))
+        Ok(Self::of(tenths))
     }
 }
 
@@ -91,13 +91,13 @@ impl<'de> Deserialize<'de> for Kmh {
     }
 }
 
-/// Where TOML gives it: a speed beyond the range becomes its end.
-impl<'de> Deserialize<'de> for Plain<Kmh> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let value = f64::deserialize(deserializer)?;
-        let tenths = decimal::whole(value, 1)
-            .ok_or_else(|| D::Error::custom(format_args!("{value} km/h is not a whole number of tenths")))?;
-        Ok(Self(Kmh(i32::try_from(tenths).unwrap_or(if tenths < 0 { i32::MIN } else { i32::MAX }))))
+impl Quantity for Kmh {
+    const DECIMALS: u8 = 1;
+    const UNIT: &'static str = "km/h";
+    const PARTS: &'static str = "tenths";
+
+    fn of(parts: i64) -> Self {
+        Self(i32::try_from(parts).unwrap_or(if parts < 0 { i32::MIN } else { i32::MAX }))
     }
 }
 

@@ -8,13 +8,14 @@ use atc_kernel::aspect::{AspectTable, Times};
 use atc_kernel::code::CodeTable;
 use atc_kernel::distance::Metres;
 use atc_kernel::pattern::Deceleration;
+use atc_kernel::position::Position;
 use atc_kernel::supervision::Supervision;
 use atc_layout::lives::TrainLives;
 
 use crate::blocks::{self, Detection};
 use crate::check::{DataCheck, Finding, Outcome};
 use crate::code::{self, Names, Pair};
-use crate::decimal::Decibels;
+use crate::decimal::{given, list};
 use crate::figures::{Derived, LineBlock, LineSection, LineTime};
 use crate::form::{self, File};
 use crate::kmh::fixed;
@@ -151,7 +152,7 @@ impl Reader {
     }
 
     fn line(mut self, file: &File, folder: &Path) -> Result<Line, Problems> {
-        let aspect = aspects(file);
+        let aspect = self.keep(aspects(file));
         let name = file.name.trim().to_owned();
         if name.is_empty() {
             self.keep::<()>(Err(Refusal::new(Rule::Form, "name", "the line has no name")));
@@ -160,15 +161,14 @@ impl Reader {
             let own = field == "cycle_ms" || field.starts_with("aspects_km_h");
             if own { field.to_owned() } else { format!("times.{field}") }
         };
-        let times = self.keep_in(in_times, aspect.times());
-        let table = self.keep_in(in_times, aspect.table());
-        let supervision =
-            self.keep_in(|field| format!("supervision.{field}"), supervised(&file.supervision).supervision());
+        let times = aspect.as_ref().and_then(|aspect| self.keep_in(in_times, aspect.times()));
+        let table = aspect.as_ref().and_then(|aspect| self.keep_in(in_times, aspect.table()));
+        let supervision = self.keep_in(|field| format!("supervision.{field}"), supervised(&file.supervision));
         let detection = self.keep(blocks::checked(file.cycle_ms, file.detection.as_ref(), &file.blocks));
-        let signal =
-            self.keep(signal::checked(file.cycle_ms, &aspect.aspects_km_h, file.signal.as_ref(), &file.sections));
-        let position = file.position.as_ref().map(positioned);
-        let position = position.map(|config| self.keep_in(|field| format!("position.{field}"), config.position("")));
+        let aspects = aspect.as_ref().map_or(&[][..], |aspect| &aspect.aspects_km_h);
+        let signal = self.keep(signal::checked(file.cycle_ms, aspects, file.signal.as_ref(), &file.sections));
+        let position = file.position.as_ref();
+        let position = position.map(|position| self.keep_in(|field| format!("position.{field}"), positioned(position)));
         let codes = file.codes.as_ref().map(|codes| self.codes(codes));
         let train = file.train.as_ref().map(|train| self.train(train));
         let stations = self.stations(file, folder);
@@ -177,8 +177,8 @@ impl Reader {
         if !self.problems.is_empty() {
             return Err(Problems(self.problems));
         }
-        let all = (times, table, supervision, detection, signal);
-        let (Some(times), Some(table), Some(supervision), Some(detection), Some(signal)) = all else {
+        let all = (aspect, times, table, supervision, detection, signal);
+        let (Some(aspect), Some(times), Some(table), Some(supervision), Some(detection), Some(signal)) = all else {
             return Err(Problems(self.problems));
         };
         let longest = signal.as_ref().and_then(Signal::longest);
@@ -216,8 +216,11 @@ impl Reader {
 
     fn stations(&mut self, file: &File, folder: &Path) -> Vec<Station> {
         let mut stations = Vec::new();
-        for (number, given) in file.stations.iter().enumerate() {
-            match Station::read(given, folder) {
+        for (number, one) in file.stations.iter().enumerate() {
+            let path = format!("station[{number}].code_speeds_km_h");
+            let speeds = one.code_speeds_km_h.as_ref().map(|speeds| list(&path, speeds)).transpose();
+            let speeds = self.keep(speeds).flatten();
+            match Station::read(one, speeds, folder) {
                 Ok(station) => stations.push(station),
                 Err(unreadable) => {
                     let what = format!(
@@ -232,38 +235,44 @@ impl Reader {
     }
 }
 
-fn aspects(file: &File) -> aspect::Config {
-    aspect::Config {
+fn aspects(file: &File) -> Result<aspect::Config, Refusal> {
+    Ok(aspect::Config {
         cycle_ms: file.cycle_ms,
-        aspects_km_h: file.aspects_km_h.iter().map(|one| one.0).collect(),
+        aspects_km_h: list("aspects_km_h", &file.aspects_km_h)?,
         operate_ms: file.times.operate_ms,
         recovery_ms: file.times.recovery_ms,
         mask_ms: file.times.mask_ms,
         interruption_ms: file.times.interruption_ms,
         shortened_operate_ms: file.times.shortened_operate_ms,
-    }
+    })
 }
 
-fn supervised(given: &form::Supervision) -> supervision::Config {
+fn supervised(file: &form::Supervision) -> Result<Supervision, Refusal> {
     let usual = supervision::Config::default();
-    supervision::Config {
-        maximum_km_h: given.maximum_km_h.map_or(usual.maximum_km_h, |one| one.0),
-        release_margin_km_h: given.release_margin_km_h.map_or(usual.release_margin_km_h, |one| one.0),
-    }
+    let speed = |field, value: Option<f64>, usual| value.map_or(Ok(usual), |value| given(field, value));
+    let config = supervision::Config {
+        maximum_km_h: speed("maximum_km_h", file.maximum_km_h, usual.maximum_km_h)?,
+        release_margin_km_h: speed("release_margin_km_h", file.release_margin_km_h, usual.release_margin_km_h)?,
+    };
+    config.supervision()
 }
 
-fn positioned(given: &form::Position) -> position::Config {
-    let levels = |list: &[crate::decimal::Plain<Decibels>]| list.iter().map(|one| one.0).collect();
-    position::Config {
+fn positioned(file: &form::Position) -> Result<Position, Refusal> {
+    let correction_db = match file.correction_db {
+        Some([least, most]) => [given("correction_db[0]", least)?, given("correction_db[1]", most)?],
+        None => Default::default(),
+    };
+    let config = position::Config {
         table: position::TableConfig {
-            spacing_m: given.spacing_m.0,
-            lowest_db: levels(&given.lowest_db),
-            highest_db: levels(&given.highest_db),
+            spacing_m: given("spacing_m", file.spacing_m)?,
+            lowest_db: list("lowest_db", &file.lowest_db)?,
+            highest_db: list("highest_db", &file.highest_db)?,
         },
-        tolerance_db: given.tolerance_db.0,
-        floor_db: given.floor_db.0,
-        correction_db: given.correction_db.map(|both| both.map(|one| one.0)).unwrap_or_default(),
-    }
+        tolerance_db: given("tolerance_db", file.tolerance_db)?,
+        floor_db: given("floor_db", file.floor_db)?,
+        correction_db,
+    };
+    config.position("")
 }
 
 /// What the line is, for who uses it.

@@ -9,10 +9,11 @@ use atc_kernel::time::{Millis, Ticks};
 use atc_layout::lives::TrainLives;
 
 use crate::check::{DataCheck, Outcome};
+use crate::decimal::{given as decimal, list};
 use crate::figures::{Derived, LineSection};
 use crate::form;
 use crate::kmh::{Kmh, fixed};
-use crate::permitted::{Config, list, rank};
+use crate::permitted::{self, Config, rank};
 use crate::refusal::{Refusal, gradient};
 use crate::rule::Rule;
 
@@ -47,13 +48,14 @@ pub(crate) fn checked(
             _ => Err(Refusal::new(Rule::Form, "section[0].number", "there is a [[section]] and no [signal]")),
         };
     };
+    let speeds_km_h = match &given.speeds_km_h {
+        Some(speeds) => list("signal.speeds_km_h", speeds)?,
+        None => aspects.to_vec(),
+    };
     let config = Config {
         cycle_ms,
-        speeds_km_h: given
-            .speeds_km_h
-            .as_ref()
-            .map_or_else(|| aspects.to_vec(), |speeds| speeds.iter().map(|one| one.0).collect()),
-        lowest_limit_km_h: given.lowest_limit_km_h.0,
+        speeds_km_h,
+        lowest_limit_km_h: decimal("signal.lowest_limit_km_h", given.lowest_limit_km_h)?,
         brake_mm_s2: given.brake_mm_s2,
         worst_gradient_permille: given.worst_gradient_permille,
         margin_m: given.margin_m,
@@ -120,10 +122,12 @@ fn described(settings: &Settings, given: &[form::Section]) -> Result<(Vec<LineSe
             );
             return refused(Rule::Per5, "gradient_permille", what);
         }
-        let speed = one.limit_km_h.0;
+        let speed: Kmh = decimal(&format!("section[{place}].limit_km_h"), one.limit_km_h)?;
         let Some(limit) = rank(&settings.speeds, speed) else {
-            let what =
-                format!("limit_km_h is {speed} km/h; it must be a speed of the table: {} km/h", list(&settings.speeds));
+            let what = format!(
+                "limit_km_h is {speed} km/h; it must be a speed of the table: {} km/h",
+                permitted::list(&settings.speeds)
+            );
             return refused(Rule::Per7, "limit_km_h", what);
         };
         if limit < settings.lowest {

@@ -42,14 +42,13 @@ impl Station {
     ///
     /// # Errors
     /// The file cannot be read, or is not of the form that its name says.
-    pub(crate) fn read(given: &form::Station, folder: &Path) -> Result<Self, Errors> {
+    pub(crate) fn read(given: &form::Station, code_speeds: Option<Vec<Kmh>>, folder: &Path) -> Result<Self, Errors> {
         let mut description = read_any(folder.join(&given.file))?.description;
         if let Some(name) = &given.name {
             description.station.name.clone_from(name);
         }
         let problems = description.compile().err().map(|errors| errors.problems).unwrap_or_default();
         let model = if problems.is_empty() { description.model().ok() } else { None };
-        let code_speeds = given.code_speeds_km_h.as_ref().map(|speeds| speeds.iter().map(|one| one.0).collect());
         Ok(Self { description, model, problems, code_speeds })
     }
 

@@ -38,7 +38,7 @@ fn a_broken_rule_is_named_with_its_line() {
             "[25, 45, 45, 90]",
             "aspects_km_h[2] is 45 km/h after 45 km/h; the permitted speeds must rise strictly",
         ),
-        ("[25, 45, 65, 90]", "[25, 45.55]", "45.55 km/h is not a whole number of tenths"),
+        ("[25, 45, 65, 90]", "[25, 45.55]", "aspects_km_h[1] is 45.55 km/h; it must be a whole number of tenths"),
         ("[25, 45, 65, 90]", "[-1]", "aspects_km_h[0] is -1 km/h; a permitted speed is 0 to 6553.5 km/h"),
         (
             "release_margin_km_h = 0",

@@ -45,7 +45,12 @@ fn a_broken_rule_is_named_with_its_place() {
             "1.86",
             "POS-5 is broken: lowest_db[1] is 1.86 dB and highest_db[1] 1.85 dB; the lowest must not be above the highest",
         ),
-        ("[-0.01, 0.36", "[-0.01, 0.365", "0.365", "0.365 is not a whole number of hundredths of a decibel"),
+        (
+            "[-0.01, 0.36",
+            "[-0.01, 0.365",
+            "0.365",
+            "lowest_db[1] is 0.365 dB; it must be a whole number of hundredths of a decibel",
+        ),
         ("[-0.01, 0.36", "[-0.01, 400.0", "400.0", "lowest_db[1] is 400 dB; it must be -327.68 to 327.67 dB"),
         ("tolerance_db = 0.1", "tolerance_db = -0.1", "-0.1", "tolerance_db is -0.1 dB; it must be 0 or more"),
         (
