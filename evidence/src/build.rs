@@ -3,7 +3,7 @@
 use crate::argument;
 use crate::case::{
     Case, Condition, Engine, EngineResult, Evidence, Kind, OpenItem, Phase, Provenance, Run as About, SCHEMA, Severity,
-    Station, Status, Technique, Tool,
+    Status, Technique, Tool,
 };
 use crate::error::Fault;
 use crate::hazard;
@@ -275,7 +275,7 @@ pub fn status(case: &Case, required: Required) -> Status {
         _ => one.verdict.is_result(),
     };
     let missing: Vec<_> = case.evidence.iter().filter(|one| !has_result(one)).map(|one| one.id.clone()).collect();
-    let data = of_data(case);
+    let data = open::of_data(case);
     let mut reasons: Vec<String> = Vec::new();
     for one in case.evidence.iter().filter(|one| one.verdict.is_defect()) {
         reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.why()));
