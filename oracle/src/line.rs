@@ -1,5 +1,6 @@
 //! `oracle line`: a line's file is checked, with the layouts that it names.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -92,15 +93,20 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
     let met = count(|outcome| *outcome == Outcome::Met);
     let broken = count(|outcome| matches!(outcome, Outcome::Broken { .. }));
     let unchecked = count(|outcome| *outcome == Outcome::NotChecked);
-    let mut text = format!("{}: {broken} checks broken, {met} met", file.display());
+    let told = if broken == 0 { "no broken rule".to_owned() } else { format!("{broken} broken rules") };
+    let mut text = format!("{}: {told}; {met} checks met", file.display());
     if unchecked > 0 {
         let _ = write!(text, ", {unchecked} not made where a station is refused");
     }
     text.push('\n');
+    let mut without: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for check in &checks {
         if let Outcome::NotApplicable { why } = &check.outcome {
-            let _ = writeln!(text, "not applicable: {}: {why}", check.rule);
+            without.entry(why).or_default().push(&check.rule);
         }
+    }
+    for (why, rules) in without {
+        let _ = writeln!(text, "not applicable, as {why}: {}", rules.join(", "));
     }
     if derived {
         for one in line.derived() {

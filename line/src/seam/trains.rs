@@ -70,6 +70,7 @@ fn length(line: &Line, stations: &[Sound<'_>]) -> Judged {
     let blocks = line.detection().map(Detection::longest_train);
     let (longest, path) = match (line.train(), blocks) {
         (Some(train), _) => (train.longest, "train.longest_m"),
+        (None, _) if line.stations().is_empty() => return Err(NO_STATION),
         (None, Some(longest)) => (longest, "detection.longest_train_m"),
         (None, None) => return Err("nothing says how long trains are"),
     };
