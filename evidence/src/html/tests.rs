@@ -195,7 +195,7 @@ fn a_station_is_to_be_signed_only_with_every_rule_kept_and_every_theorem_shown()
         assert!(!invites(&page) && forbids(&page), "{verdict}");
     }
     for check in [Outcome::Broken { why: vec![] }, Outcome::NotChecked] {
-        let page = page(check, Verdict::Proved);
+        let page = page(check.clone(), Verdict::Proved);
         assert!(!invites(&page) && forbids(&page), "{check:?}");
     }
 }

@@ -14,8 +14,19 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the programs are compiled from.
-const FOLDERS: [&str; 10] =
-    ["arithmetic", "evidence", "kernel", "layout", "layouts", "models", "oracle", "proofs", "tests", "waveform"];
+const FOLDERS: [&str; 11] = [
+    "arithmetic",
+    "evidence",
+    "kernel",
+    "layout",
+    "layouts",
+    "line",
+    "models",
+    "oracle",
+    "proofs",
+    "tests",
+    "waveform",
+];
 
 /// The names of the mutants to select, with commas.
 const VARIABLE: &str = "ATC_OLD_RULES";
