@@ -93,7 +93,11 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
     let met = count(|outcome| *outcome == Outcome::Met);
     let broken = count(|outcome| matches!(outcome, Outcome::Broken { .. }));
     let unchecked = count(|outcome| *outcome == Outcome::NotChecked);
-    let told = if broken == 0 { "no broken rule".to_owned() } else { format!("{broken} broken rules") };
+    let told = if broken == 0 {
+        "no broken rule".to_owned()
+    } else {
+        format!("{broken} broken {}", if broken == 1 { "rule" } else { "rules" })
+    };
     let mut text = format!("{}: {told}; {met} checks met", file.display());
     if unchecked > 0 {
         let _ = write!(text, ", {unchecked} not made where a station is refused");

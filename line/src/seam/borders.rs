@@ -239,12 +239,9 @@ fn views(line: &Line, one: &Between) -> Vec<Finding> {
     let problems = compared.err().map(|errors| errors.problems).unwrap_or_default();
     let span = segment.line.as_ref().map(|line| line.span.clone()).unwrap_or_default();
     let mine = problems.into_iter().filter(|problem| problem.span == span);
-    // Each is its own, though all stand where the line is named: the place of the border says which line it is.
-    let told: Vec<_> = mine.map(|problem| format!("{}; {}", problem.what, problem.right)).collect();
-    if told.is_empty() {
-        return Vec::new();
-    }
-    vec![finding(line_at(first.station, segment), line_at(second.station, other), told.join(". "), "")]
+    let at = || (line_at(first.station, segment), line_at(second.station, other));
+    let told = |problem: atc_layout::Problem| finding(at().0, at().1, problem.what, problem.right);
+    mine.map(told).collect()
 }
 
 fn segment<'a>(line: &'a Line, one: &Counted) -> Option<(Sound<'a>, &'a Segment, &'a form::Segment)> {

@@ -43,7 +43,10 @@ impl Station {
     /// # Errors
     /// The file cannot be read, or is not of the form that its name says.
     pub(crate) fn read(given: &form::Station, code_speeds: Option<Vec<Kmh>>, folder: &Path) -> Result<Self, Errors> {
-        let mut description = read_any(folder.join(&given.file))?.description;
+        let path = folder.join(&given.file);
+        // A file of that name, and not standard input.
+        let path = if path == Path::new("-") { Path::new(".").join(path) } else { path };
+        let mut description = read_any(path)?.description;
         if let Some(name) = &given.name {
             description.station.name.clone_from(name);
         }
@@ -92,14 +95,8 @@ impl Sound<'_> {
 impl Line {
     /// The stations whose layout keeps every rule.
     fn sound(&self) -> Vec<Sound<'_>> {
-        let sound = |(number, station): (usize, &'_ Station)| station.model.as_ref().map(|_| number);
-        let numbers = self.stations().iter().enumerate().filter_map(sound);
-        numbers
-            .filter_map(|number| {
-                let station = self.stations().get(number)?;
-                Some(Sound { number, station, model: station.model.as_ref()? })
-            })
-            .collect()
+        let all = self.stations().iter().enumerate();
+        all.filter_map(|(number, station)| Some(Sound { number, station, model: station.model.as_ref()? })).collect()
     }
 
     fn station(&self, name: &str) -> Option<(usize, &Station)> {
@@ -112,17 +109,7 @@ type Judged = Result<Vec<Finding>, &'static str>;
 
 fn judged(rule: Rule, scope: impl Into<String>, judged: Judged) -> DataCheck {
     let outcome = match judged {
-        Ok(mut findings) => {
-            // What many things take from one place is told once.
-            let mut seen: Vec<(String, Option<String>)> = Vec::new();
-            findings.retain(|one| {
-                let pair = (one.at.clone(), one.against.clone());
-                let is_new = one.at.ends_with(')') || !seen.contains(&pair);
-                seen.push(pair);
-                is_new
-            });
-            Outcome::of(findings)
-        }
+        Ok(findings) => Outcome::of(findings),
         Err(why) => Outcome::NotApplicable { why: why.to_owned() },
     };
     DataCheck::new(rule, scope, outcome)
@@ -147,7 +134,7 @@ pub fn checks(line: &Line) -> Vec<DataCheck> {
     checks.extend(ranks::checks(line));
     checks.extend(telegrams::checks(line));
     checks.extend(borders::checks(line));
-    // What no theorem and no other rule can be read from is not said of stations that are refused.
+    // Of a station that is refused nothing was looked at.
     let refused = line.stations().len() > line.sound().len();
     for check in checks.iter_mut().skip(2).filter(|check| refused && check.outcome == Outcome::Met) {
         check.outcome = Outcome::NotChecked;
@@ -165,13 +152,8 @@ fn layouts(line: &Line) -> DataCheck {
             finding(place(&station.description.source, &problem.span), from, what, problem.right.clone())
         }));
     }
-    // Each problem of a layout is its own, also where two stand at one place.
-    let outcome = if line.stations().is_empty() {
-        Outcome::NotApplicable { why: NO_STATION.to_owned() }
-    } else {
-        Outcome::of(findings)
-    };
-    DataCheck::new(Rule::Station, count(line.stations().len(), "station"), outcome)
+    let found = if line.stations().is_empty() { Err(NO_STATION) } else { Ok(findings) };
+    judged(Rule::Station, count(line.stations().len(), "station"), found)
 }
 
 /// One name for one station.

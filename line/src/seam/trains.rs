@@ -115,20 +115,24 @@ fn releases(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {
     let promised = signal.release_ms();
     let given = &one.station.description().station;
     let routes = one.model.routes.iter().zip(&given.routes);
-    let short = routes.filter(|(route, _)| u64::from(one.model.values.ms(route.release)) < promised);
-    short
-        .map(|(route, form)| {
-            let span = form.release_ms.as_ref().map_or(&given.times.release_ms.span, |time| &time.span);
-            let what = format!(
-                "route {} of {} is released after {} ms, and the line promises its trains {promised} ms",
-                route.name,
-                one.name(),
-                one.model.values.ms(route.release)
-            );
-            let right = format!("release_ms of the route must be {promised} or more, or that of [signal] less");
-            finding(one.station.at(span), line.places().at("signal.release_ms"), what, right)
-        })
-        .collect()
+    let mut findings: Vec<Finding> = Vec::new();
+    for (route, form) in routes.filter(|(route, _)| u64::from(one.model.values.ms(route.release)) < promised) {
+        let span = form.release_ms.as_ref().map_or(&given.times.release_ms.span, |time| &time.span);
+        let at = one.station.at(span);
+        // What many routes take from one place is told once.
+        if findings.iter().any(|told| told.at == at) {
+            continue;
+        }
+        let what = format!(
+            "route {} of {} is released after {} ms, and the line promises its trains {promised} ms",
+            route.name,
+            one.name(),
+            one.model.values.ms(route.release)
+        );
+        let right = format!("release_ms of the route must be {promised} or more, or that of [signal] less");
+        findings.push(finding(at, line.places().at("signal.release_ms"), what, right));
+    }
+    findings
 }
 
 fn turn(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {

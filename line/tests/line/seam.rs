@@ -279,3 +279,11 @@ fn a_layout_that_cannot_be_read_is_told_at_the_line_that_names_it() {
     found("form", &[("westham.toml", "name = \"Westham\"", "nam = \"Westham\"")], "line.toml", "");
     found("form", &[("line.toml", "between = [\"Westham\", \"Eastham\"]\n", "")], "line.toml", "");
 }
+
+/// Three codes without a speed are three findings, though all stand at one place.
+#[test]
+fn nothing_is_folded_away() {
+    let (rules, findings) = broken(&[("line.toml", "[0, 15, 25, 45, 55, 65, 75, 90]", "[0, 15, 25, 75, 90]")]);
+    assert_eq!(rules, ["rank-missing".to_owned()].into());
+    assert_eq!(findings.len(), 6, "three codes in each of two stations: {findings:?}");
+}
