@@ -84,3 +84,21 @@ fn value(path: &str, one: &Spanned<DeValue<'_>>, spans: &mut BTreeMap<String, Ra
         _ => {}
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Places;
+
+    #[test]
+    fn a_value_that_is_not_there_is_placed_where_it_would_stand() {
+        let places = Places::of("l.toml", "name = \"é\"; x\n");
+        assert_eq!(places.at("name"), "l.toml", "no TOML, no places");
+        let places = Places::of("l.toml", "name = \"L\"\n\n[times]\n a = 1\n\n[[block]]\nsections_m = [1, 22]\n");
+        assert_eq!(places.at("times.a"), "l.toml:4:6");
+        assert_eq!(places.at("times.b"), "l.toml:3:2");
+        assert_eq!(places.at("block[0].sections_m[1]"), "l.toml:7:18");
+        assert_eq!(places.at("block[0].sections_m[2]"), "l.toml:7:14");
+        assert_eq!(places.at("signal.life_ms"), "l.toml");
+        assert!(places.has("block[0]") && !places.has("block[1]"));
+    }
+}

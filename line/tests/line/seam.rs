@@ -1,6 +1,6 @@
 //! The example with one thing wrong, in the line's file or in a layout: found by exactly its rule, with both places.
 
-use atc_line::{Finding, read};
+use atc_line::{Finding, Outcome, read};
 use std::collections::BTreeSet;
 use std::fs;
 
@@ -13,8 +13,8 @@ const FILES: [(&str, &str); 3] = [
 /// One change: the file, what stands there, and what is put in its place.
 type Change<'a> = (&'a str, &'a str, &'a str);
 
-/// The rules that the example breaks with these changes, and where.
-fn broken(changes: &[Change<'_>]) -> (BTreeSet<String>, Vec<Finding>) {
+/// The example with these changes, in a folder of its own.
+fn changed(changes: &[Change<'_>]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, text) in FILES {
         let mut text = text.to_owned();
@@ -24,6 +24,12 @@ fn broken(changes: &[Change<'_>]) -> (BTreeSet<String>, Vec<Finding>) {
         }
         fs::write(folder.path().join(name), text).expect("written");
     }
+    folder
+}
+
+/// The rules that the example breaks with these changes, and where.
+fn broken(changes: &[Change<'_>]) -> (BTreeSet<String>, Vec<Finding>) {
+    let folder = changed(changes);
     match read(&folder.path().join("line.toml")) {
         Ok(line) => {
             let checks = line.checks();
@@ -269,6 +275,12 @@ fn a_station_that_is_refused_hides_nothing_and_passes_nothing() {
         ("eastham.toml", "clear_ms = 2000", "clear_ms = 1100"),
     ]);
     assert_eq!(rules, ["station", "loss-within-clear"].map(String::from).into());
+    // What was not looked at in the refused station is not called met.
+    let folder = changed(&[("westham.toml", "turn_ms = 47000", "turn_ms = 46500")]);
+    let checks = read(&folder.path().join("line.toml")).expect("a line").checks();
+    let outcome = |rule: &str| checks.iter().find(|check| check.rule == rule).map(|check| check.outcome.clone());
+    assert_eq!(outcome("brake"), Some(Outcome::NotChecked));
+    assert_eq!(outcome("TIME-2"), Some(Outcome::Met));
 }
 
 #[test]
