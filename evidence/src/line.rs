@@ -14,7 +14,8 @@ pub const EXAMPLE: &str = include_str!("../examples/my-line.toml");
 /// # Errors
 /// Never while its test passes: it is a line.
 pub fn example() -> Result<Data, Vec<Fault>> {
-    atc_line::parse("evidence/examples/my-line.toml", EXAMPLE, Path::new("evidence/examples")).map_err(faults)
+    atc_line::parse("evidence/examples/my-line.toml", EXAMPLE, Path::new("evidence/examples"))
+        .map_err(|problems| faults(&problems))
 }
 
 /// A line of one's own, with the layouts that it names.
@@ -22,10 +23,10 @@ pub fn example() -> Result<Data, Vec<Fault>> {
 /// # Errors
 /// What keeps the file from being a line; a rule between its parts that is broken is no error here: the case says so.
 pub fn read(path: &Path) -> Result<Data, Vec<Fault>> {
-    atc_line::read(path).map_err(faults)
+    atc_line::read(path).map_err(|problems| faults(&problems))
 }
 
-fn faults(problems: Problems) -> Vec<Fault> {
+fn faults(problems: &Problems) -> Vec<Fault> {
     let fault = |problem: &atc_line::Problem| {
         // The message begins with the place, which a fault has apart.
         let text = problem.to_string();

@@ -134,7 +134,7 @@ struct Reader {
 impl Reader {
     /// Keeps what is right; notes what is refused, whose field is a path in the file.
     fn keep<T>(&mut self, result: Result<T, Refusal>) -> Option<T> {
-        self.keep_in(|field| field.to_owned(), result)
+        self.keep_in(str::to_owned, result)
     }
 
     /// The same where `path` makes a path in the file of the name of a field.

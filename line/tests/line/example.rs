@@ -27,7 +27,7 @@ fn a_simulation_finds_what_it_needs() {
     let names: Vec<_> = line.stations().iter().map(atc_line::seam::Station::name).collect();
     assert_eq!(names, ["Westham", "Eastham"]);
     let speeds = line.signal().expect("telegrams").permitted().settings().speeds;
-    let rank = |code| line.stations()[0].rank(&speeds, SpeedCode(code)).map(|rank| rank.rank());
+    let rank = |code| line.stations()[0].rank(&speeds, SpeedCode(code)).map(atc_kernel::aspect::AspectId::rank);
     assert_eq!([rank(0), rank(1), rank(7), rank(8)], [Some(0), Some(1), Some(7), None]);
     let sent = |station: &str, circuit: &str, heading| {
         let found = line.telegrams().iter().find(|one| one.station == station && one.circuit == circuit);
