@@ -272,7 +272,7 @@ fn positioned(file: &form::Position) -> Result<Position, Refusal> {
         floor_db: given("floor_db", file.floor_db)?,
         correction_db,
     };
-    config.position("")
+    config.position_named("")
 }
 
 /// What the line is, for who uses it.

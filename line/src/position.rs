@@ -102,11 +102,16 @@ impl TableConfig {
 }
 
 impl Config {
-    /// The parameters in the kernel's form. `in_table` stands before the names of the table's fields: `table.`, or nothing.
+    /// The parameters in the kernel's form.
     ///
     /// # Errors
     /// The rule that they break.
-    pub fn position(&self, in_table: &str) -> Result<Position, Refusal> {
+    pub fn position(&self) -> Result<Position, Refusal> {
+        self.position_named("table.")
+    }
+
+    /// The same where `in_table` stands before the names of the table's fields: `table.`, or nothing.
+    pub(crate) fn position_named(&self, in_table: &str) -> Result<Position, Refusal> {
         let table = self.table.table(in_table)?;
         let [least, most] = self.correction_db;
         let [kernel_least, kernel_most] = [level("correction_db[0]", least)?, level("correction_db[1]", most)?];

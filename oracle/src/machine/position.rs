@@ -77,7 +77,7 @@ impl Machine for Positioned {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        Ok(Self { position: config.position("table.")?, interval: None })
+        Ok(Self { position: config.position()?, interval: None })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
