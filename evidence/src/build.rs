@@ -3,7 +3,7 @@
 use crate::argument;
 use crate::case::{
     Case, Condition, Engine, EngineResult, Evidence, Kind, OpenItem, Phase, Provenance, Run as About, SCHEMA, Severity,
-    Station, Status, Technique, Tool,
+    Status, Technique, Tool,
 };
 use crate::error::Fault;
 use crate::hazard;
@@ -121,7 +121,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, 
         status: Status::default(),
         open_items: Vec::new(),
         requirements: trace::table(&plan.requirements, &plan.citations, &plan.mentions, &evidence),
-        line: plan.line.case(&evidence),
+        line: crate::line::case(&plan.line, &evidence),
         needed_rules: station::needed::table(&plan.mutants, &evidence),
         station: plan.station.as_ref().map(|station| station.case(&evidence, &conditions)),
         techniques: techniques(plan, &evidence, &engines),
@@ -275,23 +275,20 @@ pub fn status(case: &Case, required: Required) -> Status {
         _ => one.verdict.is_result(),
     };
     let missing: Vec<_> = case.evidence.iter().filter(|one| !has_result(one)).map(|one| one.id.clone()).collect();
-    let broken = || case.station.iter().flat_map(Station::broken);
+    let data = open::of_data(case);
     let mut reasons: Vec<String> = Vec::new();
     for one in case.evidence.iter().filter(|one| one.verdict.is_defect()) {
         reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.why()));
     }
     for one in case.open_items.iter().filter(|one| one.severity == Severity::Stop) {
-        // Those of the station follow below, each once.
-        let of_station = broken().any(|rule| one.text.ends_with(&format!("[{}]", rule.rule)));
+        // Those of line and station follow below, each once.
+        let of_data = data.iter().any(|item| item.text == one.text);
         let of_evidence = case.evidence.iter().any(|evidence| evidence.title == one.about);
-        if !of_station && !of_evidence && !of_many(&one.about) {
+        if !of_data && !of_evidence && !of_many(&one.about) {
             reasons.push(format!("{}: {}", one.about, one.text));
         }
     }
-    for rule in broken() {
-        let all = rule.broken.iter().map(|one| format!("{}: {} [{}]", one.at, one.what, rule.rule));
-        reasons.extend(all);
-    }
+    reasons.extend(data.iter().map(|item| format!("{}: {}", item.about, item.text)));
     if required == Required::Proved {
         let mut weak: BTreeMap<(Verdict, &str), Vec<String>> = BTreeMap::new();
         for one in case.evidence.iter().filter(|one| !one.verdict.is_defect() && !one.left_out) {

@@ -51,10 +51,7 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
             items.push(item(Severity::Open, &citation.anchor, text));
         }
     }
-    for check in case.line.checks.iter().filter(|check| check.contains("NO")) {
-        items.push(item(Severity::Stop, &case.line.name, check.clone()));
-    }
-    items.extend(case.station.iter().flat_map(of_station));
+    items.extend(of_data(case));
     items.extend(needed::open(&case.needed_rules));
     for condition in case.conditions.iter().filter(|condition| condition.used_by.is_empty()) {
         let text = format!("The assumption \"{}\" is listed and used nowhere.", condition.id);
@@ -102,11 +99,23 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
 
 /// The rules that a station's layout breaks.
 pub fn of_station(station: &Station) -> Vec<OpenItem> {
+    of_checks(&station.checks)
+}
+
+/// The rules that the data of line and station break.
+pub fn of_data(case: &Case) -> Vec<OpenItem> {
+    let line = of_checks(&case.line.checks);
+    line.into_iter().chain(case.station.iter().flat_map(of_station)).collect()
+}
+
+/// Where data break rules.
+pub fn of_checks(checks: &[DataCheck]) -> Vec<OpenItem> {
     let told = |rule: &DataCheck, found: &Finding| {
         let right = if found.right.is_empty() { String::new() } else { format!("; {}", found.right) };
-        item(Severity::Stop, &found.at, format!("{}{right} [{}]", found.what, rule.rule))
+        let against = found.against.as_ref().map_or_else(String::new, |against| format!(" (against {against})"));
+        item(Severity::Stop, &found.at, format!("{}{right}{against} [{}]", found.what, rule.rule))
     };
-    station.broken().flat_map(|rule| rule.broken.iter().map(move |found| told(rule, found))).collect()
+    checks.iter().flat_map(|rule| rule.findings().iter().map(move |found| told(rule, found))).collect()
 }
 
 /// The worst first; the same text about many things is one item.

@@ -3,7 +3,6 @@
 //! A case whose sources contradict each other is not built: it would cost minutes of proving to find that out later.
 
 use crate::argument;
-use crate::config::Checked;
 use crate::data::{Data, Ratchet};
 use crate::error::Fault;
 use crate::hazard;
@@ -12,6 +11,7 @@ use crate::inputs::{measured, models, mutants, proofs};
 use crate::srac;
 use crate::station;
 use crate::trace;
+use atc_line::Line;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub struct Plan {
     /// Who uses each assumption.
     pub uses: BTreeMap<String, BTreeSet<String>>,
     /// The line.
-    pub line: Checked,
+    pub line: Line,
     /// The station, if one was given.
     pub station: Option<station::Checked>,
     /// Numbers that could be raised in the ratchet.
@@ -51,7 +51,7 @@ pub struct Plan {
 /// All faults of the first stage that has any.
 pub fn plan(
     root: &Path,
-    (line, station): (Checked, Option<station::Checked>),
+    (line, station): (Line, Option<station::Checked>),
     mutants: Vec<mutants::Catalogue>,
 ) -> Result<Plan, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];

@@ -11,7 +11,7 @@ fn here() -> &'static Plan {
     static PLAN: OnceLock<Plan> = OnceLock::new();
     PLAN.get_or_init(|| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the checkout");
-        let line = crate::config::parse("example", crate::config::EXAMPLE).expect("a line");
+        let line = crate::line::example().expect("a line");
         plan(root, (line, None), mutants::catalogue(root).expect("mutants")).expect("a plan")
     })
 }

@@ -13,7 +13,7 @@ fn touches(folder: &str, kind: Kind) -> bool {
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
         "waveform" => matches!(kind, Kind::Measured | Kind::Test),
-        "oracle" | "tests" | "evidence" | "layout" => kind == Kind::Test,
+        "oracle" | "tests" | "evidence" | "layout" | "line" => kind == Kind::Test,
         _ => false,
     }
 }
@@ -85,6 +85,10 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     }
     for (id, theorem) in &mut case.line.theorems {
         *theorem = verdict(id).unwrap_or(Verdict::NotRun);
+        // What held the line's data against the rules was another checker.
+        if changed.iter().any(|folder| ["line", "layout"].contains(&folder.as_str())) {
+            *theorem = (*theorem).max(Verdict::Stale);
+        }
     }
     for (id, theorem) in case.station.iter_mut().flat_map(|station| &mut station.theorems) {
         *theorem = verdict(id).unwrap_or(Verdict::NotRun);

@@ -229,8 +229,41 @@ fn a_bad_line_is_refused_and_nothing_is_written() {
         .expect("written");
     let run = bare(&out, &["--config", config.to_str().expect("a path")]);
     assert_eq!(run.status.code(), Some(2));
-    assert!(text(&run).contains("bad.toml:18:24: rule TIME-2 is broken: T5"), "{}", text(&run));
+    assert!(text(&run).contains("bad.toml:18:24: rule TIME-2 is broken: shortened_operate_ms (T5)"), "{}", text(&run));
     assert!(!out.exists());
+}
+
+/// A station that counts on less than its trains do ends the run badly, with both places on the page.
+#[test]
+fn a_line_with_stations_is_held_against_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let examples = root().join("line/examples");
+    for name in ["line.toml", "westham.toml", "eastham.toml"] {
+        std::fs::copy(examples.join(name), folder.path().join(name)).expect("copied");
+    }
+    let (out, config) = (folder.path().join("case"), folder.path().join("line.toml"));
+    let config = config.to_str().expect("a path");
+    let run = bare(&out, &["--config", config]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run));
+    let outcomes = |out: &Path| {
+        let checks = json(out)["line"]["checks"].as_array().expect("a list").clone();
+        checks.iter().filter(|check| check["outcome"]["is"] == "broken").cloned().collect::<Vec<_>>()
+    };
+    assert!(outcomes(&out).is_empty());
+
+    let text_of = std::fs::read_to_string(config).expect("there");
+    std::fs::write(config, text_of.replace("life_ms = 2500", "life_ms = 2970")).expect("written");
+    let run = bare(&out, &["--config", config]);
+    assert_eq!(run.status.code(), Some(1), "{}", text(&run));
+    let found = outcomes(&out);
+    assert_eq!((found.len(), &found[0]["rule"]), (1, &serde_json::json!("telegram-lives")), "{found:?}");
+    let finding = &found[0]["outcome"]["why"][0];
+    let place = |field: &str| finding[field].as_str().expect("a place").to_owned();
+    assert!(place("at").ends_with("westham.toml:8:19") && place("against").contains("line.toml:"), "{finding}");
+    let page = std::fs::read_to_string(out.join("index.html")).expect("written");
+    assert!(page.contains(&place("at")) && page.contains(&place("against")));
+    let reasons = json(&out)["status"]["reasons"].to_string();
+    assert_eq!(reasons.matches("[telegram-lives]").count(), 2, "one for each station: {reasons}");
 }
 
 #[test]

@@ -88,8 +88,8 @@ fn border(model: &Model, segment: &Segment, other_model: &Model, other: &Segment
     }
 }
 
-/// The joint at which the view of a segment ends.
-fn outer_end<'a>(model: &'a Model, segment: &Segment) -> Option<&'a str> {
+/// The joint at which the view of a segment ends; none if no track goes on there.
+pub fn outer_end<'a>(model: &'a Model, segment: &Segment) -> Option<&'a str> {
     let outermost = *segment.circuits.last()?;
     let ends = |joint: &usize| model.graph.joints[*joint].end == Some(EndKind::Line);
     let joint = model.graph.borders(outermost).into_iter().find(ends)?;

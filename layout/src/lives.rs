@@ -26,6 +26,25 @@ impl TrainLives {
     }
 }
 
+/// What is wrong with the age that the ground counts on, if trains act on telegrams for longer.
+pub fn age(description: &Description, train: TrainLives) -> Option<Problem> {
+    let acts = train.acts_ms();
+    let TrainLives { ahead_ms, life_ms, reaction_ms } = train;
+    let age = &description.station.times.telegram_age_ms;
+    if u64::from(age.value) >= acts {
+        return None;
+    }
+    let what = format!(
+        "the ground counts on telegrams that live for {age} ms, and trains act on them for {acts} ms (content taken ahead \
+         {ahead_ms} ms, life {life_ms} ms, reaction {reaction_ms} ms)"
+    );
+    let right = match u64::from(age.value).checked_sub(ahead_ms + reaction_ms).filter(|life| *life > 0) {
+        Some(life) => format!("telegram_age_ms must be {acts} or more, or the train's life end within {life} ms"),
+        None => format!("telegram_age_ms must be {acts} or more"),
+    };
+    Some(Problem::new(Rule::TelegramLives, &age.span, what, right))
+}
+
 /// Holds what the ground counts on against what trains do.
 ///
 /// # Errors
@@ -33,20 +52,7 @@ impl TrainLives {
 pub fn compare(description: &Description, model: &Model, train: TrainLives) -> Result<(), Errors> {
     let acts = train.acts_ms();
     let times = &description.station.times;
-    let TrainLives { ahead_ms, life_ms, reaction_ms } = train;
-    let mut problems = Vec::new();
-    let age = &times.telegram_age_ms;
-    if u64::from(age.value) < acts {
-        let what = format!(
-            "the ground counts on telegrams that live for {age} ms, and trains act on them for {acts} ms (content taken ahead \
-             {ahead_ms} ms, life {life_ms} ms, reaction {reaction_ms} ms)"
-        );
-        let right = match u64::from(age.value).checked_sub(ahead_ms + reaction_ms).filter(|life| *life > 0) {
-            Some(life) => format!("telegram_age_ms must be {acts} or more, or the train's life end within {life} ms"),
-            None => format!("telegram_age_ms must be {acts} or more"),
-        };
-        problems.push(Problem::new(Rule::TelegramLives, &age.span, what, right));
-    }
+    let mut problems: Vec<_> = age(description, train).into_iter().collect();
     for (route, given) in model.routes.iter().zip(&description.station.routes) {
         let release = u64::from(route.release.0) * u64::from(model.values.cycle_ms);
         if release < acts {

@@ -7,8 +7,6 @@
 //! * [`schema`]: the JSON Schema of the protocol, generated from the types.
 
 pub mod chart;
-pub mod decimal;
-pub mod kmh;
 pub mod machine;
 mod names;
 pub mod protocol;
@@ -20,8 +18,8 @@ pub mod signal;
 pub mod telegrams;
 pub mod trace;
 
-pub use decimal::{Decibels, Metres};
-pub use kmh::{Kmh, KmhError};
+pub use atc_line::decimal::{self, Decibels, Metres};
+pub use atc_line::kmh::{self, Kmh, KmhError};
 pub use sections::Sections;
 pub use serve::serve;
 pub use session::{MAX_LINE, Session};

@@ -1,6 +1,7 @@
 //! `oracle`: the kernel as a reference, on the command line.
 
 mod layout;
+mod line;
 
 use std::fmt;
 use std::fs;
@@ -38,6 +39,9 @@ enum Command {
     /// Checks, imports, tabulates or draws the layout of a station
     #[command(subcommand)]
     Layout(layout::LayoutCommand),
+    /// Checks the data of a whole line, and what its stations and trains count on of each other
+    #[command(subcommand)]
+    Line(line::LineCommand),
     /// Prints the JSON Schema of protocol 1
     Schema,
     /// Prints what a shell needs to complete the commands
@@ -111,6 +115,8 @@ enum Failure {
     Layout(atc_layout::Errors),
     /// What was compared is not the same; it has been told.
     Differs,
+    /// A line is not as it should be; it has been told. The exit code.
+    Line(u8),
 }
 
 impl fmt::Display for Failure {
@@ -123,7 +129,7 @@ impl fmt::Display for Failure {
             Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
             Self::Signal(reason) => f.write_str(reason),
             Self::Layout(errors) => write!(f, "{errors}"),
-            Self::Differs => Ok(()),
+            Self::Differs | Self::Line(_) => Ok(()),
         }
     }
 }
@@ -134,12 +140,14 @@ fn main() -> ExitCode {
         Command::Chart(args) => draw(&args),
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
+        Command::Line(command) => line(&command),
         Command::Schema => print(&atc_oracle::schema::text()),
         Command::Completions { shell } => completions(shell),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Differs) => ExitCode::FAILURE,
+        Err(Failure::Line(code)) => ExitCode::from(code),
         // Each line of these begins with its file and place, as an editor wants it.
         Err(Failure::Layout(errors)) => {
             remark(&format!("{errors}\n"));
@@ -215,6 +223,13 @@ fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {
     }
     remark(&done.remarks);
     if done.differs { Err(Failure::Differs) } else { Ok(()) }
+}
+
+fn line(command: &line::LineCommand) -> Result<(), Failure> {
+    let done = line::run(command);
+    print(&done.text)?;
+    remark(&done.remarks);
+    if done.code == 0 { Ok(()) } else { Err(Failure::Line(done.code)) }
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

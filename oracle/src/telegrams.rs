@@ -2,11 +2,12 @@
 
 use atc_kernel::aspect::AspectId;
 use atc_kernel::distance::Metres;
-use atc_kernel::telegram::{self, Counter, Gradient, Length, Main, Route, SectionId, Sub};
+use atc_kernel::telegram::{self, Counter, Length, Main, Route, SectionId, Sub};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::decimal::OrNull;
+use atc_line::refusal::{fit, gradient, metres};
 
 /// A main telegram: what changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -62,32 +63,10 @@ pub enum Telegram {
     Sub(SubTelegram),
 }
 
-/// A number that must fit its field, or a sentence that says so.
-fn fit<T: TryFrom<i64>>(field: &str, number: impl Into<i64>, range: &str) -> Result<T, String> {
-    let number = number.into();
-    T::try_from(number).map_err(|_| format!("{field} is {number}; it must be {range}"))
-}
-
 /// A rank of a speed.
 fn rank(field: &str, number: u32) -> Result<AspectId, String> {
     let rank = u8::try_from(number).ok().and_then(AspectId::new);
     rank.ok_or_else(|| format!("{field} is {number}; a rank is 0 to 15"))
-}
-
-/// A gradient.
-///
-/// # Errors
-/// If it does not fit, with the name of its field.
-pub(crate) fn gradient(field: &str, permille: i32) -> Result<Gradient, String> {
-    fit(field, permille, "-128 to 127 thousandths").map(Gradient)
-}
-
-/// Whole metres.
-///
-/// # Errors
-/// If they do not fit, with the name of their field.
-pub(crate) fn metres(field: &str, metres: u32) -> Result<Metres, String> {
-    fit(field, metres, "0 to 65535 m").map(Metres)
 }
 
 const SECTION: &str = "0 to 65535";

@@ -201,7 +201,7 @@ pub fn check(config: &Config, chart: &str) {
     let compare = || {
         let sections = u8::try_from(config.sections).map_err(|error| BlockChartError(error.to_string()))?;
         let parsed = BlockChart::parse(chart, sections)?;
-        parsed.check_kernel(config.block().map_err(BlockChartError)?)?;
+        parsed.check_kernel(config.block().map_err(|refusal| BlockChartError(refusal.what))?)?;
         parsed.check_process(&device(), config)
     };
     if let Err(error) = compare() {

@@ -42,6 +42,7 @@ Commands:
   chart        Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
   signal       Makes the train control signal as a WAV file, or reads one
   layout       Checks, imports, tabulates or draws the layout of a station
+  line         Checks the data of a whole line, and what its stations and trains count on of each other
   schema       Prints the JSON Schema of protocol 1
   completions  Prints what a shell needs to complete the commands
   help         Print this message or the help of the given subcommand(s)

@@ -32,7 +32,7 @@ fn check_columns(config: &Config, column_ms: u32, chart: &str) {
 
 fn compare(config: &Config, column_ms: u32, chart: &str) -> Result<(), ChartError> {
     let chart = TimingChart::parse(chart, column_ms, config.cycle_ms)?;
-    let times = config.times().map_err(|error| ChartError(config.explain_times(error)))?;
+    let times = config.times().map_err(|refusal| ChartError(refusal.what))?;
     let detections = chart.detections();
     let said = |device: &str| {
         let device = device.to_owned();

@@ -19,16 +19,16 @@ pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
 pub use measured::{Figure, Measurements, Plot};
 pub use register::{Accident, Condition, Hazard, Requirement, Technique, Tool};
 pub use run::{Phase, Run};
-pub use station::{Asked, Check, Confirm, DataCheck, Finding, NeededRule, Origin, Station, StationCondition};
+pub use station::{Asked, Confirm, DataCheck, Finding, NeededRule, Origin, Outcome, Station, StationCondition};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 6;
+pub const SCHEMA: u32 = 7;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// The version of this shape: 6.
+    /// The version of this shape: 7.
     pub schema: u32,
     /// What the case is about.
     pub title: String,

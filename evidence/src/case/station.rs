@@ -2,6 +2,7 @@
 
 use super::Derived;
 use crate::verdict::Verdict;
+pub use atc_line::{Asked, DataCheck, Finding, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -53,60 +54,6 @@ pub struct Station {
     pub layout: String,
 }
 
-/// What a data check came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Check {
-    /// The rule is kept everywhere.
-    Kept,
-    /// The rule is broken.
-    Broken,
-    /// Other rules are broken, so this one could not be looked at everywhere.
-    NotChecked,
-}
-
-/// Who asks for a rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Asked {
-    /// The file must say one thing, and say it clearly.
-    Form,
-    /// Engineering: no theorem rests on it, but safe running does.
-    Engineering,
-    /// A theorem rests on it.
-    Theorems,
-}
-
-/// One rule and its verdict.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct DataCheck {
-    /// Its name, as in messages.
-    pub rule: String,
-    /// What it demands.
-    pub text: String,
-    /// Who asks for it.
-    pub asked: Asked,
-    /// What it was held against: `30 routes`.
-    pub scope: String,
-    /// What it came to.
-    pub check: Check,
-    /// Where it is broken, what was found, and what would be right.
-    pub broken: Vec<Finding>,
-}
-
-/// A place where a rule is broken.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Finding {
-    /// File, line and column; the file alone if it stands nowhere.
-    pub at: String,
-    /// What is wrong.
-    pub what: String,
-    /// What would be right.
-    pub right: String,
-}
-
 /// Where something comes from that is to be confirmed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -154,11 +101,11 @@ pub struct StationCondition {
 impl Station {
     /// The rules that are broken.
     pub fn broken(&self) -> impl Iterator<Item = &DataCheck> {
-        self.checks.iter().filter(|one| one.check == Check::Broken)
+        self.checks.iter().filter(|one| !one.findings().is_empty())
     }
 
     /// Whether every rule is kept.
     pub fn is_sound(&self) -> bool {
-        self.checks.iter().all(|one| one.check == Check::Kept)
+        self.checks.iter().all(|one| one.outcome.holds())
     }
 }

@@ -7,9 +7,9 @@ mod render;
 mod run;
 
 use crate::build::Required;
-use crate::config;
-use crate::error::{Fault, read};
+use crate::error::Fault;
 use crate::inputs::mutants;
+use crate::line;
 use crate::plan::{Plan, plan};
 use crate::scope::{Scope, Shard};
 use crate::station;
@@ -193,11 +193,7 @@ fn required(require: Option<Require>) -> Required {
 /// The plan for this line and station.
 fn planned(root: &Path, config: Option<&Path>, layout: Option<&Path>) -> Result<Plan, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];
-    let line = match config {
-        Some(path) => config::parse(&path.display().to_string(), &read(path).map_err(one)?),
-        None => config::parse("evidence/examples/my-line.toml", config::EXAMPLE),
-    }
-    .map_err(one)?;
+    let line = config.map_or_else(line::example, line::read)?;
     // Of the trains that run there only a line of one's own says anything; the example does not.
     let trains = config.and_then(|_| line.lives());
     let station = layout.map(station::read).transpose()?.map(|station| match trains {

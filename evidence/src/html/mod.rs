@@ -1,6 +1,7 @@
 //! The document: one HTML file that needs nothing else, readable without scripts, printable.
 
 mod argument;
+mod checks;
 mod drawing;
 mod faults;
 mod measured;

@@ -1,8 +1,10 @@
 //! The registers: hazard log, conditions, traceability, techniques, tools, the specific application.
 
+use super::checks::rules;
 use super::{badge, link, links};
-use crate::case::{Case, Line};
+use crate::case::{Case, Line, Outcome};
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 /// Sections 4.7 to 4.13; 4.14 follows in `measured`.
 pub fn render(case: &Case) -> Markup {
@@ -215,10 +217,28 @@ fn line(line: &Line) -> Markup {
             ul { @for note in &line.notes { li { (note) } } }
         }
         h4 { "Data checks" }
-        ul { @for check in &line.checks { li { (check) } } }
+        (line_checks(line))
         h4 { "Generic theorems that are instantiated" }
         p { (holds) " of " (line.theorems.len()) " have a good result in this run: "
             @for (id, verdict) in &line.theorems { (link(id)) " " (badge(*verdict)) " " } }
+    }
+}
+
+/// Every rule that is about something; the others in one sentence for each reason.
+fn line_checks(line: &Line) -> Markup {
+    let mut none: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let mut about = Vec::new();
+    for check in &line.checks {
+        match &check.outcome {
+            Outcome::NotApplicable { why } => none.entry(why).or_default().push(&check.rule),
+            _ => about.push(check),
+        }
+    }
+    html! {
+        (rules(&about))
+        @for (why, rules) in none {
+            p.small { "Not applicable, as " (why) ": " @for (place, rule) in rules.iter().enumerate() { @if place > 0 { ", " } code { (rule) } } "." }
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! The specific application on the ground: a section of the case, and the station's own page, made to be signed.
 
+use super::checks::rules;
 use super::{badge, date, links};
-use crate::case::{Asked, Case, Check, Confirm, DataCheck, NeededRule, Origin, Station};
+use crate::case::{Case, Confirm, NeededRule, Origin, Station};
 use crate::output::STATION;
 use crate::station::conclusion;
 use crate::verdict::Verdict;
@@ -50,7 +51,7 @@ fn needed(rules: &[NeededRule]) -> Markup {
 fn broken(station: &Station) -> Markup {
     html! {
         @if station.broken().next().is_some() {
-            ul { @for rule in station.broken() { @for found in &rule.broken {
+            ul { @for rule in station.broken() { @for found in rule.findings() {
                 li { span.badge.failed { "broken" } " " code { (found.at) } ": " (found.what)
                     @if !found.right.is_empty() { "; " (found.right) } " [" (rule.rule) "]" }
             } } }
@@ -201,34 +202,10 @@ fn control_table(station: &Station) -> Markup {
 }
 
 fn checks(station: &Station) -> Markup {
-    let groups = [
-        (Asked::Theorems, "Rules that theorems rest on"),
-        (Asked::Engineering, "Rules of engineering"),
-        (Asked::Form, "Rules of the form"),
-    ];
-    let mark = |check: &DataCheck| match check.check {
-        Check::Kept => html! { span.badge.kept { "kept" } },
-        Check::Broken => html! { span.badge.failed { "broken" } },
-        Check::NotChecked => html! { span.badge.not-run { "not checked" } },
-    };
     html! {
         h2 { "4 Data checks" }
         p { "Made by the kernel's own check of the plan (" code { "plan-…" } ") and by the reader of layouts. A rule is not checked where another one is broken that it builds on." }
-        table {
-            thead { tr { th { "Verdict" } th { "Rule" } th { "What it demands" } th { "Held against" } th { "Where it is broken" } } }
-            @for (asked, title) in groups {
-                tr { td colspan="5" { strong { (title) } } }
-                @for check in station.checks.iter().filter(|check| check.asked == asked) {
-                    tr {
-                        td { (mark(check)) }
-                        td { code { (check.rule) } }
-                        td { (check.text) }
-                        td { (check.scope) }
-                        td.small { @for one in &check.broken { div { code { (one.at) } ": " (one.what) @if !one.right.is_empty() { "; " (one.right) } } } }
-                    }
-                }
-            }
-        }
+        (rules(&station.checks.iter().collect::<Vec<_>>()))
     }
 }
 

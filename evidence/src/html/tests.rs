@@ -2,8 +2,8 @@
 
 use super::{document, headline, station_page};
 use crate::case::{
-    Asked, Case, Chart, Check, Conclusion, CutSet, DataCheck, Derived, Evidence, Excluded, FailureMode, Figure, Kind,
-    Line, Measurements, OpenItem, Provenance, Run, SCHEMA, SecondOpinion, Severity, Station, Status,
+    Asked, Case, Chart, Conclusion, CutSet, DataCheck, Derived, Evidence, Excluded, FailureMode, Figure, Kind, Line,
+    Measurements, OpenItem, Outcome, Provenance, Run, SCHEMA, SecondOpinion, Severity, Station, Status,
 };
 use crate::inputs::measured::HERE;
 use crate::verdict::Verdict;
@@ -160,13 +160,12 @@ fn figures_that_were_read_are_not_said_to_be_of_these_sources() {
 
 #[test]
 fn a_station_is_to_be_signed_only_with_every_rule_kept_and_every_theorem_shown() {
-    let rule = |check| DataCheck {
+    let rule = |outcome| DataCheck {
         rule: "no-flank".to_owned(),
         text: "t".to_owned(),
         asked: Asked::Engineering,
         scope: "1 route".to_owned(),
-        check,
-        broken: vec![],
+        outcome,
     };
     let page = |check, verdict| {
         let station = Station {
@@ -188,15 +187,15 @@ fn a_station_is_to_be_signed_only_with_every_rule_kept_and_every_theorem_shown()
     };
     let invites = |page: &str| page.contains("To be confirmed and signed.");
     let forbids = |page: &str| page.contains("Not to be signed: ") && page.contains(">not to be signed</span>");
-    let good = page(Check::Kept, Verdict::ProvedBounded);
+    let good = page(Outcome::Met, Verdict::ProvedBounded);
     assert!(invites(&good) && !forbids(&good));
-    assert!(!page(Check::Kept, Verdict::Proved).contains("A <b>"));
+    assert!(!page(Outcome::Met, Verdict::Proved).contains("A <b>"));
     for verdict in Verdict::ALL.into_iter().filter(|verdict| !verdict.holds()) {
-        let page = page(Check::Kept, verdict);
+        let page = page(Outcome::Met, verdict);
         assert!(!invites(&page) && forbids(&page), "{verdict}");
     }
-    for check in [Check::Broken, Check::NotChecked] {
-        let page = page(check, Verdict::Proved);
+    for check in [Outcome::Broken { why: vec![] }, Outcome::NotChecked] {
+        let page = page(check.clone(), Verdict::Proved);
         assert!(!invites(&page) && forbids(&page), "{check:?}");
     }
 }

@@ -9,7 +9,9 @@ pub mod needed;
 pub mod parameters;
 pub mod rules;
 
-use crate::case::{Asked, Check, Conclusion, Condition, DataCheck, Evidence, Finding, Kind, Station, StationCondition};
+use crate::case::{
+    Asked, Conclusion, Condition, DataCheck, Evidence, Finding, Kind, Outcome, Station, StationCondition,
+};
 use crate::error::Fault;
 use crate::inputs::provenance::sha256;
 use crate::verdict::Verdict;
@@ -65,6 +67,10 @@ fn place(source: &str, place: Option<atc_layout::LineColumn>) -> String {
     place.map_or_else(|| source.to_owned(), |at| format!("{source}:{}:{}", at.line, at.column))
 }
 
+fn finding(source: &str, problem: atc_layout::Problem) -> Finding {
+    Finding { at: place(source, problem.place), against: None, what: problem.what, right: problem.right }
+}
+
 /// Holds a layout against every rule; `source` is the file's name and `sha256` its hash.
 pub fn check(source: &str, sha256: &str, imported: &Imported) -> Checked {
     let Imported { description, .. } = imported;
@@ -111,12 +117,7 @@ impl Checked {
             Ok(()) => Vec::new(),
             Err(errors) => {
                 let source = self.description.source.name.clone();
-                let finding = |problem: atc_layout::Problem| Finding {
-                    at: place(&source, problem.place),
-                    what: problem.what,
-                    right: problem.right,
-                };
-                errors.problems.into_iter().map(finding).collect()
+                errors.problems.into_iter().map(|problem| finding(&source, problem)).collect()
             }
         };
         self.station.checks.push(DataCheck {
@@ -124,8 +125,7 @@ impl Checked {
             text: Rule::TelegramLives.text().to_owned(),
             asked: Asked::Engineering,
             scope: format!("the trains of “{line}”"),
-            check: if broken.is_empty() { Check::Kept } else { Check::Broken },
-            broken,
+            outcome: Outcome::of(broken),
         });
         self
     }
@@ -152,21 +152,14 @@ fn checks(
     rules::all()
         .map(|(rule, asked, stage, scope)| {
             let mine = problems.iter().filter(|problem| problem.rule == rule);
-            let broken: Vec<_> = mine
-                .map(|problem| Finding {
-                    at: place(source, problem.place),
-                    what: problem.what.clone(),
-                    right: problem.right.clone(),
-                })
-                .collect();
-            let check = match first {
-                _ if !broken.is_empty() => Check::Broken,
+            let broken: Vec<_> = mine.map(|problem| finding(source, problem.clone())).collect();
+            let outcome = match first {
                 // A route without a way is not looked at any further, and neither is anything after its stage.
-                Some(first) if stage >= first => Check::NotChecked,
-                _ => Check::Kept,
+                Some(first) if broken.is_empty() && stage >= first => Outcome::NotChecked,
+                _ => Outcome::of(broken),
             };
             let scope = number(scope, description, model);
-            DataCheck { rule: rule.name(), text: rule.text().to_owned(), asked, scope, check, broken }
+            DataCheck { rule: rule.name(), text: rule.text().to_owned(), asked, scope, outcome }
         })
         .collect()
 }

@@ -83,6 +83,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     ResidualTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     SegmentOrder => (Asked::Engineering, Stage::Model, Scope::Segments);
     RouteTwice => (Asked::Engineering, Stage::Model, Scope::Pairs);
+    LineWithoutSegment => (Asked::Engineering, Stage::Plan, Scope::File);
     NoRoute => (Asked::Form, Stage::Room, Scope::File);
     TooMany => (Asked::Form, Stage::Room, Scope::File);
 }

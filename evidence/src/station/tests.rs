@@ -1,7 +1,7 @@
 //! Stations of the repository, and rules broken on purpose.
 
 use super::{Checked, check, conclusion, read};
-use crate::case::{Asked, Check, Condition, Evidence, Kind, Origin, Station};
+use crate::case::{Asked, Condition, Evidence, Kind, Origin, Outcome, Station};
 use crate::verdict::Verdict;
 use atc_layout::Description;
 use atc_layout::import::Imported;
@@ -33,8 +33,8 @@ fn changed(from: &str, to: &str) -> Station {
     station(&LOOP.replacen(from, to, 1))
 }
 
-fn verdict(station: &Station, rule: &str) -> Check {
-    station.checks.iter().find(|one| one.rule == rule).unwrap_or_else(|| panic!("{rule} is not there")).check
+fn verdict(station: &Station, rule: &str) -> Outcome {
+    station.checks.iter().find(|one| one.rule == rule).unwrap_or_else(|| panic!("{rule} is not there")).outcome.clone()
 }
 
 #[test]
@@ -55,26 +55,26 @@ fn the_station_with_30_routes_keeps_every_rule_and_says_against_what() {
 #[test]
 fn a_broken_rule_is_named_with_its_place_and_what_follows_it_is_not_called_kept() {
     let broken = changed("[[segment]]", "[times]\nturn_ms = 1000\n\n[[segment]]");
-    let found = &broken.broken().next().expect("broken").broken[0];
+    let found = &broken.broken().next().expect("broken").findings()[0];
     assert_eq!(broken.broken().count(), 1);
     assert!(found.at.starts_with("s.toml:") && found.right == "turn_ms must be more than 1000", "{found:?}");
-    assert_eq!(verdict(&broken, "turn-under-telegram"), Check::Broken);
-    assert_eq!(verdict(&broken, "joint"), Check::Kept);
-    assert_eq!(verdict(&broken, "plan-no-time"), Check::NotChecked);
-    assert_eq!(verdict(&broken, "no-flank"), Check::NotChecked);
+    assert!(matches!(verdict(&broken, "turn-under-telegram"), Outcome::Broken { .. }));
+    assert_eq!(verdict(&broken, "joint"), Outcome::Met);
+    assert_eq!(verdict(&broken, "plan-no-time"), Outcome::NotChecked);
+    assert_eq!(verdict(&broken, "no-flank"), Outcome::NotChecked);
     assert!(broken.theorems.is_empty() && !broken.drawing.is_empty() && broken.table.is_empty());
     let conclusion = conclusion(&broken);
     assert_eq!(conclusion.verdict, Verdict::Failed);
     assert!(conclusion.sentence.contains("No theorem holds for it"), "{}", conclusion.sentence);
     // A rule of the kernel's plan: everything before it was checked.
     let broken = changed("name = \"W-1\"\n", "name = \"W-1\"\nconflicts = [\"E-2\"]\n");
-    assert_eq!(verdict(&broken, "plan-conflict-one-way"), Check::Broken);
-    assert_eq!(verdict(&broken, "no-flank"), Check::Kept);
+    assert!(matches!(verdict(&broken, "plan-conflict-one-way"), Outcome::Broken { .. }));
+    assert_eq!(verdict(&broken, "no-flank"), Outcome::Met);
     assert!(!broken.table.is_empty() && !broken.is_sound());
     // The tracks: nothing can be drawn, tabulated or said of routes.
     let broken = changed("name = \"W-2\"", "name = \"W-1\"");
-    assert_eq!(verdict(&broken, "name-twice"), Check::Broken);
-    assert_eq!(verdict(&broken, "range"), Check::NotChecked);
+    assert!(matches!(verdict(&broken, "name-twice"), Outcome::Broken { .. }));
+    assert_eq!(verdict(&broken, "range"), Outcome::NotChecked);
     assert!(broken.drawing.is_empty() && broken.parameters.is_empty());
 }
 
@@ -90,27 +90,27 @@ fn a_layout_that_counts_on_shorter_lives_than_its_trains_have_is_refused() {
     assert_eq!((on_board.fresh_ms, on_board.life_ms), (2200, 5000));
     for life_ms in [on_board.fresh_ms, on_board.life_ms] {
         let refused = with(LOOP, train(life_ms));
-        let found = &refused.broken().next().expect("broken").broken[0];
+        let found = &refused.broken().next().expect("broken").findings()[0];
         let acts = 530 + life_ms + on_board.cycle_ms;
         let what =
             format!("the ground counts on telegrams that live for 1000 ms, and trains act on them for {acts} ms");
         assert!(found.what.starts_with(&what), "{found:?}");
         let right = format!("telegram_age_ms must be {acts} or more, or the train's life end within 470 ms");
         assert_eq!(found.right, right);
-        assert_eq!(verdict(&refused, "telegram-lives"), Check::Broken);
+        assert!(matches!(verdict(&refused, "telegram-lives"), Outcome::Broken { .. }));
         assert_eq!(conclusion(&refused).verdict, Verdict::Failed);
     }
     // Lives that agree, to the millisecond.
     let longest = TrainLives { ahead_ms: 530, life_ms: 300, reaction_ms: 170 };
     let kept = with(LOOP, longest);
-    assert_eq!(verdict(&kept, "telegram-lives"), Check::Kept);
+    assert_eq!(verdict(&kept, "telegram-lives"), Outcome::Met);
     assert!(kept.is_sound());
     assert!(!with(LOOP, TrainLives { reaction_ms: 171, ..longest }).is_sound());
     // The release times of routes, each at its place.
     let release = with(&format!("{LOOP}\n[times]\ntelegram_age_ms = 900000\n"), train(70_000));
-    assert_ne!(verdict(&release, "approach-too-short"), Check::Kept);
+    assert_ne!(verdict(&release, "approach-too-short"), Outcome::Met);
     let slow = with(LOOP, train(70_000));
-    let findings = &slow.broken().next().expect("broken").broken;
+    let findings = &slow.broken().next().expect("broken").findings();
     assert_eq!(findings.len(), 9, "{findings:?}");
     assert!(
         findings[0].what.contains("is released after 60000 ms")

@@ -4,9 +4,9 @@ use super::figure::{Curve, Figure, Stroke};
 use super::record;
 use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes};
 use crate::kmh::Kmh;
-use crate::machine::pattern::{Braking, Config, Output, brake};
+use crate::machine::pattern::{Braking, Config, Output};
 use crate::machine::{Cycle, Machine};
-use crate::telegrams::gradient;
+use atc_line::refusal::{brake, gradient};
 
 /// Lays out a case.
 pub(crate) fn scene(config: Config, cycles: &[Cycle<Braking>]) -> Scene {
@@ -74,7 +74,9 @@ fn figure(config: Config, cycles: &[Cycle<Braking>]) -> Figure {
             points: dots.collect(),
         });
         // A trace is laid out only after the kernel has taken its configuration and every step.
-        let (Ok(brake), Ok(slope)) = (brake(config.brake_mm_s2), gradient("gradient_permille", permille)) else {
+        let (Ok(brake), Ok(slope)) =
+            (brake("brake_mm_s2", config.brake_mm_s2), gradient("gradient_permille", permille))
+        else {
             continue;
         };
         let real = |place: u32| {

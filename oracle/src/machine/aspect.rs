@@ -1,60 +1,14 @@
 //! `aspect-acceptance`: [`atc_kernel::aspect`] behind the protocol.
 
-use atc_kernel::aspect::{AspectSet, AspectTable, Display, MAX_ASPECTS, State, TableError, Times, TimesError, TimesMs};
+use atc_kernel::aspect::{AspectSet, AspectTable, Display, MAX_ASPECTS, State, Times};
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::time::{MAX_TICKS, Millis};
+pub use atc_line::aspect::Config;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
 use crate::kmh::{Kmh, KmhOrNull};
-
-/// The configuration: the line's aspects and times. All but the aspects have the defaults of the patent's example.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "AspectConfig")]
-pub struct Config {
-    /// The length of a logic cycle.
-    #[serde(default = "default_cycle")]
-    pub cycle_ms: u32,
-    /// The permitted speeds that the aspects name: 1 to 16, strictly rising, 0 to 6553.5 km/h.
-    pub aspects_km_h: Vec<Kmh>,
-    /// T1: an aspect heard for so long is accepted. Rounded up to cycles.
-    #[serde(default = "default_operate")]
-    pub operate_ms: u32,
-    /// T2: a lost aspect stands so long as if it were heard. Rounded down to cycles.
-    #[serde(default = "default_recovery")]
-    pub recovery_ms: u32,
-    /// T3: and after that so long, if nothing contradicts it. Rounded down to cycles.
-    #[serde(default = "default_mask")]
-    pub mask_ms: u32,
-    /// T4: the longest interruption after which T5 takes the place of T1. Rounded down to cycles.
-    #[serde(default = "default_interruption")]
-    pub interruption_ms: u32,
-    /// T5: the operate time after a short interruption. Rounded up to cycles.
-    #[serde(default = "default_shortened_operate")]
-    pub shortened_operate_ms: u32,
-}
-
-fn default_cycle() -> u32 {
-    10
-}
-fn default_operate() -> u32 {
-    TimesMs::default().operate.0
-}
-fn default_recovery() -> u32 {
-    TimesMs::default().recovery.0
-}
-fn default_mask() -> u32 {
-    TimesMs::default().mask.0
-}
-fn default_interruption() -> u32 {
-    TimesMs::default().interruption.0
-}
-fn default_shortened_operate() -> u32 {
-    TimesMs::default().shortened_operate.0
-}
 
 /// One logic cycle's input.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -82,100 +36,6 @@ pub struct Aspect {
     table: AspectTable,
     times: Times,
     state: State<MAX_ASPECTS>,
-}
-
-impl Config {
-    /// The patent's times and a cycle of 10 ms.
-    pub fn with_defaults(aspects_km_h: Vec<Kmh>) -> Self {
-        let times = TimesMs::default();
-        Self {
-            cycle_ms: default_cycle(),
-            aspects_km_h,
-            operate_ms: times.operate.0,
-            recovery_ms: times.recovery.0,
-            mask_ms: times.mask.0,
-            interruption_ms: times.interruption.0,
-            shortened_operate_ms: times.shortened_operate.0,
-        }
-    }
-
-    /// The times in the kernel's form.
-    ///
-    /// # Errors
-    /// The rule of TIME-2 that they break.
-    pub fn times(&self) -> Result<Times, TimesError> {
-        Times::from_millis(
-            Millis(self.cycle_ms),
-            TimesMs {
-                operate: Millis(self.operate_ms),
-                recovery: Millis(self.recovery_ms),
-                mask: Millis(self.mask_ms),
-                interruption: Millis(self.interruption_ms),
-                shortened_operate: Millis(self.shortened_operate_ms),
-            },
-        )
-    }
-
-    /// The aspect table in the kernel's form.
-    ///
-    /// # Errors
-    /// The rule of TIME-4 that it breaks, in a sentence.
-    pub fn table(&self) -> Result<AspectTable, String> {
-        let mut speeds = Vec::with_capacity(self.aspects_km_h.len());
-        for (place, speed) in self.aspects_km_h.iter().enumerate() {
-            let Ok(tenths) = u16::try_from(speed.0) else {
-                return Err(format!("aspects_km_h[{place}] is {speed} km/h; a permitted speed is 0 to 6553.5 km/h"));
-            };
-            speeds.push(KmhTenths(tenths));
-        }
-        AspectTable::new(&speeds).map_err(|error| self.explain_table(error))
-    }
-
-    /// Which rule of TIME-2 the times break, with the numbers.
-    pub fn explain_times(&self, error: TimesError) -> String {
-        let cycle = self.cycle_ms;
-        let (t1, t2, t3, t4, t5) =
-            (self.operate_ms, self.recovery_ms, self.mask_ms, self.interruption_ms, self.shortened_operate_ms);
-        let longest = u64::from(cycle) * u64::from(MAX_TICKS);
-        match error {
-            TimesError::NoCycle => "cycle_ms is 0; a logic cycle is 1 ms or more".to_owned(),
-            TimesError::NoOperateTime => "operate_ms (T1) is 0; it must be 1 ms or more".to_owned(),
-            TimesError::NoRecoveryTime => {
-                format!("recovery_ms (T2) is {t2} ms, less than one cycle of {cycle} ms; it must be {cycle} ms or more")
-            }
-            TimesError::NoShortenedOperateTime => "shortened_operate_ms (T5) is 0; it must be 1 ms or more".to_owned(),
-            TimesError::ShortenedNotShorter => format!(
-                "shortened_operate_ms (T5) is {t5} ms, {} cycles of {cycle} ms, and operate_ms (T1) is {t1} ms, {} cycles; T5 must be fewer cycles than T1",
-                t5.div_ceil(cycle.max(1)),
-                t1.div_ceil(cycle.max(1)),
-            ),
-            TimesError::OperateTooLong => {
-                format!("operate_ms (T1) is {t1} ms; it must be at most 60000 cycles, {longest} ms")
-            }
-            TimesError::RecoveryAndMaskTooLong => format!(
-                "recovery_ms + mask_ms (T2 + T3) is {} ms; it must be at most 60000 cycles, {longest} ms",
-                u64::from(t2) + u64::from(t3)
-            ),
-            TimesError::InterruptionTooLong => {
-                format!("interruption_ms (T4) is {t4} ms; it must be at most 60000 cycles, {longest} ms")
-            }
-        }
-    }
-
-    fn explain_table(&self, error: TableError) -> String {
-        let speed = |place: usize| self.aspects_km_h.get(place).copied().unwrap_or_default();
-        match error {
-            TableError::Empty => "aspects_km_h is empty; it must name 1 to 16 permitted speeds".to_owned(),
-            TableError::TooMany => {
-                format!("aspects_km_h has {} entries; it must name 1 to 16 permitted speeds", self.aspects_km_h.len())
-            }
-            TableError::NotRising(place) => format!(
-                "aspects_km_h[{place}] is {} km/h after {} km/h; the permitted speeds must rise strictly",
-                speed(place),
-                speed(place.saturating_sub(1)),
-            ),
-        }
-    }
 }
 
 impl Aspect {
@@ -240,7 +100,7 @@ impl Machine for Aspect {
 
     fn open(config: &Config) -> Result<Self, String> {
         let table = config.table()?;
-        let times = config.times().map_err(|error| config.explain_times(error))?;
+        let times = config.times()?;
         Ok(Self { table, times, state: State::INITIAL })
     }
 

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use atc_kernel::block::{self, Block, BlockError, Hold, Input, State, Status, TrainCount};
-use atc_kernel::time::{MAX_TICKS, Millis};
+use atc_kernel::block::{self, Block, Hold, Input, State, Status, TrainCount};
+pub use atc_line::block::Config;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
@@ -12,31 +12,6 @@ use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
 use crate::sections::Sections;
 
-/// The configuration of a block.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "BlockConfig")]
-pub struct Config {
-    /// How many sections the block has: 1 to 16.
-    pub sections: u32,
-    /// The most trains that may be in it: 1 to that many.
-    pub max_trains: u32,
-    /// How many sections are held occupied behind every head: 0 to 16.
-    pub tail_hold_sections: u32,
-    /// The length of a logic cycle.
-    #[serde(default = "default_cycle")]
-    pub cycle_ms: u32,
-    /// The longest that a passing train keeps the check-in on. Rounded down to cycles.
-    #[serde(default = "default_pass")]
-    pub pass_ms: u32,
-}
-
-fn default_cycle() -> u32 {
-    10
-}
-fn default_pass() -> u32 {
-    10_000
-}
 fn default_entered() -> bool {
     true
 }
@@ -185,42 +160,6 @@ impl From<block::Output> for Output {
 pub struct Counted {
     block: Block,
     state: State,
-}
-
-impl Config {
-    /// The parameters in the kernel's form.
-    ///
-    /// # Errors
-    /// The rule of BLK-8 that they break, in a sentence.
-    pub fn block(&self) -> Result<Block, String> {
-        // What does not fit is over every limit.
-        let narrow = |number: u32| u8::try_from(number).unwrap_or(u8::MAX);
-        let hold = Hold::new(narrow(self.tail_hold_sections))
-            .ok_or_else(|| format!("tail_hold_sections is {}; it must be 0 to 16 sections", self.tail_hold_sections))?;
-        let (cycle, pass) = (Millis(self.cycle_ms), Millis(self.pass_ms));
-        Block::from_millis(narrow(self.sections), narrow(self.max_trains), hold, cycle, pass)
-            .map_err(|error| self.explain(error))
-    }
-
-    fn explain(&self, error: BlockError) -> String {
-        let Self { sections, max_trains, cycle_ms: cycle, pass_ms: pass, .. } = self;
-        match error {
-            BlockError::NoSections => "sections is 0; a block has 1 to 16 sections".to_owned(),
-            BlockError::TooManySections => format!("sections is {sections}; a block has 1 to 16 sections"),
-            BlockError::NoTrains => format!("max_trains is 0; it must be 1 to the number of sections, {sections}"),
-            BlockError::MoreTrainsThanSections => {
-                format!("max_trains is {max_trains}; it must be 1 to the number of sections, {sections}")
-            }
-            BlockError::NoCycle => "cycle_ms is 0; a logic cycle is 1 ms or more".to_owned(),
-            BlockError::PassTooShort => {
-                format!("pass_ms is {pass} ms, less than one cycle of {cycle} ms; it must be {cycle} ms or more")
-            }
-            BlockError::PassTooLong => {
-                let longest = u64::from(*cycle) * u64::from(MAX_TICKS);
-                format!("pass_ms is {pass} ms; it must be at most {MAX_TICKS} cycles, {longest} ms")
-            }
-        }
-    }
 }
 
 impl Counted {

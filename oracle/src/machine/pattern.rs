@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
 use crate::kmh::Kmh;
-use crate::telegrams::{gradient, metres};
+use atc_line::refusal::{brake, gradient, metres};
 
 /// The configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -47,15 +47,6 @@ pub struct Output {
     pub speed_km_h: Kmh,
 }
 
-/// A brake as a configuration gives it, in the kernel's form.
-///
-/// # Errors
-/// If it is out of its range.
-pub(crate) fn brake(mm_s2: u32) -> Result<Deceleration, String> {
-    let brake = u16::try_from(mm_s2).ok().and_then(Deceleration::brake);
-    brake.ok_or_else(|| format!("brake_mm_s2 is {mm_s2}; it must be 1 to 4095 mm/s²"))
-}
-
 /// The machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Braking {
@@ -72,7 +63,7 @@ impl Machine for Braking {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        Ok(Self { brake: brake(config.brake_mm_s2)? })
+        Ok(Self { brake: brake("brake_mm_s2", config.brake_mm_s2)? })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {

@@ -1,8 +1,9 @@
 //! `speed-supervision`: [`atc_kernel::supervision`] behind the protocol.
 
 use atc_kernel::Machine as _;
-use atc_kernel::speed::{KmhTenths, RawKmhTenths};
-use atc_kernel::supervision::{self, Speeds, Supervision, SupervisionError};
+use atc_kernel::speed::RawKmhTenths;
+use atc_kernel::supervision::{self, Speeds, Supervision};
+pub use atc_line::supervision::Config;
 use schemars::JsonSchema;
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
@@ -10,24 +11,6 @@ use serde::{Deserialize, Serialize};
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
 use crate::kmh::{Kmh, KmhOrNull};
-
-/// The configuration; both fields have defaults.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-#[schemars(rename = "SupervisionConfig")]
-pub struct Config {
-    /// The highest plausible speed, above 0 and at most 6553.5 km/h. Above it a measured speed is implausible.
-    pub maximum_km_h: Kmh,
-    /// How far below the permitted speed the train must be before a brake that is on is released: 0 to the maximum.
-    pub release_margin_km_h: Kmh,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        let kernel = Supervision::default();
-        Self { maximum_km_h: Kmh(kernel.maximum().0.into()), release_margin_km_h: Kmh(kernel.margin().0.into()) }
-    }
-}
 
 /// The brake command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
@@ -134,20 +117,7 @@ impl Machine for Supervised {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        let tenths = |name: &str, speed: Kmh| {
-            u16::try_from(speed.0)
-                .map(KmhTenths)
-                .map_err(|_| format!("{name} is {speed} km/h; it must be 0 to 6553.5 km/h"))
-        };
-        let maximum = tenths("maximum_km_h", config.maximum_km_h)?;
-        let margin = tenths("release_margin_km_h", config.release_margin_km_h)?;
-        let parameters = Supervision::new(maximum, margin).map_err(|error| match error {
-            SupervisionError::NoMaximum => "maximum_km_h is 0; it must be above 0".to_owned(),
-            SupervisionError::MarginAboveMaximum => format!(
-                "release_margin_km_h is {} km/h, above maximum_km_h, {} km/h; it must not be",
-                config.release_margin_km_h, config.maximum_km_h
-            ),
-        })?;
+        let parameters = config.supervision()?;
         Ok(Self { parameters, previous: parameters.initial() })
     }
 

@@ -1,8 +1,8 @@
 //! The configuration of a signal, in TOML. The same file serves for making a signal and for reading one.
 
 use atc_kernel::aspect::AspectTable;
-use atc_kernel::code::{CodeError, CodeFrequencies, CodeTable, MAX_CODES, Millihertz};
-use atc_kernel::speed::KmhTenths;
+use atc_kernel::code::CodeTable;
+use atc_line::code::{self, Names, speed};
 use atc_waveform::config::{TransmitterConfig, TransmitterParams};
 use atc_waveform::units::{Hertz, Level};
 use serde::Deserialize;
@@ -226,28 +226,6 @@ pub struct Line {
     pub codes: CodeTable,
 }
 
-/// A number of so many parts, of which `parts` make one, if it is a whole one in 0 to `most`.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be whole and in range")]
-pub(super) fn whole(field: &str, value: f64, parts: f64, most: u32) -> Result<u32, String> {
-    let scaled = (value * parts).round();
-    let exact = (value * parts - scaled).abs() < 1e-6;
-    if exact && (0.0..=f64::from(most)).contains(&scaled) {
-        Ok(scaled as u32)
-    } else {
-        Err(format!(
-            "{field} is {value}; it must be 0 to {}, in whole steps of {}",
-            f64::from(most) / parts,
-            1.0 / parts
-        ))
-    }
-}
-
-/// A speed in tenths of km/h.
-pub(super) fn speed(field: &str, km_h: f64) -> Result<KmhTenths, String> {
-    let tenths = whole(field, km_h, 10.0, u16::MAX.into())?;
-    Ok(KmhTenths(u16::try_from(tenths).unwrap_or(u16::MAX)))
-}
-
 impl Config {
     /// Reads a configuration.
     ///
@@ -285,56 +263,9 @@ impl Config {
 
 impl LineParams {
     fn table(&self) -> Result<CodeTable, String> {
-        let tolerance = Millihertz(whole("line.tolerance_hz", self.tolerance_hz, 1000.0, 1_000_000)?);
-        let mut lists: [Vec<Millihertz>; 2] = [Vec::new(), Vec::new()];
-        let mut pairs = Vec::new();
-        for (place, pair) in self.codes.iter().enumerate() {
-            let field = |name: &str| format!("line.codes[{place}].{name}");
-            let main = Millihertz(whole(&field("main_hz"), pair.main_hz, 1000.0, 1_000_000)?);
-            let sub = Millihertz(whole(&field("sub_hz"), pair.sub_hz, 1000.0, 1_000_000)?);
-            lists[0].push(main);
-            lists[1].push(sub);
-            pairs.push((main, sub, speed(&field("speed_km_h"), pair.speed_km_h)?));
-        }
-        let mut frequencies = Vec::new();
-        for (list, name) in lists.iter_mut().zip(["main_hz", "sub_hz"]) {
-            list.sort_unstable();
-            list.dedup();
-            let checked = CodeFrequencies::new(list, tolerance);
-            frequencies.push(checked.map_err(|error| explain(error, name, list, self.tolerance_hz))?);
-        }
-        let mut speeds = [[None; MAX_CODES]; MAX_CODES];
-        for (place, (main, sub, speed)) in pairs.into_iter().enumerate() {
-            let [row, column] = [(&lists[0], main), (&lists[1], sub)]
-                .map(|(list, code)| list.iter().position(|known| *known == code).unwrap_or_default());
-            if speeds[row][column].replace(speed).is_some() {
-                return Err(format!("line.codes[{place}] is a pair of codes that has a speed already"));
-            }
-        }
-        let (Some(sub), Some(main)) = (frequencies.pop(), frequencies.pop()) else {
-            return Err("line.codes is empty; it must name 1 to 8 codes for each carrier".to_owned());
-        };
-        CodeTable::new(main, sub, speeds).map_err(|error| explain(error, "main_hz", &[], self.tolerance_hz))
-    }
-}
-
-fn explain(error: CodeError, name: &str, list: &[Millihertz], tolerance: f64) -> String {
-    let hz = |place: usize| list.get(place).map_or(0.0, |code| f64::from(code.0) / 1000.0);
-    match error {
-        CodeError::NoFrequency | CodeError::NoSpeed => {
-            "line.codes is empty; it must name 1 to 8 codes for each carrier".to_owned()
-        }
-        CodeError::TooManyFrequencies => {
-            format!("line.codes has {} different values of {name}; it may have 8", list.len())
-        }
-        CodeError::OutOfRange => {
-            format!("line.codes has {name} = {}, not above line.tolerance_hz = {tolerance}", hz(0))
-        }
-        CodeError::BandsTouch(place) => format!(
-            "line.codes has {name} = {} and {}; they must be more than twice line.tolerance_hz = {tolerance} apart",
-            hz(place.saturating_sub(1)),
-            hz(place)
-        ),
-        CodeError::UnusedCode(..) => format!("line.codes has a {name} that is not in use"),
+        let pair = |one: &Pair| code::Pair { main_hz: one.main_hz, sub_hz: one.sub_hz, speed_km_h: one.speed_km_h };
+        let pairs: Vec<_> = self.codes.iter().map(pair).collect();
+        let names = Names { codes: "line.codes", tolerance_hz: "line.tolerance_hz" };
+        Ok(code::table(names, self.tolerance_hz, &pairs)?)
     }
 }

@@ -14,7 +14,8 @@ use atc_waveform::units::{Decibels, Hertz, Seconds, Seed};
 use atc_waveform::wav::{self, Coding, Recording};
 
 use super::SignalError;
-use super::config::{Config, Line, Samples, speed};
+use super::config::{Config, Line, Samples};
+use atc_line::code::speed;
 
 /// The longest recording, in seconds.
 const LONGEST: f64 = 3600.0;

@@ -1,9 +1,7 @@
 //! `permitted-speed`: [`atc_kernel::permitted`] behind the protocol.
 
-mod config;
-
-pub use config::Config;
-use config::tenths;
+pub use atc_line::permitted::Config;
+use atc_line::refusal::tenths;
 
 use atc_kernel::distance::Millimetres;
 use atc_kernel::permitted::{self, Heard, Permitted, State};

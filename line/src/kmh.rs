@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use atc_kernel::speed::KmhTenths;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::decimal::{self, NotWhole};
+use crate::decimal::{self, NotWhole, Quantity};
 
 /// A speed, in tenths of km/h. On the wire a JSON number of km/h, such as `45` or `44.9`.
 ///
@@ -42,16 +43,22 @@ impl Kmh {
                 NotWhole::TooFine => format!("{number} km/h is not a whole number of tenths"),
             })
         })?;
-        Ok(Self(i32::try_from(tenths).unwrap_or(if tenths < 0 { i32::MIN } else { i32::MAX })))
+        Ok(Self::of(tenths))
     }
 }
 
 /// The text, cut to a length that is fit for a message.
-pub(crate) fn shorten(text: &str) -> Cow<'_, str> {
+pub fn shorten(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
         None => Cow::Borrowed(text),
+    }
+}
+
+impl From<KmhTenths> for Kmh {
+    fn from(speed: KmhTenths) -> Self {
+        Self(speed.0.into())
     }
 }
 
@@ -84,6 +91,16 @@ impl<'de> Deserialize<'de> for Kmh {
     }
 }
 
+impl Quantity for Kmh {
+    const DECIMALS: u8 = 1;
+    const UNIT: &'static str = "km/h";
+    const PARTS: &'static str = "tenths";
+
+    fn of(parts: i64) -> Self {
+        Self(i32::try_from(parts).unwrap_or(if parts < 0 { i32::MIN } else { i32::MAX }))
+    }
+}
+
 impl JsonSchema for Kmh {
     fn schema_name() -> Cow<'static, str> {
         "Kmh".into()
@@ -97,8 +114,13 @@ impl JsonSchema for Kmh {
     }
 }
 
+/// A speed with its tenth, for tables: `45.0`.
+pub(crate) fn fixed(speed: KmhTenths) -> String {
+    format!("{}.{}", speed.0 / 10, speed.0 % 10)
+}
+
 /// The schema of a speed that may be null but not missing. (An `Option` may be missing.)
-pub(crate) enum KmhOrNull {}
+pub enum KmhOrNull {}
 
 impl JsonSchema for KmhOrNull {
     fn schema_name() -> Cow<'static, str> {

@@ -11,6 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use crate::kmh::shorten;
+use crate::refusal::Refusal;
+use crate::rule::Rule;
 
 /// The largest number of parts that is told apart from infinity; a double holds every whole number up to it.
 const FAR: i64 = 1 << 52;
@@ -59,6 +61,48 @@ pub(crate) fn parts(number: &str, decimals: u8) -> Result<i64, NotWhole> {
     }
     let parts = parts.min(FAR);
     Ok(if negative { -parts } else { parts })
+}
+
+/// A number that TOML has read in binary, as a whole number of parts; none if it is not within a millionth of one. A number beyond ±2⁵²
+/// parts becomes the end of that range.
+#[expect(clippy::cast_possible_truncation, reason = "clamped to ±2⁵²")]
+#[expect(clippy::cast_precision_loss, reason = "2⁵² is a double")]
+pub(crate) fn whole(value: f64, decimals: u8) -> Option<i64> {
+    let scaled = value * 10_f64.powi(decimals.into());
+    let nearest = scaled.round();
+    ((scaled - nearest).abs() < 1e-6 || scaled.is_infinite()).then_some(nearest.clamp(-(FAR as f64), FAR as f64) as i64)
+}
+
+/// A quantity in whole parts of its unit.
+pub(crate) trait Quantity: Sized {
+    /// How many decimals its unit has.
+    const DECIMALS: u8;
+    /// Its unit.
+    const UNIT: &'static str;
+    /// What it is a whole number of.
+    const PARTS: &'static str;
+
+    /// So many parts.
+    fn of(parts: i64) -> Self;
+}
+
+/// A number that TOML gives; `field` is its path in the file.
+///
+/// # Errors
+/// If it is no whole number of parts.
+pub(crate) fn given<Q: Quantity>(field: &str, value: f64) -> Result<Q, Refusal> {
+    whole(value, Q::DECIMALS).map(Q::of).ok_or_else(|| {
+        let what = format!("{field} is {value} {}; it must be a whole number of {}", Q::UNIT, Q::PARTS);
+        Refusal::new(Rule::Range, field, what)
+    })
+}
+
+/// The same for a list.
+///
+/// # Errors
+/// The first that is no whole number of parts.
+pub(crate) fn list<Q: Quantity>(field: &str, values: &[f64]) -> Result<Vec<Q>, Refusal> {
+    values.iter().enumerate().map(|(place, value)| given(&format!("{field}[{place}]"), *value)).collect()
 }
 
 /// A JSON exponent; one beyond `i64` is the end of that range, halved so that sums stay in it.
@@ -126,6 +170,16 @@ macro_rules! quantity {
             }
         }
 
+        impl Quantity for $name {
+            const DECIMALS: u8 = $decimals;
+            const UNIT: &'static str = $of;
+            const PARTS: &'static str = $part;
+
+            fn of(parts: i64) -> Self {
+                Self(parts)
+            }
+        }
+
         impl JsonSchema for $name {
             fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
@@ -157,7 +211,7 @@ quantity!(
 );
 
 /// The schema of a value that may be null but not missing. (An `Option` may be missing.)
-pub(crate) struct OrNull<T>(PhantomData<T>);
+pub struct OrNull<T>(PhantomData<T>);
 
 impl<T: JsonSchema> JsonSchema for OrNull<T> {
     fn schema_name() -> Cow<'static, str> {

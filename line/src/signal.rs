@@ -1,27 +1,21 @@
 //! Telegrams and the permitted speed of a line: times, counters, what is assumed, and its sections. Tables `[signal]` and
 //! `[[section]]`.
 
-mod file;
-
-pub use file::{FileSection, FileSignal};
-
-use crate::case::{Derived, LineSection};
-use crate::error::Fault;
-use atc_kernel::aspect::AspectTable;
 use atc_kernel::distance::Metres;
-use atc_kernel::pattern::{Deceleration, pattern};
-use atc_kernel::permitted::{Permitted, PermittedError, Settings};
+use atc_kernel::pattern::pattern;
+use atc_kernel::permitted::{Permitted, Settings};
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::telegram::Gradient;
 use atc_kernel::time::{Millis, Ticks};
 use atc_layout::lives::TrainLives;
-use std::ops::Range;
-use toml::Spanned;
 
-/// Where something stands in the file.
-pub(crate) type At<'a> = &'a dyn Fn(Range<usize>) -> String;
-/// A speed in km/h, or a fault with its place.
-pub(crate) type Tenths<'a> = &'a dyn Fn(&Spanned<f64>) -> Result<KmhTenths, Fault>;
+use crate::check::{DataCheck, Outcome};
+use crate::decimal::{given as decimal, list};
+use crate::figures::{Derived, LineSection};
+use crate::form;
+use crate::kmh::{Kmh, fixed};
+use crate::permitted::{self, Config, rank};
+use crate::refusal::{Refusal, gradient};
+use crate::rule::Rule;
 
 /// The checked parameters.
 #[derive(Clone, Debug)]
@@ -38,134 +32,179 @@ pub struct Signal {
     limits: Vec<KmhTenths>,
 }
 
-/// Reads and checks; none if the line sends no telegrams.
+/// Checks; none if the line sends no telegrams. `aspects`: the speeds where the table gives none. A refusal's field is a path in the file.
 ///
 /// # Errors
-/// The first rule that is broken, with its place.
-pub(crate) fn parse(
-    at: At<'_>,
-    tenths: Tenths<'_>,
-    cycle: Millis,
-    aspects: &AspectTable,
-    signal: Option<&FileSignal>,
-    sections: &[FileSection],
-) -> Result<Option<Signal>, Fault> {
+/// The first rule that is broken.
+pub(crate) fn checked(
+    cycle_ms: u32,
+    aspects: &[Kmh],
+    signal: Option<&form::Signal>,
+    sections: &[form::Section],
+) -> Result<Option<Signal>, Refusal> {
     let Some(given) = signal else {
         return match sections {
             [] => Ok(None),
-            [first, ..] => Err(Fault::new(&at(first.number.span()), "there is a [[section]] and no [signal]")),
+            _ => Err(Refusal::new(Rule::Form, "section[0].number", "there is a [[section]] and no [signal]")),
         };
     };
-    let speeds = file::speeds(at, tenths, aspects, given)?;
-    let lowest = file::rank(at, tenths, &speeds, &given.lowest_limit_km_h, "PER-9", "the lowest limit")?;
-    let memory = file::ticks(at, cycle, &given.memory_ms, "TEL-7", "the memory")?;
-    let sequence = file::sequence(at, given, memory)?;
-    let brake = Deceleration::brake(*given.brake_mm_s2.get_ref()).ok_or_else(|| {
-        let text = format!("rule PAT-3 is broken: a brake is 1 to 4095 mm/s²; it is {}", given.brake_mm_s2.get_ref());
-        Fault::new(&at(given.brake_mm_s2.span()), text)
-    })?;
-    let settings = Settings {
-        speeds,
-        lowest,
-        brake,
-        worst: Gradient(*given.worst_gradient_permille.get_ref()),
-        margin: Metres(*given.margin_m.get_ref()),
-        fresh: file::ticks(at, cycle, &given.fresh_ms, "PER-9", "the freshness")?,
-        life: file::ticks(at, cycle, &given.life_ms, "PER-9", "the life")?,
-        fixed_life: file::ticks(at, cycle, &given.fixed_life_ms, "PER-9", "the life of sub telegrams")?,
-        sequence,
+    let speeds_km_h = match &given.speeds_km_h {
+        Some(speeds) => list("signal.speeds_km_h", speeds)?,
+        None => aspects.to_vec(),
     };
-    let permitted = Permitted::new(settings).map_err(|error| {
-        let (span, rule) = match error {
-            PermittedError::UnknownLimit => {
-                (given.lowest_limit_km_h.span(), "the lowest limit is no speed of the table")
-            }
-            PermittedError::NoFreshness => {
-                (given.fresh_ms.span(), "the freshness must be one cycle or more (it rounds down)")
-            }
-            PermittedError::LifeShorterThanFreshness => {
-                (given.life_ms.span(), "the life must not be under the freshness")
-            }
-            PermittedError::MemoryLongerThanLife => {
-                (given.memory_ms.span(), "the memory must not exceed a life, of main or sub telegrams")
-            }
-            PermittedError::TooLong => (given.life_ms.span(), "no time may exceed 60 000 logic cycles"),
-            PermittedError::NoFixedLife => {
-                (given.fixed_life_ms.span(), "the life of sub telegrams must be one cycle or more (it rounds down)")
-            }
+    let config = Config {
+        cycle_ms,
+        speeds_km_h,
+        lowest_limit_km_h: decimal("signal.lowest_limit_km_h", given.lowest_limit_km_h)?,
+        brake_mm_s2: given.brake_mm_s2,
+        worst_gradient_permille: given.worst_gradient_permille,
+        margin_m: given.margin_m,
+        fresh_ms: given.fresh_ms,
+        life_ms: given.life_ms,
+        fixed_life_ms: given.fixed_life_ms,
+        window: given.window,
+        run: given.run,
+        memory_ms: given.memory_ms,
+    };
+    let permitted = config.permitted().map_err(|refusal| {
+        let field = if refusal.field.starts_with("speeds_km_h") && given.speeds_km_h.is_none() {
+            refusal.field.replacen("speeds_km_h", "aspects_km_h", 1)
+        } else if refusal.field == "cycle_ms" {
+            refusal.field
+        } else {
+            format!("signal.{}", refusal.field)
         };
-        Fault::new(&at(span), format!("rule PER-9 is broken: {rule}"))
+        Refusal { field, ..refusal }
     })?;
-    let (sections, limits) = file::sections(at, tenths, &settings, sections)?;
-    let milliseconds = |time: &Spanned<u32>| u64::from(*time.get_ref());
+    let (sections, limits) = described(permitted.settings(), sections)?;
     let signal = Signal {
-        cycle,
+        cycle: Millis(cycle_ms),
         permitted,
-        frame: milliseconds(&given.frame_ms),
-        delay: milliseconds(&given.delay_ms),
-        reaction: milliseconds(&given.reaction_ms),
-        release: milliseconds(&given.release_ms),
-        lead: milliseconds(&given.restriction_lead_ms),
-        heard_beyond: Metres(*given.heard_beyond_exit_m.get_ref()),
+        frame: given.frame_ms.into(),
+        delay: given.delay_ms.into(),
+        reaction: given.reaction_ms.into(),
+        release: given.release_ms.into(),
+        lead: given.restriction_lead_ms.into(),
+        heard_beyond: Metres(given.heard_beyond_exit_m),
         sections,
         limits,
     };
-    signal.check(at, given)?;
+    signal.check()?;
     Ok(Some(signal))
+}
+
+/// The sections, each with its limit, held against what is assumed until a sub telegram is heard.
+fn described(settings: &Settings, given: &[form::Section]) -> Result<(Vec<LineSection>, Vec<KmhTenths>), Refusal> {
+    let (mut sections, mut limits): (Vec<LineSection>, Vec<KmhTenths>) = (Vec::new(), Vec::new());
+    for (place, one) in given.iter().enumerate() {
+        let number = one.number;
+        let refused = |rule, field: &str, what: String| {
+            Err(Refusal::new(rule, format!("section[{place}].{field}"), format!("section {number}: {what}")))
+        };
+        if sections.iter().any(|other| other.number == number) {
+            return refused(
+                Rule::SectionTwice,
+                "number",
+                "it is there twice; a number must name one section".to_owned(),
+            );
+        }
+        if one.length_m == 0 {
+            return refused(Rule::Tel4, "length_m", "it has no length; length_m must be 1 or more".to_owned());
+        }
+        let gradient = match gradient("gradient_permille", one.gradient_permille) {
+            Ok(gradient) => gradient,
+            Err(Refusal { rule, what, .. }) => return refused(rule, "gradient_permille", what),
+        };
+        if gradient < settings.worst {
+            let what = format!(
+                "it falls more than the worst gradient that is assumed ({} ‰); it is {} ‰",
+                settings.worst.0, gradient.0
+            );
+            return refused(Rule::Per5, "gradient_permille", what);
+        }
+        let speed: Kmh = decimal(&format!("section[{place}].limit_km_h"), one.limit_km_h)?;
+        let Some(limit) = rank(&settings.speeds, speed) else {
+            let what = format!(
+                "limit_km_h is {speed} km/h; it must be a speed of the table: {} km/h",
+                permitted::list(&settings.speeds)
+            );
+            return refused(Rule::Per7, "limit_km_h", what);
+        };
+        if limit < settings.lowest {
+            let lowest = settings.speeds.speed(settings.lowest).map(Kmh::from).unwrap_or_default();
+            let what = format!("its limit is under the lowest one that is assumed ({lowest} km/h); it is {speed} km/h");
+            return refused(Rule::Per5, "limit_km_h", what);
+        }
+        limits.extend(settings.speeds.speed(limit));
+        sections.push(LineSection {
+            number,
+            length_m: one.length_m,
+            gradient_permille: gradient.0,
+            limit_km_h: f64::from(speed.0) / 10.0,
+        });
+    }
+    Ok((sections, limits))
 }
 
 impl Signal {
     /// The rules on times and distances that the kernel's constructors do not know.
-    fn check(&self, at: At<'_>, file: &FileSignal) -> Result<(), Fault> {
-        let fault =
-            |span, rule: &str, text: String| Err(Fault::new(&at(span), format!("rule {rule} is broken: {text}")));
-        let memory = self.ms(self.permitted.settings().sequence.memory());
-        if self.frame == 0 {
-            return fault(file.frame_ms.span(), "TEL-7", "a telegram takes time to send; frame_ms is 0".to_owned());
+    fn check(&self) -> Result<(), Refusal> {
+        let refused = |rule, field: &str, what: String| Err(Refusal::new(rule, format!("signal.{field}"), what));
+        let settings = self.permitted.settings();
+        let memory = self.ms(settings.sequence.memory());
+        let (frame, reaction) = (self.frame, self.reaction);
+        if frame == 0 {
+            return refused(Rule::Tel7, "frame_ms", "frame_ms is 0; a telegram takes time to send".to_owned());
         }
-        if memory <= self.frame {
-            let text = format!(
-                "the memory must exceed the time of one telegram ({} ms), or none is ever used; it is {memory} ms",
-                self.frame
+        if memory <= frame {
+            let what = format!(
+                "the memory must exceed the time of one telegram ({frame} ms), or none is ever used; it is {memory} ms"
             );
-            return fault(file.memory_ms.span(), "TEL-7", text);
+            return refused(Rule::Tel7, "memory_ms", what);
         }
+        let parts = |life: Ticks| {
+            format!("content taken ahead {frame} ms, its life {} ms, the reaction {reaction} ms", self.past(life))
+        };
         if self.release < self.obeyed() {
-            let text = format!(
-                "a withdrawn stretch must stay free for {} ms (content taken ahead {} ms, its life {} ms, the reaction {} ms); \
-                 it is {} ms",
+            let what = format!(
+                "a withdrawn stretch must stay free for {} ms ({}); it is {} ms",
                 self.obeyed(),
-                self.frame,
-                self.past(self.permitted.settings().life),
-                self.reaction,
+                parts(settings.life),
                 self.release
             );
-            return fault(file.release_ms.span(), "PER-8", text);
+            return refused(Rule::Per8, "release_ms", what);
         }
         if self.lead < self.believed() {
-            let text = format!(
-                "a restriction must be sent {} ms before it is relied on (content taken ahead {} ms, its life {} ms, the \
-                 reaction {} ms); it is {} ms",
+            let what = format!(
+                "a restriction must be sent {} ms before it is relied on ({}); it is {} ms",
                 self.believed(),
-                self.frame,
-                self.past(self.permitted.settings().fixed_life),
-                self.reaction,
+                parts(settings.fixed_life),
                 self.lead
             );
-            return fault(file.restriction_lead_ms.span(), "PER-8", text);
+            return refused(Rule::Per8, "restriction_lead_ms", what);
         }
-        let margin = self.permitted.settings().margin.0;
-        if u64::from(margin) < self.least_margin() {
-            let text = format!(
+        if u64::from(settings.margin.0) < self.least_margin() {
+            let what = format!(
                 "the margin must be at least {} m ({} m in which the section behind is still heard, and what the train runs in {} ms at \
-                 the highest speed); it is {margin} m",
+                 the highest speed); it is {} m",
                 self.least_margin(),
                 self.heard_beyond.0,
-                self.delay
+                self.delay,
+                settings.margin.0
             );
-            return fault(file.margin_m.span(), "PER-4", text);
+            return refused(Rule::Per4, "margin_m", what);
         }
         Ok(())
+    }
+
+    /// The parameters in the kernel's form.
+    pub const fn permitted(&self) -> &Permitted {
+        &self.permitted
+    }
+
+    /// For how long the wayside keeps a withdrawn stretch free, in ms.
+    pub const fn release_ms(&self) -> u64 {
+        self.release
     }
 
     fn ms(&self, ticks: Ticks) -> u64 {
@@ -196,7 +235,7 @@ impl Signal {
         }
     }
 
-    /// The longest that a train runs on a main telegram after the ground has thought better of it.
+    /// The longest that a train runs on a main telegram after the wayside has revoked it.
     fn obeyed(&self) -> u64 {
         self.lives().acts_ms()
     }
@@ -278,7 +317,7 @@ impl Signal {
             ),
             row(
                 "Permitted 100 m before a stopping point, no sub telegram heard",
-                format!("{} km/h", kmh(worst.min(settings.speeds.speed(settings.lowest).unwrap_or_default()))),
+                format!("{} km/h", fixed(worst.min(settings.speeds.speed(settings.lowest).unwrap_or_default()))),
                 "pattern on the worst gradient, without the margin; lowest limit",
                 "T-PAT-1, T-PER-5",
             ),
@@ -333,36 +372,32 @@ impl Signal {
     }
 
     /// The data checks that were made.
-    pub fn checks(&self) -> Vec<String> {
+    pub fn checks(&self) -> Vec<DataCheck> {
         let memory = self.ms(self.permitted.settings().sequence.memory());
+        let met = |rule, scope: String| DataCheck::new(rule, scope, Outcome::Met);
         let mut checks = vec![
-            format!(
-                "TEL-7: the memory of {memory} ms is longer than a telegram ({} ms), and no longer than its life",
-                self.frame
+            met(Rule::Tel7, format!("memory {memory} ms, telegram {} ms", self.frame)),
+            met(Rule::Per9, "the parameters of `[signal]`".to_owned()),
+            met(
+                Rule::Per8,
+                format!("a withdrawn stretch stays free for {} ms, and {} ms are needed", self.release, self.obeyed()),
             ),
-            "PER-9: the parameters of the permitted speed are accepted by the kernel's constructor".to_owned(),
-            format!(
-                "PER-8: a withdrawn stretch stays free for {} ms, and {} ms are needed",
-                self.release,
-                self.obeyed()
+            met(
+                Rule::Per8,
+                format!("a restriction is sent {} ms ahead, and {} ms are needed", self.lead, self.believed()),
             ),
-            format!("PER-8: a restriction is sent {} ms ahead, and {} ms are needed", self.lead, self.believed()),
-            format!("PER-4: the margin of {} m covers {} m", self.permitted.settings().margin.0, self.least_margin()),
+            met(
+                Rule::Per4,
+                format!(
+                    "the margin of {} m, and {} m are needed",
+                    self.permitted.settings().margin.0,
+                    self.least_margin()
+                ),
+            ),
         ];
         if !self.sections.is_empty() {
-            let number = self.sections.len();
-            checks.push(format!(
-                "PER-5: no gradient and no limit of the {number} sections is worse than what is assumed"
-            ));
+            checks.push(met(Rule::Per5, format!("{} sections", self.sections.len())));
         }
         checks
     }
 }
-
-fn kmh(speed: KmhTenths) -> String {
-    format!("{}.{}", speed.0 / 10, speed.0 % 10)
-}
-
-#[cfg(test)]
-#[path = "permitted_tests.rs"]
-mod tests;

@@ -1,7 +1,6 @@
 //! The example's attenuation table, and every rule on it broken on purpose.
 
-use crate::config::tests::value;
-use crate::config::{EXAMPLE, parse};
+use crate::support::{EXAMPLE, parse, value};
 
 fn changed(from: &str, to: &str) -> String {
     let start = EXAMPLE.find("[position]").expect("the example has a table");
@@ -21,34 +20,44 @@ fn refused(from: &str, to: &str) -> (String, String) {
 
 #[test]
 fn the_example_has_the_known_figures() {
-    let line = parse("l.toml", EXAMPLE).expect("good").case(&[]);
+    let line = parse("l.toml", EXAMPLE).expect("good");
     let value = |name: &str| value(EXAMPLE, name);
     assert_eq!(value("The attenuation table reaches"), "3276.8 m");
     assert_eq!(value("Spans in which both"), "16 of 16");
     // What two levels that are 0.1 dB off say at the wet limit, and at the dry one.
     assert!(value("The interval by the levels alone").starts_with("at 819 m 2"), "{}", value("The interval by"));
-    assert!(line.checks.iter().any(|check| check.starts_with("POS-5")));
+    assert!(line.checks().iter().any(|check| check.rule == "POS-5"));
 }
 
 #[test]
 fn a_broken_rule_is_named_with_its_place() {
     for (from, to, place, words) in [
-        ("spacing_m = 204.8", "spacing_m = 200", "200", "102.4 or 204.8 m apart; it is 200 m"),
-        ("[-0.01, ", "[", "[0.36", "the lowest differences are 17, from the transmitter on; there are 16"),
+        (
+            "spacing_m = 204.8",
+            "spacing_m = 200",
+            "200",
+            "spacing_m is 200 m; it must be 1.6, 3.2, 6.4, 12.8, 25.6, 51.2, 102.4 or 204.8 m",
+        ),
+        ("[-0.01, ", "[", "[0.36", "lowest_db has 16 values; it must have 17"),
         (
             "[-0.01, 0.36",
             "[-0.01, 1.86",
             "1.86",
-            "POS-5 is broken: at knot 2 the lowest difference (1.86 dB) is above the highest (1.85 dB)",
+            "POS-5 is broken: lowest_db[1] is 1.86 dB and highest_db[1] 1.85 dB; the lowest must not be above the highest",
         ),
-        ("[-0.01, 0.36", "[-0.01, 0.365", "0.365", "in steps of 0.01; it is 0.365"),
-        ("[-0.01, 0.36", "[-0.01, 400.0", "400.0", "a level is −327.68 to 327.67 dB"),
-        ("tolerance_db = 0.1", "tolerance_db = -0.1", "-0.1", "a tolerance is 0 dB or more; it is -0.1 dB"),
+        (
+            "[-0.01, 0.36",
+            "[-0.01, 0.365",
+            "0.365",
+            "lowest_db[1] is 0.365 dB; it must be a whole number of hundredths of a decibel",
+        ),
+        ("[-0.01, 0.36", "[-0.01, 400.0", "400.0", "lowest_db[1] is 400 dB; it must be -327.68 to 327.67 dB"),
+        ("tolerance_db = 0.1", "tolerance_db = -0.1", "-0.1", "tolerance_db is -0.1 dB; it must be 0 or more"),
         (
             "# correction_db = [0.0, 0.0]",
             "correction_db = [0.2, 0.1]",
             "[0.2",
-            "the least correction (0.2 dB) is above the most (0.1 dB)",
+            "correction_db is [0.2, 0.1]; the least must stand before the most",
         ),
         ("floor_db", "floor", "floor", "unknown field"),
     ] {
@@ -61,12 +70,12 @@ fn a_broken_rule_is_named_with_its_place() {
     let end = EXAMPLE.find("tolerance_db").expect("there");
     let text = format!("{}lowest_db = [{flat}]\nhighest_db = [{flat}]\n{}", &EXAMPLE[..start], &EXAMPLE[end..]);
     let message = parse("l.toml", &text).expect_err("refused").to_string();
-    assert!(message.contains("POS-5 is broken: in no span do both curves rise"), "{message}");
+    assert!(message.contains("POS-5 is broken: in the table no two neighbours rise both"), "{message}");
 }
 
 #[test]
 fn what_the_user_should_look_at_is_said() {
-    let notes = |from: &str, to: &str| parse("l.toml", &changed(from, to)).expect("good").case(&[]).notes.join("\n");
+    let notes = |from: &str, to: &str| parse("l.toml", &changed(from, to)).expect("good").notes().join("\n");
     assert!(
         notes("spacing_m = 204.8", "spacing_m = 12.8").contains("reaches 204.8 m, and the longest section is 300 m")
     );

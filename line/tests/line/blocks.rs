@@ -1,7 +1,6 @@
 //! The example's blocks, and every rule on blocks and lines broken on purpose.
 
-use crate::config::tests::value;
-use crate::config::{EXAMPLE, parse};
+use crate::support::{EXAMPLE, parse, value};
 
 const COMMON: &str = "[detection]\nlongest_train_m = 100\npass_ms = 10000\n";
 
@@ -45,10 +44,11 @@ fn the_hold_is_the_least_that_covers_the_longest_train_across_borders() {
 
 #[test]
 fn a_line_without_blocks_has_no_block_counting_and_says_nothing_of_it() {
-    let line = parse("l.toml", &with("", &[])).expect("good").case(&[]);
-    assert!(line.blocks.is_empty() && !line.checks.iter().any(|check| check.contains("BLK")));
-    let line = parse("l.toml", EXAMPLE).expect("good").case(&[]);
-    assert!(!line.blocks.is_empty() && line.checks.iter().filter(|check| check.contains("BLK")).count() == 3);
+    let blk = |line: &atc_line::Line| line.checks().iter().filter(|check| check.rule.starts_with("BLK")).count();
+    let line = parse("l.toml", &with("", &[])).expect("good");
+    assert!(line.blocks().is_empty() && blk(&line) == 0);
+    let line = parse("l.toml", EXAMPLE).expect("good");
+    assert!(!line.blocks().is_empty() && blk(&line) == 3);
 }
 
 #[test]
@@ -61,23 +61,48 @@ fn a_broken_rule_is_named_with_its_place() {
     let common = |from: &str, to: &str| COMMON.replace(from, to);
     let hold = |sections: u8| format!("{COMMON}hold_sections = {sections}\n");
     for (common, blocks, place, rule) in [
-        (COMMON, &[(1, "")][..], "[]", "BLK-8 is broken, block 1: it has no section"),
-        (COMMON, &[(1, "100"), (1, &seventeen)], "[100", "BLK-8 is broken, block 2: at most 16 sections; there are 17"),
-        (COMMON, &[(0, "100")], "0", "BLK-8 is broken, block 1: at least one train"),
-        (COMMON, &[(3, "100, 100")], "3", "at most as many trains as sections (2); it is 3"),
-        (&common("pass_ms = 10000", "pass_ms = 9"), &[(1, "100")], "9", "it rounds down); it is 9 ms"),
-        (&common("pass_ms = 10000", "pass_ms = 600010"), &[(1, "100")], "600010", "60 000 logic cycles"),
+        (COMMON, &[(1, "")][..], "[]", "BLK-8 is broken: block 1: sections is 0; a block has 1 to 16 sections"),
+        (
+            COMMON,
+            &[(1, "100"), (1, &seventeen)],
+            "[100",
+            "BLK-8 is broken: block 2: sections is 17; a block has 1 to 16",
+        ),
+        (
+            COMMON,
+            &[(0, "100")],
+            "0",
+            "BLK-8 is broken: block 1: max_trains is 0; it must be 1 to the number of sections, 1",
+        ),
+        (COMMON, &[(3, "100, 100")], "3", "max_trains is 3; it must be 1 to the number of sections, 2"),
+        (
+            &common("pass_ms = 10000", "pass_ms = 9"),
+            &[(1, "100")],
+            "9",
+            "pass_ms is 9 ms, less than one cycle of 10 ms",
+        ),
+        (
+            &common("pass_ms = 10000", "pass_ms = 600010"),
+            &[(1, "100")],
+            "600010",
+            "pass_ms is 600010 ms; it must be at most 60000 cycles",
+        ),
         (COMMON, &[(1, "100, 0, 100")], "0, 100]", "BLK-9 is broken: a section must have a length"),
         (COMMON, &many, "[100", "BLK-9 is broken: at most 64 sections; there are 80"),
         (COMMON, &single, "[100", "BLK-9 is broken: at most 64 sections; there are 65"),
-        (COMMON, &[(1, &short), (1, "1, 1")], "100", "needs more than 16 sections held; it is 100 m"),
+        (
+            COMMON,
+            &[(1, &short), (1, "1, 1")],
+            "100",
+            "longest_train_m is 100; a train of this length needs more than 16 sections held",
+        ),
         (
             &hold(1),
             &[(1, "100, 200"), (1, "99, 100")],
             "99, 100]",
             "what is held from here on (1 of the sections) is 99 m, and the longest train 100 m; at least 2 must be held",
         ),
-        (&hold(17), &[(1, "100")], "17", "at most 16 sections can be held; it is 17"),
+        (&hold(17), &[(1, "100")], "17", "hold_sections is 17; it must be 0 to 16 sections"),
         ("", &[(1, "100")], "1", "no [detection]"),
         (COMMON, &[], "", "there is [detection] and no [[block]]"),
         (&common("longest", "largest"), &[(1, "100")], "largest", "unknown field"),
@@ -93,8 +118,8 @@ fn a_broken_rule_is_named_with_its_place() {
 #[test]
 fn more_than_is_needed_may_be_held_and_is_said() {
     let text = with(&format!("{COMMON}hold_sections = 3\n"), &[(2, "100, 100, 100, 100"), (1, "100")]);
-    let line = parse("l.toml", &text).expect("good").case(&[]);
-    assert!(line.notes.iter().any(|note| note.contains("3 sections are held behind every head, and 1 would")));
-    assert!(line.notes.iter().any(|note| note.contains("Block 2 has one section")));
-    assert!(line.notes.iter().any(|note| note.contains("before the line's entry")));
+    let line = parse("l.toml", &text).expect("good");
+    assert!(line.notes().iter().any(|note| note.contains("3 sections are held behind every head, and 1 would")));
+    assert!(line.notes().iter().any(|note| note.contains("Block 2 has one section")));
+    assert!(line.notes().iter().any(|note| note.contains("before the line's entry")));
 }

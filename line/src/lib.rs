@@ -1,0 +1,37 @@
+//! A line's data: one form, one reader, one check.
+//!
+//! * [`read`] and [`parse`]: a line's file in TOML. The layouts of stations that it names are read by `atc-layout`.
+//! * [`aspect`], [`supervision`], [`block`], [`permitted`], [`position`], [`code`]: each group of parameters, as a session of the oracle
+//!   gives it in JSON. One conversion to the kernel's parameters, and one explanation of what the kernel refuses ([`Refusal`]).
+//! * [`Line`]: the parameters in the kernel's form, what follows from them, and [`Line::checks`].
+//! * [`DataCheck`]: a rule and what it came to, for lines and for stations. [`Rule`] lists the rules of lines.
+//! * [`seam`]: what the stations count on, held against what the trains do; both places are named.
+//!
+//! It knows the kernel and `atc-layout`. The oracle and the safety case use it. Begin with [`Line`].
+
+#![forbid(unsafe_code)]
+
+pub mod aspect;
+pub mod block;
+pub mod blocks;
+pub mod check;
+pub mod code;
+pub mod decimal;
+pub mod figures;
+mod form;
+pub mod kmh;
+pub mod line;
+pub mod permitted;
+pub mod places;
+pub mod position;
+pub mod refusal;
+mod rule;
+pub mod seam;
+pub mod signal;
+pub mod supervision;
+
+pub use check::{Asked, DataCheck, Finding, Outcome};
+pub use form::End;
+pub use line::{Line, Problem, Problems, Train, parse, read};
+pub use refusal::Refusal;
+pub use rule::Rule;

@@ -1,0 +1,109 @@
+//! The speed codes of stations and the ranks in telegrams: one table, or a mapping that is never faster.
+
+use atc_kernel::aspect::{AspectId, AspectTable};
+use atc_kernel::interlocking::SpeedCode;
+
+use super::{Judged, NO_SIGNAL, NO_STATION, Sound, Station, count, finding, judged};
+use crate::check::{DataCheck, Finding};
+use crate::kmh::Kmh;
+use crate::line::Line;
+use crate::permitted::{list, rank};
+use crate::rule::Rule;
+
+pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
+    let stations = line.sound();
+    let each = |one: &dyn Fn(&AspectTable, Sound<'_>) -> Vec<Finding>| -> Judged {
+        let speeds = line.signal().ok_or(NO_SIGNAL)?.permitted().settings().speeds;
+        if line.stations().is_empty() {
+            return Err(NO_STATION);
+        }
+        Ok(stations.iter().flat_map(|station| one(&speeds, *station)).collect())
+    };
+    let codes: usize = stations.iter().map(|one| one.station.codes().len()).sum();
+    vec![
+        judged(Rule::RankMissing, count(codes, "speed code"), each(&|speeds, one| missing(line, speeds, one))),
+        judged(Rule::RankFaster, count(codes, "speed code"), each(&|_, one| faster(line, one))),
+        judged(Rule::RankStop, count(stations.len(), "station"), each(&|speeds, one| stop(line, speeds, one))),
+    ]
+}
+
+impl Station {
+    /// The speeds of its codes 1, 2, …, in km/h.
+    fn codes(&self) -> &[u16] {
+        &self.description.station.braking.speeds_kmh.value
+    }
+
+    /// What telegrams name for each of its codes.
+    fn named(&self) -> Vec<Kmh> {
+        let own = || self.codes().iter().map(|speed| Kmh(i32::from(*speed) * 10)).collect();
+        self.code_speeds.clone().unwrap_or_else(own)
+    }
+
+    /// The rank in telegrams of a speed code; none if the station has no such code, or the line no such speed.
+    ///
+    /// Where the rules `rank-missing` and `rank-faster` are met, every code of the station has a rank, and it means no higher speed.
+    pub fn rank(&self, speeds: &AspectTable, code: SpeedCode) -> Option<AspectId> {
+        let Some(place) = usize::from(code.0).checked_sub(1) else { return AspectId::new(0) };
+        rank(speeds, *self.named().get(place)?)
+    }
+}
+
+/// Where a speed stands that telegrams name for a code: in the line's file, or in the layout.
+fn at(line: &Line, one: Sound<'_>, place: usize) -> String {
+    match &one.station.code_speeds {
+        Some(_) => line.places().at(&format!("station[{}].code_speeds_km_h[{place}]", one.number)),
+        None => one.station.at(&one.station.description().station.braking.speeds_kmh.span),
+    }
+}
+
+/// Where the speeds of ranks stand.
+fn table(line: &Line) -> String {
+    line.places().at(if line.places().has("signal.speeds_km_h") { "signal.speeds_km_h" } else { "aspects_km_h" })
+}
+
+fn missing(line: &Line, speeds: &AspectTable, one: Sound<'_>) -> Vec<Finding> {
+    let (named, codes) = (one.station.named(), one.station.codes().len());
+    let mut findings = Vec::new();
+    if named.len() != codes {
+        let what = format!("{} has {codes} speed codes, and code_speeds_km_h names {}", one.name(), named.len());
+        let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
+        let at = line.places().at(&format!("station[{}].code_speeds_km_h", one.number));
+        findings.push(finding(at, codes_at, what, "name one speed for each code, from code 1 on"));
+    }
+    for (place, speed) in named.iter().enumerate().filter(|(_, speed)| rank(speeds, **speed).is_none()) {
+        let what = format!(
+            "{}: telegrams cannot name the {speed} km/h of code {}; the line's speeds are {} km/h",
+            one.name(),
+            place + 1,
+            list(speeds)
+        );
+        let right = "give code_speeds_km_h with speeds of the line, none faster than its code";
+        findings.push(finding(at(line, one, place), table(line), what, right));
+    }
+    findings
+}
+
+fn faster(line: &Line, one: Sound<'_>) -> Vec<Finding> {
+    let codes = one.station.codes();
+    let named = one.station.named();
+    let pairs = named.iter().zip(codes).enumerate();
+    pairs
+        .filter(|(_, (named, code))| named.0 > i32::from(**code) * 10)
+        .map(|(place, (named, code))| {
+            let what =
+                format!("{}: telegrams name {named} km/h for code {}, which is for {code}", one.name(), place + 1);
+            let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
+            finding(at(line, one, place), codes_at, what, format!("name {code} km/h or less"))
+        })
+        .collect()
+}
+
+fn stop(line: &Line, speeds: &AspectTable, one: Sound<'_>) -> Vec<Finding> {
+    let lowest = speeds.speeds().first().copied().unwrap_or_default();
+    if lowest.0 == 0 {
+        return Vec::new();
+    }
+    let what = format!("code 0 of {} is a stop, and the lowest rank means {} km/h", one.name(), Kmh::from(lowest));
+    let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
+    vec![finding(table(line), codes_at, what, "let speeds_km_h of [signal] begin with 0")]
+}
