@@ -139,7 +139,7 @@ pub(crate) fn conform(args: &ConformArgs) -> Result<(), Failure> {
     let run = run::run(options, |machine| {
         let word = match machine.verdict {
             Verdict::Agrees => "agrees",
-            Verdict::Differs(_) => "DIFFERS",
+            Verdict::Differs(..) => "DIFFERS",
             Verdict::NotCompared(_) => "not compared",
             Verdict::Gone(_) => "a known difference is gone",
         };
@@ -260,7 +260,7 @@ fn folder_of(folder: &Path, run: &Run, report: &Report, past: &[Past], texts: (&
     let mut history = fs::read_to_string(folder.join(HISTORY)).unwrap_or_default();
     history.push_str(&format!("{line}\n"));
     for machine in &run.machines {
-        let Verdict::Differs(trace) = &machine.verdict else { continue };
+        let Verdict::Differs(trace, _) = &machine.verdict else { continue };
         let file = |kind: &str| folder.join(format!("{kind}-{}.jsonl", machine.name));
         write(&file("trace"), &(trace.lines().join("\n") + "\n"))?;
         if let Some(last) = trace.cases.last() {

@@ -4,10 +4,12 @@
 //! * [`run`]: what `oracle conform` does. Cases come from [`walk`], the other side is a process ([`side`]), a case is played by
 //!   [`play`], and what is found is made shorter by [`shrink`].
 //! * [`fields`]: what is compared, and which requirements speak of it. [`profile`]: what is known to differ.
+//! * [`alike`]: which small change of the kernel gives the same replies.
 //! * [`report`]: text, JSON, JUnit, HTML, badge. [`vectors`]: cases in files.
 //!
 //! It goes through [`crate::Session`] and [`crate::chart`] as any client does; neither knows of it.
 
+pub mod alike;
 pub mod case;
 pub mod fields;
 pub mod play;

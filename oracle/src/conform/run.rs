@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+use super::alike::{Alike, alike};
 use super::case::{Case, Expected};
 use super::fields::Level;
 use super::play::{At, Finding, Found, Judge, play};
@@ -65,7 +66,7 @@ pub enum Verdict {
     /// Everything that was compared is the same.
     Agrees,
     /// Something differs, or there was no reply.
-    Differs(Box<Trace>),
+    Differs(Box<Trace>, Vec<Alike>),
     /// It was not compared; why.
     NotCompared(String),
     /// Known differences did not show: their places in the profile.
@@ -88,7 +89,7 @@ pub struct Run {
 impl Run {
     /// Whether everything that was compared is the same, and anything was.
     pub fn agrees(&self) -> bool {
-        let bad = |machine: &Machine| matches!(machine.verdict, Verdict::Differs(_) | Verdict::Gone(_));
+        let bad = |machine: &Machine| matches!(machine.verdict, Verdict::Differs(..) | Verdict::Gone(_));
         let agreed = |machine: &Machine| matches!(machine.verdict, Verdict::Agrees);
         self.machines.iter().any(agreed) && !self.machines.iter().any(bad)
     }
@@ -112,7 +113,7 @@ pub fn run(options: Options, mut progress: impl FnMut(&Machine)) -> Run {
         let share = left / u32::try_from(names.len() - number).unwrap_or(1);
         let machine = one(name, &options, share, &mut side);
         progress(&machine);
-        let lost = matches!(&machine.verdict, Verdict::Differs(trace)
+        let lost = matches!(&machine.verdict, Verdict::Differs(trace, _)
             if matches!(trace.found.finding, Finding::Broken(Broken::NotStarted(_))));
         machines.push(machine);
         if lost {
@@ -138,6 +139,9 @@ const REMEMBERED: usize = 12;
 /// After so many cases the process is started anew, so that what went before a difference stays short.
 const RENEWED: u64 = 400;
 
+/// A machine whose first starts are all rejected is taken for one that is not built.
+const REFUSALS: u32 = 3;
+
 fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machine {
     if let Some(reason) = options.profile.skips(name) {
         return not_compared(name, format!("the profile leaves it out: {reason}"));
@@ -146,7 +150,7 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
     let judge = Judge { level: options.level, profile: &options.profile };
     let mut before: Vec<Case> = Vec::new();
     let (mut cases, mut steps, mut known) = (0_u64, 0_u64, BTreeSet::new());
-    let (mut rejected, mut taken) = (None, false);
+    let (mut rejected, mut refusals, mut taken) = (None, 0_u32, false);
     let mut first: Option<(Case, Found)> = None;
     let done = |verdict, cases, steps, known: BTreeSet<usize>| {
         Machine { name: name.to_owned(), verdict, cases, steps, took: since.elapsed(), known }
@@ -180,9 +184,10 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
             Err(found) => {
                 let refused = found.at == At::Start && !expected.is_rejected() && starts_rejected(&found);
                 // Whoever rejects every start of a machine has not built it; the first of them is kept.
-                if refused && !taken && options.machines.is_empty() && !all {
+                if refused && !taken && options.machines.is_empty() {
                     rejected.get_or_insert((expected.case, *found));
-                    if number >= 40 {
+                    refusals += 1;
+                    if refusals >= REFUSALS {
                         break;
                     }
                     continue;
@@ -198,22 +203,27 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
         }
         before.push(expected.case);
     }
-    if let (None, Some((case, found))) = (&first, rejected) {
+    if let (None, Some(refused)) = (&first, rejected) {
         if !taken {
             let why = "the other side rejects every start of it".to_owned();
             return done(Verdict::NotCompared(why), 0, 0, known);
         }
-        first = Some((case, found));
+        first = Some(refused);
     }
     if let Some((case, found)) = first {
         let trace = shortest(&before, case, found, options, side, judge, name);
         return match trace {
-            Some(trace) => done(Verdict::Differs(Box::new(trace)), cases, steps, known),
+            Some(trace) => {
+                let last = trace.cases.last();
+                let guesses = last.map(|last| alike(last, &trace.found.replies, options.level)).unwrap_or_default();
+                done(Verdict::Differs(Box::new(trace), guesses), cases, steps, known)
+            }
             None => done(Verdict::NotCompared("the case cannot be played again".to_owned()), cases, steps, known),
         };
     }
-    if cases == 0 {
-        return done(Verdict::NotCompared("there is no walk and no example for it".to_owned()), 0, 0, known);
+    if steps == 0 {
+        let why = if number == 0 { "there is no walk and no example for it" } else { "time was up before a step was compared" };
+        return done(Verdict::NotCompared(why.to_owned()), cases, 0, known);
     }
     let gone = |(place, entry): (usize, &super::profile::Known)| {
         (entry.machine == name && !known.contains(&place)).then_some(place)

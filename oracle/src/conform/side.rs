@@ -16,6 +16,9 @@ const MAX_REPLY: usize = 8 << 20;
 /// How much of what the other side says on standard error is kept: its last bytes.
 const MAX_STDERR: usize = 2000;
 
+/// How much longer the first reply of a process may take.
+const BEGIN: Duration = Duration::from_secs(8);
+
 /// For how long a process that has closed its output may take to end before it counts as one that goes on.
 const END: Duration = Duration::from_millis(700);
 
@@ -82,6 +85,8 @@ struct Running {
     stdin: ChildStdin,
     stdout: ChildStdout,
     stderr: Arc<Mutex<Vec<u8>>>,
+    /// Whether it has answered: the first reply may take longer, for an interpreter to start.
+    answered: bool,
     /// What was read and not yet taken as a line.
     read: Vec<u8>,
 }
@@ -101,13 +106,17 @@ impl Side {
             self.running = Some(self.start()?);
         }
         let Some(running) = &mut self.running else { return Err(Broken::Closed) };
-        let asked = running.ask(line, self.patience);
+        let patience = if running.answered { self.patience } else { self.patience + BEGIN };
+        let asked = running.ask(line, patience);
         match asked {
-            Ok(reply) => Ok(reply),
+            Ok(reply) => {
+                running.answered = true;
+                Ok(reply)
+            }
             Err(Failed::Gone) => Err(self.gone()),
             Err(Failed::Slow) => {
                 self.end();
-                Err(Broken::Hung(self.patience.as_millis()))
+                Err(Broken::Hung(patience.as_millis()))
             }
             Err(Failed::Long(line)) => {
                 self.end();
@@ -209,7 +218,7 @@ impl Running {
         let keeps = Arc::clone(&kept);
         // Ends with the process: at the end of its output.
         std::thread::Builder::new().name("stderr".to_owned()).spawn(move || keep(stderr, &keeps))?;
-        Ok(Self { child, stdin, stdout, stderr: kept, read: Vec::new() })
+        Ok(Self { child, stdin, stdout, stderr: kept, answered: false, read: Vec::new() })
     }
 
     /// Writes a line and reads one. Both pipes may be full: what can go on, goes on.

@@ -46,7 +46,7 @@ pub fn page(run: &Run, report: &Report, past: &[Past]) -> String {
                 (summary(report))
                 (machines(report))
                 @for (machine, of) in run.machines.iter().zip(&report.machines) {
-                    @if let (Verdict::Differs(trace), Some(first)) = (&machine.verdict, &of.difference) {
+                    @if let (Verdict::Differs(trace, _), Some(first)) = (&machine.verdict, &of.difference) {
                         (difference(of, first, &charts(trace)))
                     }
                 }
@@ -132,6 +132,7 @@ fn difference(of: &OfMachine, first: &First, charts: &(Option<String>, Option<St
                 }
             }
         }
+        @for guess in &first.as_if { p { "The kernel would say the same with " b { (guess) } "." } }
         p {
             @if !first.again { "It did not show a second time; the trace is as it was. " }
             @else if first.minimal { "No step can be left out. " }

@@ -8,6 +8,7 @@ mod text;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::alike::Alike;
 use super::case::Expected;
 use super::fields::{Difference, Level};
 use super::play::{At, Finding};
@@ -115,8 +116,10 @@ pub struct First {
     pub fields: Vec<Difference>,
     /// What the other side did in place of a reply: the kind, and a sentence.
     pub broken: Option<(&'static str, String)>,
-    /// The requirements that speak of the first field.
+    /// The requirements that speak of the first field, those of a guess that fits first.
     pub requirements: Vec<&'static str>,
+    /// Changes of the configuration with which the kernel gives the same replies: "interruption_ms one cycle shorter (ACC-8)".
+    pub as_if: Vec<String>,
     /// Whether it shows again in a new process.
     pub again: bool,
     /// Whether no step can be left out; false if the time for shrinking ran out first.
@@ -163,8 +166,8 @@ fn of_machine(run: &Run, machine: &Machine) -> OfMachine {
             let gone: Vec<_> = gone.iter().map(entry).collect();
             (Word::KnownDifferenceGone, Some(format!("it did not show, take it out of the profile: {}", gone.join("; "))))
         }
-        Verdict::Differs(trace) if matches!(trace.found.finding, Finding::Broken(_)) => (Word::Broken, None),
-        Verdict::Differs(_) => (Word::Differs, None),
+        Verdict::Differs(trace, _) if matches!(trace.found.finding, Finding::Broken(_)) => (Word::Broken, None),
+        Verdict::Differs(..) => (Word::Differs, None),
     };
     OfMachine {
         machine: machine.name.clone(),
@@ -175,13 +178,13 @@ fn of_machine(run: &Run, machine: &Machine) -> OfMachine {
         seconds: machine.took.as_secs_f64(),
         known: machine.known.iter().map(entry).collect(),
         difference: match &machine.verdict {
-            Verdict::Differs(trace) => Some(first(trace)),
+            Verdict::Differs(trace, guesses) => Some(first(trace, guesses)),
             _ => None,
         },
     }
 }
 
-fn first(trace: &Trace) -> First {
+fn first(trace: &Trace, guesses: &[Alike]) -> First {
     let (at, step) = match trace.found.at {
         At::Start => ("start", None),
         At::Step(step) => ("step", Some(step + 1)),
@@ -196,13 +199,25 @@ fn first(trace: &Trace) -> First {
         step,
         fields,
         broken,
-        requirements: trace.found.requirements().to_vec(),
+        requirements: likeliest_first(trace.found.requirements(), guesses),
+        as_if: guesses.iter().map(|guess| format!("{} ({})", guess.says, guess.requirement)).collect(),
         again: trace.again,
         minimal: trace.minimal,
         tries: trace.tries,
         steps: trace.steps(),
         trace: trace.lines(),
     }
+}
+
+fn likeliest_first(requirements: &[&'static str], guesses: &[Alike]) -> Vec<&'static str> {
+    let mut all: Vec<_> = guesses.iter().map(|guess| guess.requirement).collect();
+    all.dedup();
+    for requirement in requirements {
+        if !all.contains(requirement) {
+            all.push(requirement);
+        }
+    }
+    all
 }
 
 /// The last case of a trace as `oracle chart` reads it: with the kernel's replies, and with those of the other side.

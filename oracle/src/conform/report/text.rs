@@ -60,6 +60,9 @@ fn difference(text: &mut String, report: &Report, first: &First) {
     if let Some((_, sentence)) = &first.broken {
         let _ = writeln!(text, "    {sentence}");
     }
+    for guess in &first.as_if {
+        let _ = writeln!(text, "  the kernel would say the same with {guess}");
+    }
     if !first.requirements.is_empty() {
         let _ = writeln!(text, "  requirements: {}", first.requirements.join(", "));
     }

@@ -15,6 +15,8 @@ mod station;
 mod supervision;
 mod telegram;
 
+use std::sync::OnceLock;
+
 use serde_json::Value;
 
 use super::case::{Case, Expected, Kernel, is_rejected};
@@ -57,6 +59,23 @@ pub const SOURCES: &[Source] = &[
     interlocking::SOURCE,
 ];
 
+/// The configurations of a source, made once: a layout takes its time.
+struct Configs {
+    small: Vec<Value>,
+    large: Vec<Value>,
+    wrong: Vec<Value>,
+}
+
+static CONFIGS: [OnceLock<Configs>; SOURCES.len()] = [const { OnceLock::new() }; SOURCES.len()];
+
+impl Source {
+    fn configs(&self) -> Option<&'static Configs> {
+        let place = SOURCES.iter().position(|source| source.machine == self.machine)?;
+        let made = || Configs { small: (self.small)(), large: (self.large)(), wrong: (self.wrong)() };
+        CONFIGS.get(place).map(|configs| configs.get_or_init(made))
+    }
+}
+
 /// The walks of that machine. One without walks of its own has its committed examples, changed here and there.
 pub fn source(machine: &str) -> Option<&'static Source> {
     SOURCES.iter().find(|source| source.machine == machine)
@@ -73,17 +92,22 @@ pub enum Sizes {
     Few,
 }
 
+/// How many walks come before the configurations to be rejected.
+const WALKS_FIRST: u64 = 4;
+
 /// The case of that number of a machine, with the kernel's replies; none if the machine has neither walks nor examples.
 ///
-/// The first cases are the configurations to be rejected; then walks. With `config` every case has that configuration.
+/// First come some walks, so that a machine that is not built shows at once; then the configurations to be rejected; then more walks.
+/// With `config` every case has that configuration.
 pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<&Value>) -> Option<Expected> {
     let mut random = Random::of(seed, machine, number);
     let Some(source) = source(machine) else { return mutate::case(machine, number, config, &mut random) };
     if let Some(config) = config {
         return Some(source.walk(config.clone(), source.most.1, &mut random));
     }
-    let wrong = (source.wrong)();
-    if let Some(config) = usize::try_from(number).ok().and_then(|number| wrong.get(number)) {
+    let made = source.configs()?;
+    let wrong = number.checked_sub(WALKS_FIRST).and_then(|number| usize::try_from(number).ok());
+    if let Some(config) = wrong.and_then(|number| made.wrong.get(number)) {
         let case = Case { machine: machine.to_owned(), config: config.clone(), steps: Vec::new() };
         return case.expected().ok();
     }
@@ -95,18 +119,18 @@ pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<
         }
     }
     let (configs, most) = match sizes {
-        Sizes::Mixed if number % 8 == 7 => ((source.large)(), source.most.1),
-        Sizes::Few if number % 64 == 7 => ((source.large)(), source.most.1 / 4),
-        _ => ((source.small)(), source.most.0),
+        Sizes::Mixed if number % 8 == 7 => (&made.large, source.most.1),
+        Sizes::Few if number % 64 == 7 => (&made.large, source.most.1 / 4),
+        _ => (&made.small, source.most.0),
     };
-    let config = random.pick(&configs).cloned().unwrap_or_default();
+    let config = random.pick(configs).cloned().unwrap_or_default();
     Some(source.walk(config, most, &mut random))
 }
 
 impl Source {
     /// How many configurations are there to be rejected.
     pub fn wrong_count(&self) -> usize {
-        (self.wrong)().len()
+        self.configs().map_or(0, |configs| configs.wrong.len())
     }
 
     fn walk(&self, config: Value, most: usize, random: &mut Random) -> Expected {
