@@ -17,9 +17,11 @@ use serde_json::{Value, json};
 use super::{Failure, print, remark, write};
 
 #[derive(Args)]
-#[command(after_help = "Exit code: 0 if all that was compared is the same; 1 if something differs, the other side broke, a known \
+#[command(
+    after_help = "Exit code: 0 if all that was compared is the same; 1 if something differs, the other side broke, a known \
     difference is gone, or nothing was compared; 2 for wrong arguments or files.\n\
-    oracle/CONFORM.md goes through an example.")]
+    oracle/CONFORM.md goes through an example."
+)]
 pub(crate) struct ConformArgs {
     /// The command of the other side, as a shell takes it: it reads requests on standard input and replies on standard output
     #[arg(long = "impl", value_name = "CMD")]
@@ -215,7 +217,8 @@ fn config(path: &Path, machines: &[String]) -> Result<Value, Failure> {
 fn vectors_in(folder: &Path, machines: &[String]) -> Result<Vec<Vector>, Failure> {
     let file = |name: &str| {
         let path = folder.join(name);
-        fs::read_to_string(&path).map_err(|error| format!("it cannot be read: {error}"))
+        fs::read_to_string(&path)
+            .map_err(|error| format!("it cannot be read: {error}"))
             .map_err(|reason| format!("{name}: {reason}"))
     };
     let wrong = |reason: String| Failure::Asked(format!("{}: {reason}", folder.display()));
@@ -242,12 +245,17 @@ fn past(path: &Path) -> Vec<Past> {
     runs.collect()
 }
 
+/// Whether a file of this name holds JSON lines.
+fn is_lines(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|extension| extension == "jsonl")
+}
+
 fn folder_of(folder: &Path, run: &Run, report: &Report, past: &[Past], texts: (&str, &str)) -> Result<(), Failure> {
     // Traces of an earlier run would be taken for those of this one.
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         let ours = ["trace-", "vector-", "kernel-", "other-"].iter().any(|kind| name.starts_with(kind));
-        if ours && name.ends_with(".jsonl") {
+        if ours && is_lines(&name) {
             drop(fs::remove_file(entry.path()));
         }
     }
@@ -258,7 +266,8 @@ fn folder_of(folder: &Path, run: &Run, report: &Report, past: &[Past], texts: (&
         "agrees": report.agrees,
     });
     let mut history = fs::read_to_string(folder.join(HISTORY)).unwrap_or_default();
-    history.push_str(&format!("{line}\n"));
+    history.push_str(&line.to_string());
+    history.push('\n');
     for machine in &run.machines {
         let Verdict::Differs(trace, _) = &machine.verdict else { continue };
         let file = |kind: &str| folder.join(format!("{kind}-{}.jsonl", machine.name));
@@ -308,7 +317,7 @@ pub(crate) fn vectors(args: &VectorsArgs) -> Result<(), Failure> {
     for (name, text) in &files {
         write(&out.join(name), text)?;
     }
-    let count: usize = files.iter().filter(|file| file.0.ends_with(".jsonl")).map(|file| file.1.lines().count()).sum();
+    let count: usize = files.iter().filter(|file| is_lines(&file.0)).map(|file| file.1.lines().count()).sum();
     let covered: std::collections::BTreeSet<String> = files
         .last()
         .and_then(|(_, list)| serde_json::from_str::<Value>(list).ok())
@@ -317,5 +326,10 @@ pub(crate) fn vectors(args: &VectorsArgs) -> Result<(), Failure> {
         .flat_map(|file| file["requirements"].as_array().cloned().unwrap_or_default())
         .filter_map(|id| id.as_str().map(str::to_owned))
         .collect();
-    print(&format!("{count} vectors of {} machines in {}, about {} requirements\n", with.len(), out.display(), covered.len()))
+    print(&format!(
+        "{count} vectors of {} machines in {}, about {} requirements\n",
+        with.len(),
+        out.display(),
+        covered.len()
+    ))
 }

@@ -117,7 +117,7 @@ pub const FAULTS: &[Fault] = &[
     step("gap-of-one-not-heard", ASPECT, "ACC-1", |memory, step| {
         // What was heard in the cycle before counts as heard.
         let before = memory.step["detected_km_h"].as_array().cloned().unwrap_or_default();
-        if let Some(now) = step["detected_km_h"].as_array_mut() {
+        if let Some(now) = step.get_mut("detected_km_h").and_then(Value::as_array_mut) {
             now.extend(before.into_iter().filter(|speed| !now.contains(speed)).collect::<Vec<_>>());
         }
     }),
@@ -180,7 +180,7 @@ pub const FAULTS: &[Fault] = &[
     output("bit-times-of-bits", TELEGRAM, "TEL-5", |memory, output| {
         let gaps = memory.step["bits"].as_str().map_or(0, |bits| bits.matches('.').count());
         memory.count += gaps as u64;
-        for found in output["telegrams"].as_array_mut().into_iter().flatten() {
+        for found in output.get_mut("telegrams").and_then(Value::as_array_mut).into_iter().flatten() {
             found["last_bit"] = found["last_bit"].as_u64().map(|bit| bit.saturating_sub(memory.count)).into();
         }
     }),
@@ -190,7 +190,11 @@ pub const FAULTS: &[Fault] = &[
             *step = json!({"decode": format!("0111111111111110{}", &bits[16..])});
         }
     }),
-    output("error-words", TELEGRAM, "TEL-4", |_, output| swap(&mut output["error"], "check", "content")),
+    output("error-words", TELEGRAM, "TEL-4", |_, output| {
+        if let Some(error) = output.get_mut("error") {
+            swap(error, "check", "content");
+        }
+    }),
     output("rounded-up", PATTERN, "PAT-1", |memory, output| {
         if memory.step["distance_m"].as_i64().unwrap_or(0) % 7 == 3
             && let Some(speed) = output["speed_km_h"].as_f64()
@@ -241,7 +245,9 @@ pub const FAULTS: &[Fault] = &[
     config("overlap-not-held", INTERLOCKING, "ILK-1", |config| {
         routes(config, |route| route["overlap"] = json!({"circuits": [], "points": {}}));
     }),
-    config("release-early", INTERLOCKING, "ILK-13", |config| routes(config, |route| add(route, "release_cycles", 1, -1))),
+    config("release-early", INTERLOCKING, "ILK-13", |config| {
+        routes(config, |route| add(route, "release_cycles", 1, -1));
+    }),
     config("drive-long", INTERLOCKING, "ILK-5", |config| routes(config, |route| add(route, "drive_cycles", 1, 1))),
     config("not-settled", INTERLOCKING, "ILK-23", |config| plan(config, |plan| plan["settle_cycles"] = 0.into())),
     config("no-start-time", INTERLOCKING, "ILK-24", |config| plan(config, |plan| plan["start_cycles"] = 0.into())),
@@ -252,12 +258,12 @@ pub const FAULTS: &[Fault] = &[
         step["consent"] = names.collect();
     }),
     step("blocks-ignored", INTERLOCKING, "ILK-15", |_, step| {
-        if let Some(orders) = step["orders"].as_object_mut() {
+        if let Some(orders) = step.get_mut("orders").and_then(Value::as_object_mut) {
             orders.remove("block");
         }
     }),
     step("restrictions-ignored", INTERLOCKING, "ILK-15", |_, step| {
-        if let Some(orders) = step["orders"].as_object_mut() {
+        if let Some(orders) = step.get_mut("orders").and_then(Value::as_object_mut) {
             orders.remove("restrict");
         }
     }),
@@ -267,7 +273,7 @@ pub const FAULTS: &[Fault] = &[
         }
     }),
     output("heading-turned", INTERLOCKING, "ATC-10", |_, output| {
-        for telegram in output["telegrams"].as_object_mut().into_iter().flatten() {
+        for telegram in output.get_mut("telegrams").and_then(Value::as_object_mut).into_iter().flatten() {
             swap(&mut telegram.1["heading"], "left", "right");
         }
     }),

@@ -67,10 +67,7 @@ const GUESSES: &[(&str, &[(Change, &str)])] = &[
             (Ignored("worst_gradient_permille", 0), "PER-5"),
         ],
     ),
-    (
-        "train-position",
-        &[(Ignored("tolerance_db", 0), "POS-1"), (Ignored("floor_db", -300), "POS-2")],
-    ),
+    ("train-position", &[(Ignored("tolerance_db", 0), "POS-1"), (Ignored("floor_db", -300), "POS-2")]),
     (
         "interlocking",
         &[
@@ -115,9 +112,11 @@ pub fn alike(expected: &Expected, replies: &[String], level: Level) -> Vec<Alike
 fn fits(machine: &str, level: Level, guess: &Expected, replies: &[String]) -> bool {
     let body = |line: &String| serde_json::from_str::<Value>(line).unwrap_or_default()["output"].take();
     guess.outputs.len() == replies.len()
-        && guess.outputs.iter().zip(replies).all(|(guess, reply)| {
-            guess == reply || compare(machine, level, &body(guess), &body(reply)).is_empty()
-        })
+        && guess
+            .outputs
+            .iter()
+            .zip(replies)
+            .all(|(guess, reply)| guess == reply || compare(machine, level, &body(guess), &body(reply)).is_empty())
 }
 
 impl Change {
@@ -182,7 +181,8 @@ mod tests {
     /// A guess names a requirement that a field of the machine names.
     #[test]
     fn the_requirements_are_those_of_the_fields() {
-        let listed: Vec<_> = TABLES.iter().flat_map(|table| table.fields).flat_map(|field| field.requirements).collect();
+        let listed: Vec<_> =
+            TABLES.iter().flat_map(|table| table.fields).flat_map(|field| field.requirements).collect();
         for requirement in named() {
             assert!(listed.contains(&&requirement), "{requirement}");
         }

@@ -127,18 +127,18 @@ impl Player<'_> {
         for (number, (step, output)) in expected.case.steps.iter().zip(&expected.outputs).enumerate() {
             self.step(step, output).map_err(|finding| (At::Step(number), finding))?;
         }
-        let reply = self.ask(STOP, "stopped").map_err(|finding| (At::Stop, finding))?;
-        self.kind_of(&reply, "stopped").map(drop).map_err(|finding| (At::Stop, finding))
+        let reply = self.ask(STOP).map_err(|finding| (At::Stop, finding))?;
+        kind_of(&reply, "stopped").map(drop).map_err(|finding| (At::Stop, finding))
     }
 
     /// Whether the case is open on both sides.
     fn start(&mut self, expected: &Expected) -> Result<bool, Finding> {
-        let reply = self.ask(&expected.case.start_line(), "started")?;
+        let reply = self.ask(&expected.case.start_line())?;
         let ours = if expected.is_rejected() { "rejected" } else { "started" };
         let body = json(&reply)?;
         let theirs = if body.get("rejected").is_some() { "rejected" } else { "started" };
         if theirs == "started" {
-            self.kind_of(&reply, "started")?;
+            kind_of(&reply, "started")?;
         }
         if ours != theirs {
             if theirs == "rejected" {
@@ -147,7 +147,7 @@ impl Player<'_> {
             self.differ(vec![start_difference(self.machine, ours, theirs)])?;
             // Known: there is nothing to go on with; what one side has open is closed.
             if theirs == "started" {
-                self.ask(STOP, "stopped")?;
+                self.ask(STOP)?;
             }
             return Ok(false);
         }
@@ -166,34 +166,34 @@ impl Player<'_> {
     }
 
     fn step(&mut self, step: &Value, output: &str) -> Result<(), Finding> {
-        let reply = self.ask(&step_line(step), "output")?;
+        let reply = self.ask(&step_line(step))?;
         if reply == output {
             self.replies.push(reply);
             return Ok(());
         }
-        let theirs = self.kind_of(&reply, "output")?;
+        let theirs = kind_of(&reply, "output")?;
         self.replies.push(reply);
         let ours: Value = serde_json::from_str(output).unwrap_or_default();
         self.differ(compare(self.machine, self.judge.level, &ours["output"], &theirs["output"]))
     }
 
-    fn ask(&mut self, line: &str, _due: &'static str) -> Result<String, Finding> {
+    fn ask(&mut self, line: &str) -> Result<String, Finding> {
         self.side.ask(line).map_err(Finding::Broken)
-    }
-
-    /// A reply as JSON, if it is of this kind.
-    fn kind_of(&self, reply: &str, due: &'static str) -> Result<Value, Finding> {
-        let body = json(reply)?;
-        match body.get(due) {
-            Some(Value::Object(_)) => Ok(body),
-            _ => Err(Finding::Broken(Broken::WrongReply(due, shorten(reply)))),
-        }
     }
 
     fn differ(&mut self, mut differences: Vec<Difference>) -> Result<(), Finding> {
         self.judge.profile.without_ignored(self.machine, &mut differences);
         self.agreed.known.extend(self.judge.profile.take_known(self.machine, &mut differences));
         if differences.is_empty() { Ok(()) } else { Err(Finding::Differs(differences)) }
+    }
+}
+
+/// A reply as JSON, if it is of this kind.
+fn kind_of(reply: &str, due: &'static str) -> Result<Value, Finding> {
+    let body = json(reply)?;
+    match body.get(due) {
+        Some(Value::Object(_)) => Ok(body),
+        _ => Err(Finding::Broken(Broken::WrongReply(due, shorten(reply)))),
     }
 }
 

@@ -46,7 +46,7 @@ impl Random {
 
     /// True once in so many times.
     pub const fn one_in(&mut self, times: u64) -> bool {
-        times == 0 || self.number() % times == 0
+        times == 0 || self.number().is_multiple_of(times)
     }
 
     /// One of these, which must not be none.

@@ -152,8 +152,13 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
     let (mut cases, mut steps, mut known) = (0_u64, 0_u64, BTreeSet::new());
     let (mut rejected, mut refusals, mut taken) = (None, 0_u32, false);
     let mut first: Option<(Case, Found)> = None;
-    let done = |verdict, cases, steps, known: BTreeSet<usize>| {
-        Machine { name: name.to_owned(), verdict, cases, steps, took: since.elapsed(), known }
+    let done = |verdict, cases, steps, known: BTreeSet<usize>| Machine {
+        name: name.to_owned(),
+        verdict,
+        cases,
+        steps,
+        took: since.elapsed(),
+        known,
     };
     side.end();
     let mut number = 0;
@@ -222,7 +227,11 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
         };
     }
     if steps == 0 {
-        let why = if number == 0 { "there is no walk and no example for it" } else { "time was up before a step was compared" };
+        let why = if number == 0 {
+            "there is no walk and no example for it"
+        } else {
+            "time was up before a step was compared"
+        };
         return done(Verdict::NotCompared(why.to_owned()), cases, 0, known);
     }
     let gone = |(place, entry): (usize, &super::profile::Known)| {
@@ -250,10 +259,16 @@ fn vector(options: &Options, name: &str, number: u64) -> Option<Expected> {
 /// A trace that is this short needs no other attempt.
 const SHORT: usize = 8;
 
-/// How many other walks are shrunk in search of a shorter trace.
-const ATTEMPTS: usize = 4;
+/// A case that is this long, or longer, is left for a walk on a small configuration that shows the same difference, if there is one.
+const LONG: usize = 100;
 
-/// Shrinks the trace; if it stays long, looks for the same difference in walks on small configurations, and takes the shortest.
+/// How many other walks are shrunk in search of a shorter trace.
+const ATTEMPTS: usize = 3;
+
+/// How many other walks are played in search of the same difference.
+const SEARCHED: u64 = 400;
+
+/// Shrinks the trace. Where it is or stays long, looks for the same difference in walks on small configurations, and takes the shortest.
 fn shortest(
     before: &[Case],
     case: Case,
@@ -266,29 +281,34 @@ fn shortest(
     let since = Instant::now();
     let kind = found.kind();
     let slow = matches!(found.finding, Finding::Broken(Broken::Hung(_)));
-    let mut best = shrink(before, case, found, side, judge, options.shrink)?;
-    if options.config.is_some() || !best.again || slow {
-        return Some(best);
+    let searching = options.config.is_none() && !slow && options.vectors.is_empty();
+    let left = || options.shrink.saturating_sub(since.elapsed());
+    let mut places = (0..SEARCHED).map(|number| number + (1 << 40));
+    let mut other = |side: &mut Side, until: Duration| -> Option<(Case, Found)> {
+        places.by_ref().take_while(|_| since.elapsed() < until).find_map(|place| {
+            let expected = walk::case(name, options.seed, place, Sizes::Small, None)?;
+            let found = play(&expected, side, judge).err().filter(|found| found.kind() == kind)?;
+            Some((expected.case, *found))
+        })
+    };
+    if searching
+        && found.replies.len() >= LONG
+        && let Some((case, found)) = other(side, options.shrink / 3)
+        && let Some(trace) = shrink(&[], case, found, side, judge, left())
+        && trace.again
+    {
+        return Some(trace);
     }
+    let mut best = shrink(before, case, found, side, judge, left())?;
     let mut attempts = 0;
-    let until = options.shrink;
-    for number in 0..20_000 {
-        if best.steps() <= SHORT || attempts >= ATTEMPTS || since.elapsed() >= until {
-            break;
-        }
-        let place = number + (1 << 40);
-        let Some(expected) = walk::case(name, options.seed, place, Sizes::Small, None) else { break };
-        let Err(found) = play(&expected, side, judge) else { continue };
-        if found.kind() != kind {
-            continue;
-        }
+    while searching && best.again && best.steps() > SHORT && attempts < ATTEMPTS {
+        let Some((case, found)) = other(side, options.shrink) else { break };
         attempts += 1;
-        let left = until.saturating_sub(since.elapsed());
-        if let Some(other) = shrink(&[], expected.case, *found, side, judge, left)
-            && other.again
-            && other.steps() < best.steps()
+        if let Some(trace) = shrink(&[], case, found, side, judge, left())
+            && trace.again
+            && trace.steps() < best.steps()
         {
-            best = other;
+            best = trace;
         }
     }
     Some(best)

@@ -36,8 +36,8 @@ impl Trace {
     }
 }
 
-/// A configuration with more in it than this is left as it is: a station of thirty routes.
-const MAX_CONFIG: u64 = 6000;
+/// A configuration with more in it than this is left as it is: every candidate would be a station to compile.
+const MAX_CONFIG: u64 = 1500;
 
 /// Plays candidates.
 struct Shrinker<'a> {
@@ -72,21 +72,15 @@ pub fn shrink(
     let (mut cases, mut found) = trace?;
     let mut minimal = false;
     if again {
+        let (whole, first) = (cases.clone(), found.clone());
         (cases, found) = shrinker.smallest(cases, found);
         if !shrinker.fresh && shrinker.is_left() {
             // Candidates shared a process: what came out must also show in a new one.
             shrinker.fresh = true;
             let alone: Vec<_> = cases.iter().map(|expected| expected.case.clone()).collect();
-            match shrinker.play(&alone) {
-                Some(shown) => (cases, found) = shown,
-                None => {
-                    if let Some((first, seen)) = shrinker.again(before, &alone[alone.len() - 1]) {
-                        (cases, found) = (first, seen);
-                    }
-                    shrinker.fresh = true;
-                    (cases, found) = shrinker.smallest(cases, found);
-                }
-            }
+            // If it does not, something was kept from candidate to candidate: once more, each in a process of its own.
+            let shown = shrinker.play(&alone);
+            (cases, found) = shown.unwrap_or_else(|| shrinker.smallest(whole, first));
         }
         minimal = shrinker.is_left();
     }
@@ -289,10 +283,9 @@ impl Log2 for u64 {
 /// Values that are simpler than this one, the boldest first: nothing, less, a smaller number; in one place at a time.
 fn simpler(value: &Value) -> Vec<Value> {
     match value {
-        Value::Null | Value::Bool(false) => Vec::new(),
         Value::Bool(true) => vec![Value::Bool(false)],
         Value::Number(number) => smaller(number).into_iter().map(Value::from).collect(),
-        // A name is not changed; a stream of bits is cut.
+        // A stream of bits is cut; a name is not changed.
         Value::String(text) if text.bytes().all(|byte| matches!(byte, b'0' | b'1' | b'.')) => {
             let half = text.len() / 2;
             let mut cuts = vec![text[half..].to_owned(), text[..half].to_owned()];
@@ -302,7 +295,7 @@ fn simpler(value: &Value) -> Vec<Value> {
             cuts.retain(|cut| cut.len() < text.len());
             cuts.into_iter().map(Value::from).collect()
         }
-        Value::String(_) => Vec::new(),
+        Value::Null | Value::Bool(false) | Value::String(_) => Vec::new(),
         Value::Array(items) => {
             let mut all = Vec::new();
             if items.len() > 1 {

@@ -250,7 +250,7 @@ impl Running {
                 }
             }
             self.wait(!left.is_empty(), until)?;
-            let mut piece = [0; 1 << 16];
+            let mut piece = [0; 1 << 14];
             match self.stdout.read(&mut piece) {
                 Ok(0) => return Err(Failed::Gone),
                 Ok(count) => self.read.extend_from_slice(&piece[..count]),

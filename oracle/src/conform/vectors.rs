@@ -124,7 +124,8 @@ fn requirements(machine: &str, rejected: bool, outputs: &[Value]) -> Vec<String>
 fn open(machine: &str, outputs: &[Value]) -> Vec<String> {
     let fields = fields::table(machine).map_or(&[][..], |table| table.fields);
     let above = fields.iter().filter(|field| field.level > Level::Output);
-    let there = above.filter(|field| outputs.iter().any(|output| field.value(output).is_some_and(|value| !value.is_null())));
+    let there =
+        above.filter(|field| outputs.iter().any(|output| field.value(output).is_some_and(|value| !value.is_null())));
     there.map(|field| field.name.to_owned()).collect()
 }
 
@@ -194,7 +195,8 @@ pub fn vectors(machine: &str, set: Set) -> Vec<Vector> {
         // The lines' own configurations only in the thorough set, and few: their traces are long.
         let sizes = if set == Set::Thorough { Sizes::Few } else { Sizes::Small };
         let Some(expected) = walk::case(machine, SEED, number, sizes, None) else { continue };
-        let note = if expected.is_rejected() { "a rule broken by one step".to_owned() } else { format!("walk {number}") };
+        let note =
+            if expected.is_rejected() { "a rule broken by one step".to_owned() } else { format!("walk {number}") };
         add(Vector::of(&expected, note));
     }
     all
@@ -216,7 +218,8 @@ pub fn files(machines: &[&str], set: Set) -> Vec<(String, String)> {
             text.push_str(&json!(vector).to_string());
             text.push('\n');
         }
-        let (name, steps) = (format!("{machine}.jsonl"), vectors.iter().map(|vector| vector.steps.len()).sum::<usize>());
+        let (name, steps) =
+            (format!("{machine}.jsonl"), vectors.iter().map(|vector| vector.steps.len()).sum::<usize>());
         let covered: BTreeSet<_> = vectors.iter().flat_map(|vector| vector.requirements.clone()).collect();
         list.push(json!({
             "file": name, "machine": machine, "vectors": vectors.len(), "steps": steps,

@@ -128,7 +128,11 @@ impl Difference {
 pub fn compare(machine: &str, level: Level, expected: &Value, got: &Value) -> Vec<Difference> {
     let mut differences = Vec::new();
     match table(machine) {
-        Some(table) => table.fields.iter().for_each(|field| field.compare(level, expected, got, &mut differences)),
+        Some(table) => {
+            for field in table.fields {
+                field.compare(level, expected, got, &mut differences);
+            }
+        }
         // A machine that has no table yet: every field as it stands.
         None => {
             for (name, value) in expected.as_object().into_iter().flatten() {
@@ -220,11 +224,15 @@ impl Field {
             match (ours.get(name), theirs.get(name)) {
                 (Some(one), Some(other)) if !fields.is_empty() => {
                     let mut inner = Vec::new();
-                    fields.iter().for_each(|field| field.compare(level, one, other, &mut inner));
-                    into.extend(inner.into_iter().map(|difference| Difference {
-                        field: format!("{place}/{}", difference.field),
-                        ..difference
-                    }));
+                    for field in fields {
+                        field.compare(level, one, other, &mut inner);
+                    }
+                    into.extend(
+                        inner.into_iter().map(|difference| Difference {
+                            field: format!("{place}/{}", difference.field),
+                            ..difference
+                        }),
+                    );
                 }
                 (Some(one), Some(other)) if same(one, other) => {}
                 (one, other) => into.push(self.difference(place, one.cloned(), other.cloned())),

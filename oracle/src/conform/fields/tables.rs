@@ -40,7 +40,7 @@ const ASPECT: Table = Table {
     fields: &[output(
         "display_km_h",
         Danger::Higher,
-        &["ACC-1", "ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-6", "ACC-7", "ACC-8", "ACC-9"],
+        &["ACC-1", "ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-6", "ACC-7", "ACC-8", "ACC-9", "TIME-1"],
     )],
 };
 
@@ -121,11 +121,7 @@ const POSITION: Table = Table {
     machine: "train-position",
     start: &["POS-5"],
     cycles: &[],
-    fields: &[output(
-        "interval_m",
-        Danger::Narrower,
-        &["POS-1", "POS-2", "POS-3", "POS-4", "POS-6", "POS-7"],
-    )],
+    fields: &[output("interval_m", Danger::Narrower, &["POS-1", "POS-2", "POS-3", "POS-4", "POS-6", "POS-7"])],
 };
 
 const INTERLOCKING: Table = Table {
@@ -133,11 +129,11 @@ const INTERLOCKING: Table = Table {
     start: &["LAY-1", "LAY-2"],
     cycles: &["TRK-1", "ILK-19"],
     fields: &[
-        set("proceed", Danger::More, &["ILK-6", "ILK-7", "ILK-23", "ILK-26", "TRK-1"]),
+        set("proceed", Danger::More, &["ILK-6", "ILK-7", "ILK-13", "ILK-15", "ILK-23", "ILK-26", "TRK-1"]),
         Field {
             shape: Shape::Entries(&[
                 output("stop", Danger::Always, &["ATC-1", "ATC-2", "ATC-3", "ATC-13", "ILK-13", "TRK-1"]),
-                output("speed_km_h", Danger::Higher, &["ATC-4", "ATC-8", "ATC-9"]),
+                output("speed_km_h", Danger::Higher, &["ATC-4", "ATC-8", "ATC-9", "ILK-15"]),
                 output("open", Danger::Appears, &["ATC-1", "ATC-2", "ATC-7"]),
                 output("heading", Danger::Always, &["ATC-10", "ATC-7"]),
             ]),
@@ -149,7 +145,7 @@ const INTERLOCKING: Table = Table {
         },
         Field { shape: Shape::Entries(&[]), ..output("drives", Danger::More, &["ILK-3", "ILK-8", "ILK-23"]) },
         set("permits", Danger::More, &["ILK-4", "ILK-18", "ILK-19", "ILK-20", "ILK-25"]),
-        set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-24"]),
+        set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-19", "ILK-24", "TRK-1"]),
         Field { absent: Absent::Empty, ..set("silent", Danger::Fewer, &["ATC-12"]) },
         Field {
             get: Some(|output| {
@@ -160,8 +156,8 @@ const INTERLOCKING: Table = Table {
                 "answer",
                 Danger::Appears,
                 &[
-                    "ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-12", "ILK-17", "ILK-18", "ILK-19", "ILK-20", "ILK-24",
-                    "ILK-25", "ILK-26",
+                    "ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-12", "ILK-15", "ILK-17", "ILK-18", "ILK-19", "ILK-20",
+                    "ILK-24", "ILK-25", "ILK-26", "TRK-1",
                 ],
             )
         },

@@ -115,7 +115,8 @@ fn machines(report: &Report) -> Markup {
 }
 
 fn difference(of: &OfMachine, first: &First, charts: &(Option<String>, Option<String>)) -> Markup {
-    let place = first.step.map_or_else(|| format!("the {}", first.at), |step| format!("step {step} of {}", first.steps));
+    let place =
+        first.step.map_or_else(|| format!("the {}", first.at), |step| format!("step {step} of {}", first.steps));
     html! {
         h2 id=(of.machine) { (of.machine) ": first difference at " (place) }
         @if let Some((_, sentence)) = &first.broken { p.bad { (sentence) } }

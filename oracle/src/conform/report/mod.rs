@@ -164,7 +164,10 @@ fn of_machine(run: &Run, machine: &Machine) -> OfMachine {
         Verdict::NotCompared(why) => (Word::NotCompared, Some(why.clone())),
         Verdict::Gone(gone) => {
             let gone: Vec<_> = gone.iter().map(entry).collect();
-            (Word::KnownDifferenceGone, Some(format!("it did not show, take it out of the profile: {}", gone.join("; "))))
+            (
+                Word::KnownDifferenceGone,
+                Some(format!("it did not show, take it out of the profile: {}", gone.join("; "))),
+            )
         }
         Verdict::Differs(trace, _) if matches!(trace.found.finding, Finding::Broken(_)) => (Word::Broken, None),
         Verdict::Differs(..) => (Word::Differs, None),

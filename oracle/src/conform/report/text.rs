@@ -25,7 +25,8 @@ pub fn text(report: &Report) -> String {
         0 => String::new(),
         left => format!(", {left} not compared"),
     };
-    let _ = writeln!(text, "{verdict}: {agree} of {of} machines agree{left}; {steps} steps the same, seed {}", report.seed);
+    let _ =
+        writeln!(text, "{verdict}: {agree} of {of} machines agree{left}; {steps} steps the same, seed {}", report.seed);
     if !report.stderr.is_empty() && !report.agrees {
         let _ = writeln!(text, "the other side said last on standard error:\n{}", indent(&report.stderr));
     }
@@ -67,7 +68,9 @@ fn difference(text: &mut String, report: &Report, first: &First) {
         let _ = writeln!(text, "  requirements: {}", first.requirements.join(", "));
     }
     let how = match (first.again, first.minimal) {
-        (false, _) => "it did not show a second time: it hangs on time, chance or what went before; the trace is as it was",
+        (false, _) => {
+            "it did not show a second time: it hangs on time, chance or what went before; the trace is as it was"
+        }
         (true, true) => "no step can be left out",
         (true, false) => "time for shrinking ran out: steps may be left to leave out (--shrink-time gives it longer)",
     };

@@ -5,8 +5,7 @@ use serde_json::{Value, json};
 use super::{Source, Walk, around, cycles};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source =
-    Source { machine: "aspect-acceptance", small, large, wrong, begin, most: (60, 1500) };
+pub(super) const SOURCE: Source = Source { machine: "aspect-acceptance", small, large, wrong, begin, most: (60, 1500) };
 
 /// T1 to T5 in ms.
 fn config(cycle: u32, aspects: &[u32], [operate, recovery, mask, interruption, shortened]: [u32; 5]) -> Value {

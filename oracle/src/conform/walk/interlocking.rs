@@ -59,7 +59,18 @@ fn small() -> Vec<Value> {
         with_times(&loop_, SHORTEST),
         with_times(
             &loop_,
-            Times { clear: 2, turn: 2, start: 3, settle: 1, loss: 1, residual: 1, standstill: 1, drive: 4, release: 4, stay: 4 },
+            Times {
+                clear: 2,
+                turn: 2,
+                start: 3,
+                settle: 1,
+                loss: 1,
+                residual: 1,
+                standstill: 1,
+                drive: 4,
+                release: 4,
+                stay: 4,
+            },
         ),
         with_times(&layout(TERMINUS), Times { clear: 2, settle: 1, start: 1, ..SHORTEST }),
         with_times(&layout(JUNCTION), SHORTEST),
@@ -126,7 +137,8 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
     let station = Station::of(config);
     let plan = config.get("plan").is_some();
     let _ = started;
-    let points = station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
+    let points =
+        station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
     Box::new(Ground {
         trains: Vec::new(),
         points: points.collect(),
@@ -258,7 +270,12 @@ impl Ground {
         match random.below(10) {
             0..=4 => {
                 // Rather one that a train waits for.
-                let waits: Vec<_> = self.station.routes.iter().filter(|route| route.entry.iter().any(|at| !self.is_free(*at))).collect();
+                let waits: Vec<_> = self
+                    .station
+                    .routes
+                    .iter()
+                    .filter(|route| route.entry.iter().any(|at| !self.is_free(*at)))
+                    .collect();
                 let waited = random.pick(&waits).map(|route| route.name.clone()).filter(|_| random.one_in(2));
                 Some(json!({"set": waited.or_else(|| route(random))?}))
             }
@@ -293,7 +310,9 @@ impl Ground {
                 Some(json!({"restrict": {one: speed}}))
             }
             4 => Some(json!({"lift": all})),
-            5 => Some(json!({"block": [one.clone()], "unblock": [one.clone()], "restrict": {one.clone(): 25}, "lift": [one]})),
+            5 => Some(
+                json!({"block": [one.clone()], "unblock": [one.clone()], "restrict": {one.clone(): 25}, "lift": [one]}),
+            ),
             _ => None,
         }
     }

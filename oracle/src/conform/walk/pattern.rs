@@ -28,7 +28,8 @@ fn begin(_: &Value, _: &Value, _: &mut Random) -> Box<dyn Walk> {
 impl Walk for Questions {
     fn next(&mut self, random: &mut Random, _: Option<&Value>) -> Value {
         let short = random.between(0, 40);
-        let distance = [0, 1, 2, 65_534, 65_535, short, random.between(0, 2000), random.between(0, 65_535)][random.below(8)];
+        let distance =
+            [0, 1, 2, 65_534, 65_535, short, random.between(0, 2000), random.between(0, 65_535)][random.below(8)];
         let gradient = [0, -1, 1, -35, 35, -128, 127, random.between(-128, 127)][random.below(8)];
         if random.one_in(8) {
             return json!({"distance_m": distance});

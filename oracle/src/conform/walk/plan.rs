@@ -41,9 +41,8 @@ fn plan(machine: &Interlocked, times: Times) -> Value {
         numbers.into_iter().filter_map(|number| all.get(number).cloned()).collect()
     };
     let of_circuits = |set| named(&names.circuits, circuits(set));
-    let segments_of = |set: SegmentSet| {
-        named(&names.segments, (0..8).filter(|number| set.meets(SegmentSet::nth(*number))).collect())
-    };
+    let segments_of =
+        |set: SegmentSet| named(&names.segments, (0..8).filter(|number| set.meets(SegmentSet::nth(*number))).collect());
     let element = |element: &Element| {
         let mut at = serde_json::Map::new();
         for (side, set) in [("normal", element.positions.normal), ("reverse", element.positions.reverse)] {

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::{Source, Walk};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "telegram-codec", small, large: small, wrong, begin, most: (40, 40) };
+pub(super) const SOURCE: Source =
+    Source { machine: "telegram-codec", small, large: small, wrong, begin, most: (40, 40) };
 
 fn small() -> Vec<Value> {
     vec![json!({})]
@@ -114,6 +115,10 @@ impl Walk for Codec {
         if self.frames.is_empty() || random.one_in(3) {
             return json!({"encode": telegram(random)});
         }
-        if random.one_in(2) { json!({"decode": text(&self.frame(random))}) } else { json!({"bits": text(&self.stream(random))}) }
+        if random.one_in(2) {
+            json!({"decode": text(&self.frame(random))})
+        } else {
+            json!({"bits": text(&self.stream(random))})
+        }
     }
 }
