@@ -228,7 +228,9 @@ fn the_reports_of_a_difference() {
     assert!(validator.is_valid(&json), "{json:#}");
     let page = report::page(&run, &report, &[]);
     assert_eq!(page.matches("<svg").count(), 3, "a badge and two charts");
-    for fragment in ["dangerous", "ATC-10", "The other side; what differs is red.", "heading"] {
+    for fragment in
+        ["dangerous", "ATC-10", "The other side; what differs is red.", "record says", "THE RECORD DIFFERS", "heading"]
+    {
         assert!(page.contains(fragment), "no {fragment}");
     }
     for reference in ["<script", "src=", "href=\"http", "url("] {

@@ -62,7 +62,7 @@ const BLOCK: Table = Table {
         output("count", Danger::Lower, &["BLK-4", "BLK-6", "BLK-7"]),
         Field {
             get: Some(|output| there(output, "fault", "a fault")),
-            ..output("fault", Danger::Vanishes, &["BLK-3", "BLK-4"])
+            ..output("fault", Danger::Vanishes, &["BLK-3", "BLK-4", "BLK-7"])
         },
         reason("fault name", |output| output.get("fault").cloned(), &["BLK-3"]),
         Field { absent: Absent::NotCompared, ..output("counting", Danger::Appears, &["BLK-2", "BLK-4"]) },
@@ -144,7 +144,7 @@ const INTERLOCKING: Table = Table {
             )
         },
         Field { shape: Shape::Entries(&[]), ..output("drives", Danger::More, &["ILK-3", "ILK-8", "ILK-23"]) },
-        set("permits", Danger::More, &["ILK-4", "ILK-18", "ILK-19", "ILK-20", "ILK-25"]),
+        set("permits", Danger::More, &["ILK-4", "ILK-15", "ILK-18", "ILK-19", "ILK-20", "ILK-25"]),
         set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-19", "ILK-24", "TRK-1"]),
         Field { absent: Absent::Empty, ..set("silent", Danger::Fewer, &["ATC-12"]) },
         Field {

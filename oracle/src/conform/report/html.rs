@@ -141,7 +141,7 @@ fn difference(of: &OfMachine, first: &First, charts: &(Option<String>, Option<St
             (first.tries) " candidates were played. The trace, for either side:"
         }
         pre { (first.trace.join("\n")) }
-        @for (chart, caption) in [(&charts.0, "The kernel."), (&charts.1, "The other side; what differs is red.")] {
+        @for (chart, caption) in [(&charts.0, "The kernel."), (&charts.1, "The other side; what differs is red. The last step is drawn twice, for its output to be seen.")] {
             @if let Some(chart) = chart { figure { (PreEscaped(chart)) figcaption { (caption) } } }
         }
     }

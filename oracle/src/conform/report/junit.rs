@@ -24,7 +24,10 @@ pub fn junit(report: &Report) -> Result<String, String> {
                 let kind =
                     if machine.verdict == Word::Broken { NonSuccessKind::Error } else { NonSuccessKind::Failure };
                 let mut status = TestCaseStatus::non_success(kind);
-                status.set_type(machine.verdict.name()).set_message(summary(&said)).set_description(said.clone());
+                status
+                    .set_type(machine.verdict.name())
+                    .set_message(machine.note.clone().unwrap_or_else(|| summary(&said)))
+                    .set_description(said.clone());
                 status
             }
         };

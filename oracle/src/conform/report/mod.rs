@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::alike::Alike;
-use super::case::Expected;
+use super::case::{Expected, step_line};
 use super::fields::{Difference, Level};
 use super::play::{At, Finding};
 use super::run::{Machine, Run, Verdict};
@@ -223,12 +223,18 @@ fn likeliest_first(requirements: &[&'static str], guesses: &[Alike]) -> Vec<&'st
     all
 }
 
-/// The last case of a trace as `oracle chart` reads it: with the kernel's replies, and with those of the other side.
+/// The last case of a trace as `oracle chart` reads it: with the kernel's replies, and with those of the other side. The last step stands
+/// there once more, without a reply: an output is drawn from the end of its cycle on, and the last one would not be seen.
 pub fn sessions(trace: &Trace) -> Option<(String, String)> {
     let last = trace.cases.last()?;
     let theirs = Expected { outputs: trace.found.replies.clone(), ..last.clone() };
-    // The step without a reply is part of what the kernel's side shows only.
-    let text = |expected: &Expected| expected.session().join("\n") + "\n";
+    let text = |expected: &Expected| {
+        let mut lines = expected.session();
+        if let Some(step) = expected.case.steps.last() {
+            lines.insert(lines.len() - 1, step_line(step));
+        }
+        lines.join("\n") + "\n"
+    };
     Some((text(last), text(&theirs)))
 }
 
