@@ -28,13 +28,19 @@ fn small() -> Vec<Value> {
         // A limit beyond expiry acts as one cycle before it.
         config(10, &[25, 45], [20, 20, 10, 90, 10]),
         // Nothing here is a whole number of cycles: T1 and T5 round up, T2, T3 and T4 down.
-        config(7, &[25, 45, 90], [15, 15, 13, 27, 8]),
+        config(7, &[25, 45, 90], [15, 15, 22, 27, 8]),
         config(100, &[15, 25, 45, 55], [300, 400, 400, 800, 100]),
+        // Every rank that there is.
+        config(10, &RANKS, [20, 20, 20, 30, 10]),
+        // The longest times.
+        config(1, &[25, 45], [60_000, 30_000, 30_000, 60_000, 1]),
     ]
 }
 
+const RANKS: [u32; 16] = [0, 15, 25, 35, 45, 55, 65, 75, 90, 100, 110, 120, 130, 160, 200, 250];
+
 fn large() -> Vec<Value> {
-    let urban: [u32; 16] = [0, 15, 25, 35, 45, 55, 65, 75, 90, 100, 110, 120, 130, 160, 200, 250];
+    let urban = RANKS;
     vec![
         json!({"aspects_km_h": [25, 45, 65, 90]}),
         config(10, &urban, [300, 400, 400, 800, 100]),

@@ -57,6 +57,8 @@ fn wrong() -> Vec<Value> {
         json!({"speeds_km_h": []}),
         json!({"speeds_km_h": [25, 25]}),
         json!({"cycle_ms": 1, "life_ms": 60_001}),
+        json!({"cycle_ms": 1, "fixed_life_ms": 60_001}),
+        json!({"fixed_life_ms": 1990}),
     ]
     .to_vec()
 }
@@ -78,6 +80,10 @@ struct Ride {
     sub: Stream,
     analog: Value,
     announced: bool,
+    /// How often a telegram comes in another order or at another time than it should: once in so many.
+    disorder: u64,
+    /// The farthest that a route goes beyond the exit, in metres: near enough for the pattern to be what permits.
+    far: i64,
 }
 
 fn begin(_: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
@@ -94,18 +100,20 @@ fn begin(_: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
         sub: Stream { counter: random.between(0, 255), left: random.between(0, 2) },
         analog: Value::Null,
         announced: false,
+        disorder: random.one_of(&[2, 6, 30]).unsigned_abs(),
+        far: random.one_of(&[20, 60, 900]),
     })
 }
 
 impl Stream {
     /// Whether a telegram is there in this cycle, and its counter.
-    fn next(&mut self, gaps: &[i64], window: i64, random: &mut Random) -> Option<i64> {
+    fn next(&mut self, gaps: &[i64], window: i64, disorder: u64, random: &mut Random) -> Option<i64> {
         self.left -= 1;
         if self.left >= 0 {
             return None;
         }
-        self.left = if random.one_in(2) { random.between(0, 1) } else { random.one_of(gaps) };
-        let ahead = if random.one_in(3) { random.one_of(&[window, window + 1, 0, -1, 128]) } else { 1 };
+        self.left = if random.one_in(disorder) { random.one_of(gaps) } else { random.between(0, 1) };
+        let ahead = if random.one_in(disorder) { random.one_of(&[window, window + 1, 0, -1, 128]) } else { 1 };
         self.counter = (self.counter + ahead).rem_euclid(256);
         Some(self.counter)
     }
@@ -117,7 +125,7 @@ impl Walk for Ride {
             self.behind = self.section;
             self.section = if random.one_in(4) { 7 } else { self.section + 1 };
         }
-        if random.one_in(8) {
+        if random.one_in(16) {
             let fast = tenths(random.between(0, 1200));
             self.analog = match random.below(5) {
                 0 | 1 => Value::Null,
@@ -141,9 +149,9 @@ impl Walk for Ride {
         }
         let known = i64::try_from(self.speeds.len()).unwrap_or(1);
         let rank = |random: &mut Random| if random.one_in(12) { known.min(15) } else { random.between(0, known - 1) };
-        if let Some(counter) = self.main.next(&self.gaps, self.window, random) {
+        if let Some(counter) = self.main.next(&self.gaps, self.window, self.disorder, random) {
             let section = if random.one_in(20) { self.behind } else { self.section };
-            let far = random.between(0, 900);
+            let far = random.between(0, self.far);
             let beyond = match random.below(6) {
                 0 => Value::Null,
                 1 => 0.into(),
@@ -153,7 +161,7 @@ impl Walk for Ride {
             step["main"] =
                 json!({"section": section, "counter": counter, "beyond_exit_m": beyond, "speed_rank": rank(random)});
         }
-        if let Some(counter) = self.sub.next(&self.gaps, self.window, random) {
+        if let Some(counter) = self.sub.next(&self.gaps, self.window, self.disorder, random) {
             let section = if random.one_in(10) { self.behind } else { self.section };
             let (curve, restriction) = (rank(random), rank(random));
             step["sub"] = json!({
@@ -163,7 +171,7 @@ impl Walk for Ride {
             });
         }
         if random.one_in(5) {
-            let anywhere = random.between(0, 400_000);
+            let anywhere = random.between(0, 700 * self.far);
             step["to_exit_m"] = parts(random.one_of(&[0, 1, anywhere, 4_294_967_295]), 1000);
         }
         step

@@ -48,10 +48,14 @@ fn wrong() -> Vec<Value> {
     let (low, high) = (line(50, 0), line(100, 0));
     let mut crossed = low.clone();
     crossed[4] = high[4] + 1;
+    let mut crossed_last = low.clone();
+    crossed_last[16] = high[16] + 1;
     vec![
         config(255, &low, &high, 10, -6000, [0, 0]),
         config(256, &crossed, &high, 10, -6000, [0, 0]),
         config(256, &line(0, 0), &high, 10, -6000, [0, 0]),
+        config(256, &line(3, -900), &line(0, 0), 10, -6000, [0, 0]),
+        config(256, &crossed_last, &high, 10, -6000, [0, 0]),
         config(256, &low[..16], &high, 10, -6000, [0, 0]),
         config(256, &low, &high, -1, -6000, [0, 0]),
         config(256, &low, &high, 10, -6000, [1, 0]),

@@ -92,8 +92,17 @@ impl Codec {
                 2 => bits.push(b'.'),
                 _ => {}
             }
-            bits.extend(self.frame(random));
-            match random.below(8) {
+            let mut frame = self.frame(random);
+            if random.one_in(4) {
+                // Its first bits are not heard: what stands in their place may be nothing, or what went before.
+                frame.drain(..=random.below(3));
+            }
+            bits.extend(frame);
+            match random.below(9) {
+                3 => {
+                    let at = random.below(bits.len());
+                    bits[at] = b'.';
+                }
                 0 => bits.insert(random.below(bits.len()), b'.'),
                 1 => drop(bits.remove(random.below(bits.len()))),
                 2 => bits.extend(self.frame(random)),
