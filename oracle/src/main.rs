@@ -1,5 +1,6 @@
 //! `oracle`: the kernel as a reference, on the command line.
 
+mod conformance;
 mod layout;
 mod line;
 
@@ -33,6 +34,10 @@ enum Command {
     Serve,
     /// Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
     Chart(ChartArgs),
+    /// Holds another implementation against the kernel, down to the first difference
+    Conform(Box<conformance::ConformArgs>),
+    /// Writes test vectors: cases with the kernel's replies and the requirements that they are about
+    Vectors(conformance::VectorsArgs),
     /// Makes the train control signal as a WAV file, or reads one
     #[command(subcommand)]
     Signal(SignalCommand),
@@ -42,13 +47,28 @@ enum Command {
     /// Checks the data of a whole line, and what its stations and trains count on of each other
     #[command(subcommand)]
     Line(line::LineCommand),
-    /// Prints the JSON Schema of protocol 1
-    Schema,
+    /// Prints a JSON Schema: of protocol 1, or of what `conform` and `vectors` write
+    Schema {
+        /// Of which form
+        #[arg(value_enum, default_value = "protocol")]
+        of: SchemaOf,
+    },
     /// Prints what a shell needs to complete the commands
     Completions {
         /// The shell
         shell: clap_complete::Shell,
     },
+}
+
+/// What there is a schema of.
+#[derive(Clone, Copy, ValueEnum)]
+enum SchemaOf {
+    /// A line of protocol 1
+    Protocol,
+    /// The JSON report of `oracle conform`
+    Report,
+    /// A line of a file of vectors
+    Vector,
 }
 
 #[derive(Subcommand)]
@@ -113,6 +133,8 @@ enum Failure {
     Config(PathBuf, String),
     Signal(String),
     Layout(atc_layout::Errors),
+    /// What was asked for cannot be done: exit code 2.
+    Asked(String),
     /// What was compared is not the same; it has been told.
     Differs,
     /// A line is not as it should be; it has been told. The exit code.
@@ -127,7 +149,7 @@ impl fmt::Display for Failure {
             Self::Trace(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Serve(error) => write!(f, "the session broke off: {error}"),
             Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
-            Self::Signal(reason) => f.write_str(reason),
+            Self::Signal(reason) | Self::Asked(reason) => f.write_str(reason),
             Self::Layout(errors) => write!(f, "{errors}"),
             Self::Differs | Self::Line(_) => Ok(()),
         }
@@ -141,7 +163,13 @@ fn main() -> ExitCode {
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
         Command::Line(command) => line(&command),
-        Command::Schema => print(&atc_oracle::schema::text()),
+        Command::Conform(args) => conformance::conform(&args),
+        Command::Vectors(args) => conformance::vectors(&args),
+        Command::Schema { of } => print(&match of {
+            SchemaOf::Protocol => atc_oracle::schema::text(),
+            SchemaOf::Report => atc_oracle::conform::report::schema(),
+            SchemaOf::Vector => atc_oracle::conform::vectors::schema(),
+        }),
         Command::Completions { shell } => completions(shell),
     };
     match result {
@@ -152,6 +180,10 @@ fn main() -> ExitCode {
         Err(Failure::Layout(errors)) => {
             remark(&format!("{errors}\n"));
             ExitCode::FAILURE
+        }
+        Err(failure @ Failure::Asked(_)) => {
+            remark(&format!("oracle: {failure}\n"));
+            ExitCode::from(2)
         }
         Err(failure) => {
             remark(&format!("oracle: {failure}\n"));

@@ -1,11 +1,12 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
-//! is checked against, sessions and drawn charts, trains under way, and the input of the benchmarks.
+//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the benchmarks.
 
 pub mod approach;
 pub mod block_chart;
 pub mod busy_station;
 pub mod device;
 pub mod drawing;
+pub mod faulty;
 pub mod ground;
 pub mod passing_loop;
 pub mod reception;

@@ -40,10 +40,12 @@ Usage: oracle <COMMAND>
 Commands:
   serve        Answers JSON lines (protocol 1) from standard input on standard output
   chart        Draws the timing chart of a recorded session (SVG) and writes its signals (VCD)
+  conform      Holds another implementation against the kernel, down to the first difference
+  vectors      Writes test vectors: cases with the kernel's replies and the requirements that they are about
   signal       Makes the train control signal as a WAV file, or reads one
   layout       Checks, imports, tabulates or draws the layout of a station
   line         Checks the data of a whole line, and what its stations and trains count on of each other
-  schema       Prints the JSON Schema of protocol 1
+  schema       Prints a JSON Schema: of protocol 1, or of what `conform` and `vectors` write
   completions  Prints what a shell needs to complete the commands
   help         Print this message or the help of the given subcommand(s)
 
@@ -185,6 +187,38 @@ fn the_schema_that_is_committed_is_the_schema_of_the_types() {
     let folder = tempfile::tempdir().expect("a folder");
     let current = text(&oracle(folder.path(), &["schema"]).stdout);
     assert!(committed == current, "renew it: cargo run -p atc-oracle -- schema > oracle/protocol-1.schema.json");
+}
+
+/// Whoever asks how to serve sees a session, and its lines are right.
+#[test]
+fn the_help_of_serve_shows_lines_that_are_right() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let help = text(&oracle(folder.path(), &["serve", "--help"]).stdout);
+    let lines: Vec<_> = help.lines().map(str::trim).filter(|line| line.starts_with("{\"")).collect();
+    assert_eq!(lines.len(), 3, "{help}");
+    let replies = device::converse(device::oracle(), lines.join("\n").into_bytes()).expect("a session");
+    let kinds: Vec<_> = replies.iter().map(|reply| &reply[..10]).collect();
+    assert_eq!(kinds, ["{\"started\"", "{\"output\":", "{\"stopped\""]);
+}
+
+/// A record that differs is drawn, with every field that differs in the note, and the exit code says so.
+#[test]
+fn a_record_that_differs_is_drawn_and_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = r#"{"start":{"protocol":1,"machine":"block-count","config":{"sections":2,"max_trains":2,"tail_hold_sections":0}}}"#;
+    let step = r#"{"step":{"check_in":false,"check_out":false,"present":[],"reset":0}}"#;
+    let reply = |occupied: &str, count: u8| {
+        format!(
+            r#"{{"output":{{"occupied":{occupied},"behind_hold_sections":0,"agree":true,"count":{count},"fault":null}}}}"#
+        )
+    };
+    for (said, code) in [(reply("[]", 0), 0), (reply("[1]", 1), 1)] {
+        fs::write(folder.path().join("t.jsonl"), format!("{start}\n{step}\n{said}\n{step}\n{said}\n"))
+            .expect("a trace");
+        let drawn = oracle(folder.path(), &["chart", "--as-recorded", "t.jsonl"]);
+        assert_eq!(drawn.status.code(), Some(code), "{}", text(&drawn.stderr));
+        assert_eq!(text(&drawn.stdout).contains("There it says: occupied [1], count 1."), code == 1);
+    }
 }
 
 /// A client that waits for each answer before it goes on gets it.

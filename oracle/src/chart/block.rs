@@ -3,7 +3,7 @@
 
 use atc_kernel::block::{Parts, Status};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
+use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans};
 use crate::machine::block::{Config, Counted, Fault, Output};
 use crate::machine::{Cycle, Machine};
 
@@ -292,8 +292,8 @@ fn differences(scene: &mut Scene, cycles: &[Cycle<Counted>], moments: &[Moment])
         parts.join(", ")
     });
     let said: Vec<_> = spans(standing(String::new(), said)).into_iter().filter(|span| !span.2.is_empty()).collect();
-    let Some((first, ..)) = said.first() else { return };
-    scene.notes.push(format!("THE RECORD DIFFERS FROM THE KERNEL, first at {}.", scene.unit.text(*first)));
+    let Some((first, _, text)) = said.first() else { return };
+    scene.notes.push(record::note(&scene.unit.text(*first), text));
     scene.differences = said.iter().map(|span| (span.0, span.1)).collect();
     scene.legend.push((Tone::Difference, "differs from the kernel"));
     let values = std::iter::once((0, "none".to_owned()))

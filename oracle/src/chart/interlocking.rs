@@ -275,6 +275,7 @@ fn difference(said: &Output, kernel: &Output) -> Option<String> {
     part("proceed", said.proceed != kernel.proceed, serde_json::to_string(&said.proceed));
     part("drives", said.drives != kernel.drives, serde_json::to_string(&said.drives));
     part("telegrams", said.telegrams != kernel.telegrams, serde_json::to_string(&said.telegrams));
+    part("silent", said.silent != kernel.silent, serde_json::to_string(&said.silent));
     part("permits", said.permits != kernel.permits, serde_json::to_string(&said.permits));
     part("confirmed", said.confirmed != kernel.confirmed, serde_json::to_string(&said.confirmed));
     part("answer", said.answer != kernel.answer, serde_json::to_string(&said.answer));

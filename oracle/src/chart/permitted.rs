@@ -62,11 +62,17 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
         differences: Vec::new(),
         figure: Some(figure(config, cycles)),
     };
-    let said = cycles.iter().map(|cycle| cycle.recorded.as_ref().filter(|said| **said != cycle.output));
-    let texts = said.map(|said| {
+    let texts = cycles.iter().map(|cycle| {
+        let said = cycle.recorded.as_ref().filter(|said| **said != cycle.output);
         said.map(|said| {
             let speed = said.speed_km_h.map_or_else(|| "none".to_owned(), |speed| format!("{speed} km/h"));
-            format!("{speed}, {}", said.basis.name())
+            let state = said.state.as_ref().filter(|state| Some(*state) != cycle.output.state.as_ref());
+            let state = state.and_then(|state| serde_json::to_string(state).ok());
+            format!(
+                "{speed}, {}{}",
+                said.basis.name(),
+                state.map(|state| format!(", state {state}")).unwrap_or_default()
+            )
         })
     });
     record::differences(&mut scene, 1, texts);

@@ -2,13 +2,21 @@
 
 use super::{Lane, Mark, Scene, Signal, Tone, Values, spans};
 
+/// The sentence of the first difference: every field that differs there.
+pub(super) fn note(first: &str, says: &str) -> String {
+    const MOST: usize = 240;
+    let more = if says.chars().count() > MOST { "…" } else { "" };
+    let says: String = says.chars().take(MOST).collect();
+    format!("THE RECORD DIFFERS FROM THE KERNEL, first at {first}. There it says: {says}{more}.")
+}
+
 /// Adds what the record says in each cycle in which it differs, to be drawn from `later` cycles after it on.
 pub(super) fn differences(scene: &mut Scene, later: u64, said: impl Iterator<Item = Option<String>>) {
     let said: Vec<_> = said.collect();
     let row = spans(said).into_iter().filter_map(|(from, to, text)| Some((from + later, to + later, text?)));
     let row: Vec<_> = row.collect();
-    let Some((first, ..)) = row.first() else { return };
-    scene.notes.push(format!("THE RECORD DIFFERS FROM THE KERNEL, first at {}.", scene.unit.text(*first)));
+    let Some((first, _, text)) = row.first() else { return };
+    scene.notes.push(note(&scene.unit.text(*first), text));
     scene.differences = row.iter().map(|span| (span.0, span.1)).collect();
     scene.legend.push((Tone::Difference, "differs from the kernel"));
     let mut values = vec![(0, "none".to_owned())];

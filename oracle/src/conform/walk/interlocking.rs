@@ -1,0 +1,356 @@
+//! Walks of `interlocking`: trains that follow their signals (and some that do not), points that follow their drives (and some that do
+//! not), requests of every kind, blocks and restrictions, false occupancy and losses of shunt at the limits of the filter.
+
+use std::collections::VecDeque;
+
+use serde_json::{Map, Value, json};
+
+use super::plan::{Times, layout, with_times};
+use super::station::Station;
+use super::{Source, Walk};
+use crate::conform::random::Random;
+
+pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
+
+const PASSING_LOOP: &str = include_str!("../../../../layouts/passing-loop.toml");
+const JUNCTION: &str = include_str!("../../../../layouts/junction.toml");
+const TERMINUS: &str = include_str!("../../../../layouts/terminus.toml");
+const STATION_30: &str = include_str!("../../../../layouts/station-30.toml");
+
+/// The shortest times that the theorems allow.
+const SHORTEST: Times = Times {
+    clear: 1,
+    turn: 1,
+    start: 0,
+    settle: 0,
+    loss: 0,
+    residual: 0,
+    standstill: 0,
+    drive: 2,
+    release: 2,
+    stay: 2,
+};
+
+/// A station of three circuits in a row and two routes, with one point: where most differences show within a few steps.
+fn fork() -> Value {
+    let circuits = ["W", "A", "B", "C", "E"].map(|name| json!({"name": name, "length_m": 600}));
+    let route = |name: &str, side: &str, last: &str, overlap: &[&str]| {
+        json!({
+            "name": name, "heading": "right", "entry": ["W"], "approach": ["W"],
+            "path": [{"circuits": ["A"], "points": {"P": side}}, {"circuits": [last], "points": {}}],
+            "overlap": {"circuits": overlap, "points": {}}, "beyond": ["E"], "continuing": [], "conflicts": [],
+            "from": [], "to": [], "drive_cycles": 2, "release_cycles": 3, "stay_cycles": 2, "speed_code": 1,
+            "cab_signalled": false,
+        })
+    };
+    json!({"plan": {
+        "station": "Fork", "cycle_ms": 1000, "clear_cycles": 1, "turn_cycles": 1, "start_cycles": 0,
+        "settle_cycles": 0, "loss_cycles": 0, "residual_cycles": 0, "standstill_cycles": 0,
+        "speeds_km_h": [0, 45], "braking_m": [0, 300], "circuits": circuits,
+        "points": [{"name": "P", "detectors": ["A"]}], "segments": [],
+        "routes": [route("to-B", "normal", "B", &["E"]), route("to-C", "reverse", "C", &[])],
+    }})
+}
+
+fn small() -> Vec<Value> {
+    let loop_ = layout(PASSING_LOOP);
+    vec![
+        fork(),
+        with_times(&loop_, SHORTEST),
+        with_times(
+            &loop_,
+            Times {
+                clear: 2,
+                turn: 2,
+                start: 3,
+                settle: 1,
+                loss: 1,
+                residual: 1,
+                standstill: 1,
+                drive: 4,
+                release: 4,
+                stay: 4,
+            },
+        ),
+        with_times(&layout(TERMINUS), Times { clear: 2, settle: 1, start: 1, ..SHORTEST }),
+        with_times(&layout(JUNCTION), SHORTEST),
+    ]
+}
+
+fn large() -> Vec<Value> {
+    [PASSING_LOOP, JUNCTION, TERMINUS, STATION_30].map(layout).to_vec()
+}
+
+fn wrong() -> Vec<Value> {
+    let change = |name: &str, value: Value| {
+        let mut plan = fork();
+        plan["plan"][name] = value;
+        plan
+    };
+    let mut no_path = fork();
+    no_path["plan"]["routes"][0]["path"] = json!([]);
+    let mut unpositioned = fork();
+    unpositioned["plan"]["routes"][0]["path"][0]["points"] = json!({});
+    // A layout whose point has no time to move.
+    vec![
+        change("cycle_ms", 0.into()),
+        change("clear_cycles", 0.into()),
+        change("speeds_km_h", json!([45, 90])),
+        no_path,
+        unpositioned,
+    ]
+}
+
+/// A train: the circuits that it stands on, its front first, and those that it may go on to.
+struct Train {
+    on: VecDeque<usize>,
+    next: VecDeque<usize>,
+    /// Cycles until it moves.
+    left: i64,
+}
+
+/// A point in the field.
+#[derive(Clone, Copy)]
+struct Point {
+    at: &'static str,
+    /// The position that it is driven to, and the cycles until it has arrived.
+    driven: Option<(&'static str, i64)>,
+}
+
+struct Ground {
+    station: Station,
+    trains: Vec<Train>,
+    points: Vec<Point>,
+    /// A circuit that is reported otherwise than it is, for so many cycles.
+    disturbed: Option<(usize, i64)>,
+    consent: Vec<bool>,
+    begun: bool,
+    /// How often a request is made: once in so many cycles.
+    requests: u64,
+    /// How often something goes wrong: once in so many times; 0 for never.
+    wrong: u64,
+    /// How long a train stays in a circuit.
+    stay: i64,
+}
+
+fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
+    let station = Station::of(config);
+    let plan = config.get("plan").is_some();
+    let _ = started;
+    let points =
+        station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
+    Box::new(Ground {
+        trains: Vec::new(),
+        points: points.collect(),
+        disturbed: None,
+        consent: station.segments.iter().map(|_| !random.one_in(4)).collect(),
+        begun: random.one_in(10),
+        requests: if plan { 2 } else { 12 },
+        wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
+        stay: if plan { random.between(1, 4) } else { random.between(5, 40) },
+        station,
+    })
+}
+
+fn word(side: &Value) -> &'static str {
+    if side == "reverse" { "reverse" } else { "normal" }
+}
+
+impl Ground {
+    fn goes_wrong(&self, random: &mut Random) -> bool {
+        self.wrong > 0 && random.one_in(self.wrong)
+    }
+
+    fn is_free(&self, circuit: usize) -> bool {
+        !self.trains.iter().any(|train| train.on.contains(&circuit))
+    }
+
+    fn move_points(&mut self, random: &mut Random, last: Option<&Value>) {
+        for (number, name) in self.station.points.iter().enumerate() {
+            let wrong = self.wrong > 0 && random.one_in(4 * self.wrong);
+            let point = &mut self.points[number];
+            if let Some(to) = last.and_then(|last| last["drives"].get(name)) {
+                let to = word(to);
+                if point.driven.is_none_or(|driven| driven.0 != to) && !wrong {
+                    point.driven = Some((to, random.between(0, 3)));
+                }
+            }
+            if let Some((to, left)) = &mut point.driven {
+                *left -= 1;
+                if *left < 0 {
+                    *point = Point { at: to, driven: None };
+                }
+            }
+        }
+    }
+
+    /// Where a train at this circuit may go: the path of a route that shows proceed, and the line behind it.
+    fn way(&self, from: usize, last: Option<&Value>, ignores: bool) -> VecDeque<usize> {
+        let shows = |name: &str| {
+            ignores
+                || last.is_some_and(|last| last["proceed"].as_array().into_iter().flatten().any(|route| route == name))
+        };
+        let route = self.station.routes.iter().find(|route| route.entry.contains(&from) && shows(&route.name));
+        let Some(route) = route else { return VecDeque::new() };
+        let line = route.to.map(|segment| self.station.segments[segment].circuits.clone()).unwrap_or_default();
+        route.path.iter().copied().chain(line).collect()
+    }
+
+    fn move_trains(&mut self, random: &mut Random, last: Option<&Value>) {
+        let outermost: Vec<_> =
+            self.station.segments.iter().filter_map(|segment| segment.circuits.last().copied()).collect();
+        let mut gone = Vec::new();
+        for number in 0..self.trains.len() {
+            self.trains[number].left -= 1;
+            if self.trains[number].left >= 0 {
+                continue;
+            }
+            if self.trains[number].on.len() > 1 && !random.one_in(4) {
+                self.trains[number].on.pop_back();
+            } else if let Some(next) = self.trains[number].next.pop_front() {
+                if self.is_free(next) {
+                    self.trains[number].on.push_front(next);
+                } else {
+                    self.trains[number].next.push_front(next);
+                }
+            } else if let Some(front) = self.trains[number].on.front().copied() {
+                let ignores = self.goes_wrong(random) && random.one_in(4);
+                let way = self.way(front, last, ignores);
+                if way.is_empty() && outermost.contains(&front) || way.is_empty() && random.one_in(30) {
+                    gone.push(number);
+                }
+                self.trains[number].next = way;
+            }
+            self.trains[number].left = random.between(0, self.stay);
+        }
+        for number in gone.into_iter().rev() {
+            self.trains.remove(number);
+        }
+        if self.trains.len() < 3 && random.one_in(6) {
+            self.enter(random);
+        }
+    }
+
+    /// A new train: on the line, coming in, or in rear of a signal.
+    fn enter(&mut self, random: &mut Random) {
+        let way: Vec<usize> = if random.one_in(2) {
+            let segment = random.pick(&self.station.segments);
+            segment.map(|segment| segment.circuits.iter().rev().copied().collect()).unwrap_or_default()
+        } else {
+            let route = random.pick(&self.station.routes);
+            route.map(|route| route.entry.iter().take(1).copied().collect()).unwrap_or_default()
+        };
+        if let Some((first, rest)) = way.split_first()
+            && self.is_free(*first)
+        {
+            let next = rest.iter().copied().collect();
+            self.trains.push(Train { on: VecDeque::from([*first]), next, left: random.between(0, self.stay) });
+        }
+    }
+
+    fn occupied(&mut self, random: &mut Random) -> Vec<&str> {
+        if let Some((_, left)) = &mut self.disturbed {
+            *left -= 1;
+        }
+        if self.disturbed.is_some_and(|(_, left)| left < 0) {
+            self.disturbed = None;
+        }
+        if self.disturbed.is_none() && self.goes_wrong(random) && !self.station.circuits.is_empty() {
+            // For a loss of shunt: up to what the filter takes, and one cycle more.
+            self.disturbed = Some((random.below(self.station.circuits.len()), random.between(0, 3)));
+        }
+        let wrong = self.disturbed.map(|(circuit, _)| circuit);
+        let all = self.station.circuits.iter().enumerate();
+        let reported = all.filter(|(number, _)| self.is_free(*number) == (wrong == Some(*number)));
+        reported.map(|(_, name)| name.as_str()).collect()
+    }
+
+    fn request(&self, random: &mut Random, last: Option<&Value>) -> Option<Value> {
+        let route = |random: &mut Random| random.pick(&self.station.routes).map(|route| route.name.clone());
+        match random.below(10) {
+            0..=4 => {
+                // Rather one that a train waits for.
+                let waits: Vec<_> = self
+                    .station
+                    .routes
+                    .iter()
+                    .filter(|route| route.entry.iter().any(|at| !self.is_free(*at)))
+                    .collect();
+                let waited = random.pick(&waits).map(|route| route.name.clone()).filter(|_| random.one_in(2));
+                Some(json!({"set": waited.or_else(|| route(random))?}))
+            }
+            5 | 6 => {
+                let held: Vec<_> = last.and_then(|last| last["routes"].as_object()).into_iter().flatten().collect();
+                let held = random.pick(&held).map(|(name, _)| (*name).clone());
+                Some(json!({"withdraw": held.or_else(|| route(random))?}))
+            }
+            7 => {
+                let point = random.pick(&self.station.points)?;
+                Some(json!({"drive": point, "to": if random.one_in(2) { "normal" } else { "reverse" }}))
+            }
+            _ => {
+                let segment = random.pick(&self.station.segments)?;
+                Some(json!({"turn": segment.name, "to": if random.one_in(2) { "toward" } else { "away" }}))
+            }
+        }
+    }
+
+    fn orders(&mut self, random: &mut Random) -> Option<Value> {
+        let all = &self.station.circuits;
+        if !self.begun {
+            self.begun = true;
+            return Some(json!({"unblock": all, "lift": all}));
+        }
+        let one = random.pick(all)?.clone();
+        match random.below(60) {
+            0 => Some(json!({"block": [one]})),
+            1 | 2 => Some(json!({"unblock": all})),
+            3 => {
+                let speed = random.one_of(&[0, 14, 15, 25, 26, 90, 65_535]);
+                Some(json!({"restrict": {one: speed}}))
+            }
+            4 => Some(json!({"lift": all})),
+            5 => Some(
+                json!({"block": [one.clone()], "unblock": [one.clone()], "restrict": {one.clone(): 25}, "lift": [one]}),
+            ),
+            _ => None,
+        }
+    }
+}
+
+impl Walk for Ground {
+    fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value {
+        self.move_points(random, last);
+        self.move_trains(random, last);
+        let mut detected = Map::new();
+        for (number, name) in self.station.points.iter().enumerate() {
+            let point = self.points[number];
+            if point.driven.is_none() && !self.goes_wrong(random) {
+                detected.insert(name.clone(), point.at.into());
+            }
+        }
+        for number in 0..self.consent.len() {
+            if random.one_in(12) {
+                self.consent[number] = !self.consent[number];
+            }
+        }
+        let request = if random.one_in(self.requests) { self.request(random, last) } else { None };
+        let orders = self.orders(random);
+        let consent = self.station.segments.iter().zip(&self.consent).filter(|(_, consents)| **consents);
+        let consent: Vec<_> = consent.map(|(segment, _)| segment.name.clone()).collect();
+        let mut step = json!({"occupied": self.occupied(random), "detected": detected});
+        if let Some(request) = request {
+            step["request"] = request;
+        }
+        if let Some(orders) = orders {
+            step["orders"] = orders;
+        }
+        if !consent.is_empty() {
+            step["consent"] = consent.into();
+        }
+        if random.one_in(10) {
+            step["all_telegrams"] = true.into();
+        }
+        step
+    }
+}

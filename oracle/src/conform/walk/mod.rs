@@ -1,0 +1,180 @@
+//! Walks: steps drawn so that every timer and counter of a machine is driven to its limits, one below and one above.
+//!
+//! A walk is a function of seed, machine and place: the same on every computer. It may look at what the kernel said last, for points
+//! that follow their drives and trains that follow their telegrams; it never looks at the other side.
+
+mod aspect;
+mod block;
+mod interlocking;
+mod mutate;
+mod pattern;
+mod permitted;
+mod plan;
+mod position;
+mod station;
+mod supervision;
+mod telegram;
+
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+use super::case::{Case, Expected, Kernel, is_rejected};
+use super::random::Random;
+
+pub use mutate::examples;
+
+/// The steps of one case, one after the other.
+pub trait Walk {
+    /// The next step. `last` is the body of the kernel's last output; none at the first step.
+    fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value;
+}
+
+/// Where the walks of a machine come from.
+#[derive(Clone, Copy)]
+pub struct Source {
+    /// The machine.
+    pub machine: &'static str,
+    /// Configurations with times of a few cycles: differences come early, and traces are short.
+    small: fn() -> Vec<Value>,
+    /// Configurations as lines have them.
+    large: fn() -> Vec<Value>,
+    /// Configurations that break a rule, each by one step over a limit.
+    wrong: fn() -> Vec<Value>,
+    /// Begins a walk for a configuration and the body of the started reply.
+    begin: fn(&Value, &Value, &mut Random) -> Box<dyn Walk>,
+    /// The most steps of a walk on a small and on a large configuration.
+    most: (usize, usize),
+}
+
+/// Every machine that has walks of its own.
+pub const SOURCES: &[Source] = &[
+    aspect::SOURCE,
+    supervision::SOURCE,
+    block::SOURCE,
+    telegram::SOURCE,
+    pattern::SOURCE,
+    permitted::SOURCE,
+    position::SOURCE,
+    interlocking::SOURCE,
+];
+
+/// The configurations of a source, made once: a layout takes its time.
+struct Configs {
+    small: Vec<Value>,
+    large: Vec<Value>,
+    wrong: Vec<Value>,
+}
+
+static CONFIGS: [OnceLock<Configs>; SOURCES.len()] = [const { OnceLock::new() }; SOURCES.len()];
+
+impl Source {
+    fn configs(&self) -> Option<&'static Configs> {
+        let place = SOURCES.iter().position(|source| source.machine == self.machine)?;
+        let made = || Configs { small: (self.small)(), large: (self.large)(), wrong: (self.wrong)() };
+        CONFIGS.get(place).map(|configs| configs.get_or_init(made))
+    }
+}
+
+/// The walks of that machine. One without walks of its own has its committed examples, changed here and there.
+pub fn source(machine: &str) -> Option<&'static Source> {
+    SOURCES.iter().find(|source| source.machine == machine)
+}
+
+/// Which configurations a case may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sizes {
+    /// Those with times of a few cycles only.
+    Small,
+    /// One walk in eight on a configuration as lines have them, and one in sixteen an example.
+    Mixed,
+    /// One short walk in sixty-four on a configuration as lines have them.
+    Few,
+}
+
+/// How many walks come before the configurations to be rejected.
+const WALKS_FIRST: u64 = 4;
+
+/// The case of that number of a machine, with the kernel's replies; none if the machine has neither walks nor examples.
+///
+/// First come some walks, so that a machine that is not built shows at once; then the configurations to be rejected; then more walks.
+/// With `config` every case has that configuration.
+pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<&Value>) -> Option<Expected> {
+    let mut random = Random::of(seed, machine, number);
+    let Some(source) = source(machine) else { return mutate::case(machine, number, config, &mut random) };
+    if let Some(config) = config {
+        return Some(source.walk(config.clone(), source.most.1, &mut random));
+    }
+    let made = source.configs()?;
+    let wrong = number.checked_sub(WALKS_FIRST).and_then(|number| usize::try_from(number).ok());
+    if let Some(config) = wrong.and_then(|number| made.wrong.get(number)) {
+        let case = Case { machine: machine.to_owned(), config: config.clone(), steps: Vec::new() };
+        return case.expected().ok();
+    }
+    // The committed examples come once the small walks have had their chance to find a short trace.
+    if sizes == Sizes::Mixed && number % 16 == 15 {
+        let example = mutate::case(machine, number / 16, None, &mut random);
+        if example.is_some() {
+            return example;
+        }
+    }
+    let (configs, most) = match sizes {
+        Sizes::Mixed if number % 8 == 7 => (&made.large, source.most.1),
+        Sizes::Few if number % 64 == 7 => (&made.large, source.most.1 / 4),
+        _ => (&made.small, source.most.0),
+    };
+    let config = random.pick(configs).cloned().unwrap_or_default();
+    Some(source.walk(config, most, &mut random))
+}
+
+impl Source {
+    /// How many configurations are there to be rejected.
+    pub fn wrong_count(&self) -> usize {
+        self.configs().map_or(0, |configs| configs.wrong.len())
+    }
+
+    fn walk(&self, config: Value, most: usize, random: &mut Random) -> Expected {
+        let mut case = Case { machine: self.machine.to_owned(), config, steps: Vec::new() };
+        let mut kernel = Kernel::new();
+        let start = kernel.start(&case).unwrap_or_else(|reply| reply);
+        let mut outputs = Vec::new();
+        if !is_rejected(&start) && !start.starts_with(r#"{"malformed""#) {
+            let started: Value = serde_json::from_str(&start).unwrap_or_default();
+            let mut walk = (self.begin)(&case.config, &started["started"], random);
+            let mut last: Option<Value> = None;
+            for _ in 0..=random.below(most) {
+                let step = walk.next(random, last.as_ref().map(|reply| &reply["output"]));
+                // A step that the kernel does not take would be a mistake of the walk; a test says that there is none.
+                if let Ok(output) = kernel.step(&step) {
+                    last = serde_json::from_str(&output).ok();
+                    case.steps.push(step);
+                    outputs.push(output);
+                }
+            }
+        }
+        Expected { case, start, outputs }
+    }
+}
+
+/// A number of tenths, as a JSON number of wholes.
+pub(super) fn tenths(tenths: i64) -> Value {
+    parts(tenths, 10)
+}
+
+/// A number of parts, of which so many make one, as a JSON number.
+#[expect(clippy::cast_precision_loss, reason = "the numbers of a walk are small")]
+pub(super) fn parts(parts: i64, of_one: i64) -> Value {
+    if parts % of_one == 0 { (parts / of_one).into() } else { (parts as f64 / of_one as f64).into() }
+}
+
+/// The number below a name of the cycles in a started reply; 1 if there is none.
+fn cycles(started: &Value, name: &str) -> i64 {
+    started["cycles"][name].as_i64().unwrap_or(1).max(1)
+}
+
+/// Each of these numbers, one less and one more, none below the least.
+fn around(numbers: &[i64], least: i64) -> Vec<i64> {
+    let mut around: Vec<i64> = numbers.iter().flat_map(|number| [number - 1, *number, number + 1]).collect();
+    around.retain(|number| *number >= least);
+    around
+}

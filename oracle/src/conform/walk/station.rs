@@ -1,0 +1,78 @@
+//! What a walk must know of a station: which circuits, points, routes and segments there are, and how they hang together.
+
+use atc_kernel::interlocking::{CircuitSet, PointSet, RouteSet, SegmentSet};
+use serde_json::Value;
+
+use crate::machine::Machine as _;
+use crate::machine::interlocking::{Config, Interlocked};
+
+/// A station as numbers and names.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Station {
+    pub(super) circuits: Vec<String>,
+    pub(super) points: Vec<String>,
+    pub(super) routes: Vec<Route>,
+    pub(super) segments: Vec<Segment>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Route {
+    pub(super) name: String,
+    /// The circuit in rear of its signal.
+    pub(super) entry: Vec<usize>,
+    /// The circuits of its path, in the order of travel.
+    pub(super) path: Vec<usize>,
+    /// The segment that it leads to.
+    pub(super) to: Option<usize>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Segment {
+    pub(super) name: String,
+    /// Its circuits, the one next to the station first.
+    pub(super) circuits: Vec<usize>,
+}
+
+impl Station {
+    /// The station of a configuration; an empty one if the kernel does not take it.
+    pub(super) fn of(config: &Value) -> Self {
+        let config = serde_json::from_value::<Config>(config.clone());
+        let machine = config.ok().and_then(|config| Interlocked::open(&config).ok());
+        machine.as_ref().map(Self::of_machine).unwrap_or_default()
+    }
+
+    fn of_machine(machine: &Interlocked) -> Self {
+        let (plan, names) = (machine.layout().plan(), machine.names());
+        let routes = names.routes.iter().zip(&plan.routes).map(|(name, route)| Route {
+            name: name.clone(),
+            entry: circuits(route.entry),
+            path: (0..route.length).flat_map(|place| circuits(route.circuit_at(place))).collect(),
+            to: (0..names.segments.len()).find(|number| route.to.meets(SegmentSet::nth(*number))),
+        });
+        let segments = names.segments.iter().zip(&plan.segments).map(|(name, segment)| Segment {
+            name: name.clone(),
+            circuits: segment.circuits.iter().take(segment.length.into()).flat_map(|set| circuits(*set)).collect(),
+        });
+        Self {
+            circuits: names.circuits.clone(),
+            points: names.points.clone(),
+            routes: routes.collect(),
+            segments: segments.collect(),
+        }
+    }
+}
+
+/// The numbers in a set of circuits.
+pub(super) fn circuits(set: CircuitSet) -> Vec<usize> {
+    (0..64).filter(|number| set.meets(CircuitSet::nth(*number))).collect()
+}
+
+/// The numbers in a set of points.
+pub(super) fn points(set: PointSet) -> Vec<usize> {
+    (0..32).filter(|number| set.meets(PointSet::nth(*number))).collect()
+}
+
+/// The numbers in a set of routes.
+pub(super) fn routes(set: RouteSet) -> Vec<usize> {
+    (0..64).filter(|number| set.meets(RouteSet::nth(*number))).collect()
+}
