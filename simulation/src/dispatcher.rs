@@ -222,6 +222,10 @@ impl<'a> Dispatcher<'a> {
             if self.link(station, bound).is_none() {
                 self.agents[train].bound = bound.other();
                 turned.push(train);
+                // A train that goes back never leaves the route at its end, which would release it.
+                if let Some(route) = there.arrive[bound.other().side()] {
+                    self.agents[train].jobs.push_back(Job { station, request: Request::Withdraw(route_id(route)) });
+                }
             }
         }
     }
@@ -261,7 +265,8 @@ impl<'a> Dispatcher<'a> {
             jobs.push_back(Job { station, request: Request::Set(route_id(route)) });
         }
         let agent = &mut self.agents[train];
-        (agent.target, agent.phase, agent.jobs) = (Some(target), Phase::Runs, jobs);
+        (agent.target, agent.phase) = (Some(target), Phase::Runs);
+        agent.jobs.append(&mut jobs);
         told(What::Left { train, station: self.line.stations[station].name.clone(), bound });
     }
 
@@ -276,12 +281,22 @@ impl<'a> Dispatcher<'a> {
         VecDeque::from([job(to, Travel::Toward), job(from, Travel::Away)])
     }
 
+    /// Whether a train that is to leave before this one is still at its track.
+    fn is_behind(&self, train: usize) -> bool {
+        let mine = |section: &&Section| section.trains.contains(&train);
+        let Some(section) = self.sections.iter().find(mine) else { return false };
+        section.trains.iter().take_while(|other| **other != train).any(|other| self.agents[*other].holds)
+    }
+
     /// What is asked of each station in this cycle.
     pub fn requests(&mut self, now_ms: u64) -> Vec<Option<Request>> {
         self.asked.fill(None);
         let mut requests = vec![None; self.asked.len()];
         for (train, agent) in self.agents.iter().enumerate() {
             let Some(job) = agent.jobs.front().filter(|_| agent.again_ms <= now_ms) else { continue };
+            if job.station == agent.at.0 && matches!(job.request, Request::Set(_)) && self.is_behind(train) {
+                continue;
+            }
             if requests[job.station].is_none() {
                 requests[job.station] = Some(job.request);
                 self.asked[job.station] = Some(train);

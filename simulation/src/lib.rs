@@ -23,11 +23,15 @@ mod tests {
             let setting = super::world::Setting { operate: super::onboard::Operate::Shortened, trains, seed: 1, faults: vec![], compared: true };
             let mut world = super::world::World::new(&line, setting).unwrap();
             let start = std::time::Instant::now();
-            world.run(1_800_000);
+            world.run(1_200_000);
             eprintln!("{} s took {:?}", world.now_ms / 1000, start.elapsed());
-            for e in world.events.iter().take(60) { eprintln!("{}", serde_json::to_string(e).unwrap()); }
+            for e in world.events.iter().take(0) { eprintln!("{}", serde_json::to_string(e).unwrap()); }
             for t in &world.trains { eprintln!("{:?} ran {} app {} needless {}", t.margins, t.ran_m, t.applications, t.needless); }
             eprintln!("{:?}", world.events.last());
+            if trains == 20 { for e in &world.events { if e.at_ms > 300_000 { eprintln!("{}", serde_json::to_string(e).unwrap()); } }
+            for a in &world.dispatcher.agents { eprintln!("{a:?}"); }
+            for t in &world.trains { eprintln!("{:?} {} {:?}", t.body, t.body.along_m(&line.track), t.cab); }
+            }
         }
     }
 
