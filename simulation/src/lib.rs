@@ -1,11 +1,13 @@
 //! A line with trains in continuous motion, under the kernel's own machines.
 #![forbid(unsafe_code)]
+pub mod campaign;
 pub mod dispatcher;
 pub mod driver;
 pub mod event;
 pub mod fault;
 pub mod generate;
 pub mod ground;
+pub mod headline;
 mod judge;
 pub mod line;
 pub mod motion;
@@ -18,30 +20,20 @@ pub mod world;
 mod tests {
     #[test]
     fn runs() {
-        for (shape, trains) in [(super::generate::Shape::loops(3, 4), 3), (super::generate::Shape::large(), 20)] {
-            let line = super::line::Line::generate("x", &shape).unwrap_or_else(|e| panic!("{e}"));
-            let setting = super::world::Setting { operate: super::onboard::Operate::Shortened, trains, seed: 1, faults: vec![], compared: true };
-            let mut world = super::world::World::new(&line, setting).unwrap();
-            let start = std::time::Instant::now();
-            world.run(1_200_000);
-            eprintln!("{} s took {:?}", world.now_ms / 1000, start.elapsed());
-            for e in world.events.iter().take(0) { eprintln!("{}", serde_json::to_string(e).unwrap()); }
-            for t in &world.trains { eprintln!("{:?} ran {} app {} needless {}", t.margins, t.ran_m, t.applications, t.needless); }
-            eprintln!("{:?}", world.events.last());
-            if trains == 20 { for e in &world.events { if e.at_ms > 300_000 { eprintln!("{}", serde_json::to_string(e).unwrap()); } }
-            for a in &world.dispatcher.agents { eprintln!("{a:?}"); }
-            for t in &world.trains { eprintln!("{:?} {} {:?}", t.body, t.body.along_m(&line.track), t.cab); }
-            }
-        }
+        let start = std::time::Instant::now();
+        let headline = super::headline::measure(&super::headline::Extent::default()).unwrap();
+        eprintln!("{:?}\n{}{:?}", start.elapsed(), headline.csv(), headline.edges_ms(0.5));
     }
-
     #[test]
-    fn lines() {
-        for shape in [super::generate::Shape::loops(3, 4), super::generate::Shape::large()] {
-            let line = super::line::Line::generate("x", &shape).unwrap_or_else(|e| panic!("{e}"));
-            eprintln!("{} {} {:?}", line.track.circuits.len(), line.room(), line.track.along_m);
-            for s in &line.stations { for p in &s.platforms { eprintln!("{} {:?} {:?} {:?}", s.name, p.name, p.arrive, p.depart); } }
-            for s in 0..line.stations.len() { line.device(s).unwrap_or_else(|e| panic!("{e}")); }
+    fn camp() {
+        use super::*;
+        let line = headline::line().unwrap();
+        for extent in [fault::Extent::Tolerated, fault::Extent::Beyond] {
+            let start = std::time::Instant::now();
+            let campaign = campaign::Campaign { runs: 220, kinds: fault::Kind::ALL.to_vec(), extent, faults: 1, trains: 3, seconds: 600, seed: 1 };
+            let outcomes = campaign::run(&line, &campaign, &|_| ()).unwrap();
+            eprintln!("{:?}", start.elapsed());
+            for (kind, outcome) in outcomes { eprintln!("{kind:?} {outcome:?}"); }
         }
     }
 }

@@ -54,12 +54,16 @@ pub struct Train {
     pub needless: u32,
     /// How many interruptions began while it moved and neither device braked.
     pub interrupted: u32,
+    /// How often its brake was commanded, in motion, in a cycle in which the other kind of device, that heard the same,
+    /// released it.
+    pub alone: u32,
     /// How far it ran.
     pub ran_m: f64,
     /// When a circuit was last told to it as one that it may enter, in ms from the start, and one more.
     pub told_ms: Vec<u64>,
     onboard: OnBoard,
     beside: OnBoard,
+    rival: OnBoard,
     /// The code in the rail at its front.
     sent: Option<u8>,
     /// Whether that has just changed: a code counts that was heard throughout a cycle.
@@ -79,10 +83,12 @@ impl Train {
             applications: 0,
             needless: 0,
             interrupted: 0,
+            alone: 0,
             ran_m: 0.0,
             told_ms: vec![0; circuits],
             onboard: OnBoard::START,
             beside: OnBoard::START,
+            rival: OnBoard::START,
             sent: None,
             changed: true,
             braking_ms: None,
@@ -99,7 +105,7 @@ impl Train {
     /// The driver goes to the other end, where another device starts.
     pub fn turn(&mut self, track: &Track) {
         self.body.turn(track);
-        (self.onboard, self.beside) = (OnBoard::START, OnBoard::START);
+        (self.onboard, self.beside, self.rival) = (OnBoard::START, OnBoard::START, OnBoard::START);
         self.told_ms.fill(0);
     }
 }
@@ -148,7 +154,7 @@ impl World<'_> {
     pub(crate) fn roll(&mut self, number: usize) {
         let length = f64::from(self.line.train_cycle_ms);
         let (interruption, misread) = (self.interruption(number, length), self.misread(number, length));
-        let (device, line, now_ms) = (self.device, self.line, self.now_ms);
+        let (device, line, now_ms) = (&self.device, self.line, self.now_ms);
         let train = &mut self.trains[number];
         let heard = if train.changed { None } else { train.sent };
         train.changed = false;
@@ -178,6 +184,8 @@ impl World<'_> {
                 train.needless += 1;
                 needless = true;
             }
+            let rival = self.rival.step(&mut train.rival, disturbed, speed).brake;
+            train.alone += u32::from(moves && rival == Brake::Release && before == Brake::Release && train.cab.brake != Brake::Release);
         }
         let (emergency, braked) = (train.cab.brake == Brake::Emergency, train.cab.brake != Brake::Release);
         let began = moves && before == Brake::Release && braked;

@@ -53,6 +53,10 @@ pub struct World<'a> {
     /// The dispatcher.
     pub dispatcher: Dispatcher<'a>,
     pub(crate) device: Device,
+    /// The other kind of device.
+    pub(crate) rival: Device,
+    /// What was reported occupied in the last cycle of the ground.
+    pub reported: Vec<bool>,
     pub(crate) setting: Setting,
     proceed: Vec<RouteSet>,
     begun: usize,
@@ -71,6 +75,11 @@ impl<'a> World<'a> {
         setting.faults.sort_by(|one, other| one.from_ms.total_cmp(&other.from_ms));
         let mut random = Pcg64Mcg::seed_from_u64(setting.seed);
         let device = Device::new(&line.speeds_kmh, line.train_cycle_ms, setting.operate)?;
+        let rival = match setting.operate {
+            Operate::Shortened => Operate::Conventional,
+            Operate::Conventional => Operate::Shortened,
+        };
+        let rival = Device::new(&line.speeds_kmh, line.train_cycle_ms, rival)?;
         let points = line.track.points.iter().map(|point| {
             let least = (point.throw_ms * 5 / 7).max(1);
             PointState { reverse: false, moves_ms: None, stroke_ms: random.random_range(least..=point.throw_ms) }
@@ -102,6 +111,8 @@ impl<'a> World<'a> {
             stations,
             points,
             device,
+            rival,
+            reported: vec![false; line.track.circuits.len()],
             setting,
             begun: 0,
         };
@@ -191,7 +202,7 @@ impl<'a> World<'a> {
     }
 
     /// What is reported occupied, on the whole line.
-    fn reported(&self) -> Vec<bool> {
+    fn report(&self) -> Vec<bool> {
         let mut reported: Vec<bool> = self.on_circuit.iter().map(|trains| *trains > 0).collect();
         let (track, length) = (&self.line.track, f64::from(self.line.cycle_ms));
         let mut hide = |train: &Train, all: bool| {
@@ -222,7 +233,7 @@ impl<'a> World<'a> {
     fn cycle(&mut self) {
         let line = self.line;
         let length = f64::from(line.cycle_ms);
-        let reported = self.reported();
+        let reported = self.report();
         let track = &line.track;
         let seen: Vec<Seen> = self
             .trains
@@ -267,6 +278,7 @@ impl<'a> World<'a> {
             }
             self.signals(station, &mut told);
         }
+        self.reported = reported;
         self.exchange();
         for what in told {
             self.tell(what);
@@ -282,16 +294,22 @@ impl<'a> World<'a> {
     /// What changed at the signals of a station.
     fn signals(&mut self, station: usize, told: &mut Vec<What>) {
         let (before, now) = (self.proceed[station], self.stations[station].reply.proceed);
+        if before == now {
+            return;
+        }
         let names = &self.line.stations[station].compiled.names;
-        let place = &self.line.stations[station].name;
         for (number, route) in names.routes.iter().enumerate() {
             let it = RouteSet::nth(number);
-            let (station, signal, route) = (place.clone(), names.signals[number].clone(), route.clone());
-            match (before.meets(it), now.meets(it)) {
-                (false, true) => told.push(What::Proceed { station, signal, route }),
-                (true, false) => told.push(What::Stop { station, signal, route }),
-                _ => {}
-            }
+            let at = || (self.line.stations[station].name.clone(), names.signals[number].clone(), route.clone());
+            let (station, signal, route) = match (before.meets(it), now.meets(it)) {
+                (true, true) | (false, false) => continue,
+                _ => at(),
+            };
+            told.push(if now.meets(it) {
+                What::Proceed { station, signal, route }
+            } else {
+                What::Stop { station, signal, route }
+            });
         }
         self.proceed[station] = now;
     }
