@@ -1,6 +1,7 @@
 //! `oracle`: the kernel as a reference, on the command line.
 
 mod layout;
+mod simulate;
 
 use std::fmt;
 use std::fs;
@@ -38,6 +39,8 @@ enum Command {
     /// Checks, imports, tabulates or draws the layout of a station
     #[command(subcommand)]
     Layout(layout::LayoutCommand),
+    /// Runs a line with trains under the kernel's devices, judged by the truth and not by the devices; exit code 1 if it is unsafe
+    Simulate(simulate::SimulateArgs),
     /// Prints the JSON Schema of protocol 1
     Schema,
     /// Prints what a shell needs to complete the commands
@@ -134,6 +137,7 @@ fn main() -> ExitCode {
         Command::Chart(args) => draw(&args),
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
+        Command::Simulate(args) => simulate(&args),
         Command::Schema => print(&atc_oracle::schema::text()),
         Command::Completions { shell } => completions(shell),
     };
@@ -205,6 +209,19 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
         // Only a configuration that was named can be wrong.
         SignalError::Config(reason) => Err(Failure::Config(path.unwrap_or(Path::new("-")).to_owned(), reason)),
     })
+}
+
+fn simulate(args: &simulate::SimulateArgs) -> Result<(), Failure> {
+    let done = simulate::run(args).map_err(Failure::Signal)?;
+    if let Some(folder) = &args.output {
+        fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.clone(), error))?;
+        for (name, text) in &done.files {
+            write(&folder.join(name), text)?;
+        }
+    }
+    print(&done.text)?;
+    remark(&done.remarks);
+    if done.is_unsafe { Err(Failure::Differs) } else { Ok(()) }
 }
 
 fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {

@@ -40,8 +40,6 @@ pub struct Outcome {
     pub unsafe_runs: u64,
     /// How often trains came to a station.
     pub arrivals: u64,
-    /// In how many of them a train braked.
-    pub braked: u64,
     /// The first unsafe run: its seed, and what happened.
     pub first: Option<(u64, Event)>,
 }
@@ -93,9 +91,8 @@ pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Re
     for (kind, seed, events) in ended {
         let outcome = outcomes.entry(kind).or_default();
         outcome.runs += 1;
-        let count = |name: fn(&Event) -> bool| events.iter().filter(|event| name(event)).count() as u64;
-        outcome.arrivals += count(|event| matches!(event.what, crate::event::What::Arrived { .. }));
-        outcome.braked += u64::from(count(|event| matches!(event.what, crate::event::What::Braked { .. })) > 0);
+        let arrived = |event: &&Event| matches!(event.what, crate::event::What::Arrived { .. });
+        outcome.arrivals += events.iter().filter(arrived).count() as u64;
         if let Some(event) = events.iter().find(|event| event.what.is_unsafe()) {
             outcome.unsafe_runs += 1;
             outcome.first = outcome.first.take().or_else(|| Some((seed, event.clone())));

@@ -141,7 +141,8 @@ impl<'a> Dispatcher<'a> {
         let tracks = &self.line.stations[next].platforms;
         let fits = |number: usize| {
             let own = !goes_on || tracks.len() < 2 || number % 2 == bound.side();
-            let ways = tracks[number].arrive[bound.other().side()].is_some() && tracks[number].depart[onward.side()].is_some();
+            let ways =
+                tracks[number].arrive[bound.other().side()].is_some() && tracks[number].depart[onward.side()].is_some();
             own && ways && self.owners[next][number].is_none()
         };
         (0..tracks.len()).find(|number| fits(*number)).map(|number| (next, number))

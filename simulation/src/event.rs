@@ -20,33 +20,115 @@ pub struct Event {
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum What {
     /// A train came to a stand at a track of a station.
-    Arrived { train: usize, station: String, track: String },
+    Arrived {
+        /// The number of the train.
+        train: usize,
+        /// The name of the station.
+        station: String,
+        /// The name of the track.
+        track: String,
+    },
     /// A train leaves a track of a station.
-    Left { train: usize, station: String, bound: Bound },
+    Left {
+        /// The number of the train.
+        train: usize,
+        /// The name of the station.
+        station: String,
+        /// The direction.
+        bound: Bound,
+    },
     /// A route was accepted.
-    Set { station: String, route: String },
+    Set {
+        /// The name of the station.
+        station: String,
+        /// The name of the route.
+        route: String,
+    },
     /// A signal went to proceed.
-    Proceed { station: String, signal: String, route: String },
+    Proceed {
+        /// The name of the station.
+        station: String,
+        /// The name of the signal.
+        signal: String,
+        /// The name of the route.
+        route: String,
+    },
     /// A signal went to stop.
-    Stop { station: String, signal: String, route: String },
+    Stop {
+        /// The name of the station.
+        station: String,
+        /// The name of the signal.
+        signal: String,
+        /// The name of the route.
+        route: String,
+    },
     /// A line has a direction.
-    Turned { line: usize, bound: Bound },
+    Turned {
+        /// The number of the line, from the west.
+        line: usize,
+        /// The direction.
+        bound: Bound,
+    },
     /// The device of a train brakes, and the train moves.
-    Braked { train: usize, emergency: bool, along_m: f64 },
+    Braked {
+        /// The number of the train.
+        train: usize,
+        /// Whether by the emergency brake.
+        emergency: bool,
+        /// Where the front is along the line, in m.
+        along_m: f64,
+    },
     /// The same device without the interruption would not have braked.
-    NeedlesslyBraked { train: usize, along_m: f64 },
+    NeedlesslyBraked {
+        /// The number of the train.
+        train: usize,
+        /// Where the front is along the line, in m.
+        along_m: f64,
+    },
     /// A fault begins.
-    Fault { kind: Kind, at: String, lasts_ms: f64 },
+    Fault {
+        /// What fails.
+        kind: Kind,
+        /// Where.
+        at: String,
+        /// For how long, in ms.
+        lasts_ms: f64,
+    },
     /// Two trains are on the same ground.
-    Collision { train: usize, with: usize, circuit: String },
+    Collision {
+        /// The number of the train.
+        train: usize,
+        /// The number of the other train.
+        with: usize,
+        /// The circuit.
+        circuit: String,
+    },
     /// A train ran over a point that did not stand for it.
-    Derailment { train: usize, point: String },
+    Derailment {
+        /// The number of the train.
+        train: usize,
+        /// The point.
+        point: String,
+    },
     /// A point began to move under a train.
-    MovedUnder { train: usize, point: String },
+    MovedUnder {
+        /// The number of the train.
+        train: usize,
+        /// The point.
+        point: String,
+    },
     /// A train ran into a circuit for which it had no authority.
-    Overrun { train: usize, circuit: String },
+    Overrun {
+        /// The number of the train.
+        train: usize,
+        /// The circuit.
+        circuit: String,
+    },
     /// A train ran over the end of the track.
-    EndOfTrack { train: usize },
+    EndOfTrack {
+        /// The number of the train.
+        train: usize,
+    },
 }
 
 impl What {

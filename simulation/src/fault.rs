@@ -1,6 +1,7 @@
 //! Faults of the line: what may fail, for how long it may, and when it does in one run.
 
-use rand::Rng;
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
 use crate::line::Line;
@@ -140,6 +141,11 @@ impl Fault {
         self.from_ms < from_ms + length_ms && from_ms < self.from_ms + self.lasts_ms
     }
 
+    /// As [`Fault::draw`], from a seed.
+    pub fn drawn(kind: Kind, extent: Extent, line: &Line, window: (f64, f64), seed: u64) -> Self {
+        Self::draw(kind, extent, line, window, &mut Pcg64Mcg::seed_from_u64(seed))
+    }
+
     /// A fault of this kind at a random time between `from_ms` and `to_ms`.
     pub fn draw(kind: Kind, extent: Extent, line: &Line, (from_ms, to_ms): (f64, f64), random: &mut impl Rng) -> Self {
         let (least, most) = kind.lasts_ms(line, extent);
@@ -151,6 +157,12 @@ impl Fault {
             Kind::MisreadCode if extent == Extent::Beyond => 7,
             _ => random.random_range(0..8),
         };
-        Self { kind, from_ms: random.random_range(from_ms..to_ms), lasts_ms, which: random.random_range(0..1 << 20), much }
+        Self {
+            kind,
+            from_ms: random.random_range(from_ms..to_ms),
+            lasts_ms,
+            which: random.random_range(0..1 << 20),
+            much,
+        }
     }
 }

@@ -85,7 +85,10 @@ impl Shape {
                 let near = block(line, if side == 'W' { blocks } else { 1 });
                 let (first, last) = if side == 'W' { ('A', 'B') } else { ('B', 'A') };
                 writeln!(out, "[[route]]\nname = \"{side}-{track}\"\nsignal = \"{side}\"\nentry = \"{near}\"")?;
-                writeln!(out, "path = [\"{side}T\", \"{track}{first}\", \"{track}{last}\"]\nshort_overlap = \"{SHORT}\"")?;
+                writeln!(
+                    out,
+                    "path = [\"{side}T\", \"{track}{first}\", \"{track}{last}\"]\nshort_overlap = \"{SHORT}\""
+                )?;
                 writeln!(out, "[[route]]\nname = \"{track}-{side}\"\nsignal = \"{track}{side}\"")?;
                 writeln!(out, "entry = \"{track}{first}\"\npath = [\"{side}T\"]")?;
             }

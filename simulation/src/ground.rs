@@ -202,7 +202,9 @@ pub fn drive(
             state.moves_ms = left.checked_sub(cycle_ms).filter(|left| *left > 0);
         }
         let wanted = (drives.reverse.meets(it), drives.normal.meets(it));
-        if state.moves_ms.is_none() && (wanted == (true, false) && !state.reverse || wanted == (false, true) && state.reverse) {
+        if state.moves_ms.is_none()
+            && (wanted == (true, false) && !state.reverse || wanted == (false, true) && state.reverse)
+        {
             state.reverse = !state.reverse;
             state.moves_ms = Some(state.stroke_ms + late_ms(*global));
             began(*global);

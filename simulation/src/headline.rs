@@ -101,7 +101,13 @@ fn interruptions(extent: &Extent, length_ms: u32) -> Vec<Fault> {
         while from_ms < f64::from(extent.seconds) * 1000.0 {
             from_ms += random.random_range(every / 2.0..every * 1.5);
             if length_ms > 0 {
-                faults.push(Fault { kind: Kind::Interruption, from_ms, lasts_ms: f64::from(length_ms), which, much: 0 });
+                faults.push(Fault {
+                    kind: Kind::Interruption,
+                    from_ms,
+                    lasts_ms: f64::from(length_ms),
+                    which,
+                    much: 0,
+                });
             }
         }
     }
@@ -171,7 +177,8 @@ pub fn measure(extent: &Extent) -> Result<Headline, String> {
     };
     let (shortened, conventional) = (late(shortened?), late(conventional?));
     let rows = lengths.iter().zip(shortened.into_iter().zip(conventional));
-    let rows = rows.map(|(length_ms, (shortened, conventional))| Row { length_ms: *length_ms, shortened, conventional });
+    let rows =
+        rows.map(|(length_ms, (shortened, conventional))| Row { length_ms: *length_ms, shortened, conventional });
     Ok(Headline { extent: *extent, rows: rows.collect() })
 }
 
@@ -194,6 +201,16 @@ impl Headline {
             text += &(cells.join(",") + "\n");
         }
         text
+    }
+
+    /// How many unsafe events there were in all runs.
+    pub fn unsafe_events(&self) -> u32 {
+        self.rows.iter().map(|row| row.shortened.unsafe_events + row.conventional.unsafe_events).sum()
+    }
+
+    /// How often the device with the shortened operate time braked where the conventional one, that heard the same, did not.
+    pub fn alone(&self) -> u32 {
+        self.rows.iter().map(|row| row.shortened.alone).sum()
     }
 
     /// The shortest interruption that makes at least `share` of the trains brake: with the shortened time, and without.

@@ -1,6 +1,28 @@
-//! A line with trains in continuous motion, under the kernel's own machines.
+//! A line with trains in continuous motion, under the kernel's own machines; floating point, outside the verified kernel.
+//!
+//! The ground is [`Combined`](atc_kernel::interlocking::Combined) for every station, the trains are
+//! [`Train`](atc_kernel::train::Train). What is true of trains and points is kept apart from all devices, and is what a run is judged
+//! by: trains that share ground, a train over a point that does not stand for it, a point that moves under a train, a train
+//! past the point where it had to stop.
+//!
+//! | module | part |
+//! |---|---|
+//! | [`line`], [`generate`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
+//! | [`motion`], [`driver`] | trains as bodies, and who drives them |
+//! | [`onboard`], [`ground`] | the kernel's devices |
+//! | [`dispatcher`] | who asks for routes and turns lines |
+//! | [`fault`] | what fails, when, for how long |
+//! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
+//! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
+//! | [`record`], [`diagram`], [`charts`] | pictures |
+//!
+//! A run is the same every time for one seed.
+
 #![forbid(unsafe_code)]
+
 pub mod campaign;
+pub mod charts;
+pub mod diagram;
 pub mod dispatcher;
 pub mod driver;
 pub mod event;
@@ -12,28 +34,7 @@ mod judge;
 pub mod line;
 pub mod motion;
 pub mod onboard;
+pub mod record;
 pub mod rolling;
 pub mod track;
 pub mod world;
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn runs() {
-        let start = std::time::Instant::now();
-        let headline = super::headline::measure(&super::headline::Extent::default()).unwrap();
-        eprintln!("{:?}\n{}{:?}", start.elapsed(), headline.csv(), headline.edges_ms(0.5));
-    }
-    #[test]
-    fn camp() {
-        use super::*;
-        let line = headline::line().unwrap();
-        for extent in [fault::Extent::Tolerated, fault::Extent::Beyond] {
-            let start = std::time::Instant::now();
-            let campaign = campaign::Campaign { runs: 220, kinds: fault::Kind::ALL.to_vec(), extent, faults: 1, trains: 3, seconds: 600, seed: 1 };
-            let outcomes = campaign::run(&line, &campaign, &|_| ()).unwrap();
-            eprintln!("{:?}", start.elapsed());
-            for (kind, outcome) in outcomes { eprintln!("{kind:?} {outcome:?}"); }
-        }
-    }
-}

@@ -139,6 +139,8 @@ pub struct Line {
     pub shunt_loss_ms: u32,
     /// For how long a train may run on after its authority was taken away.
     pub residual_ms: u32,
+    /// An old rule, to see that a campaign finds it out: a circuit counts as clear at once when it is reported clear.
+    pub clears_at_once: bool,
 }
 
 impl Line {
@@ -194,7 +196,10 @@ impl Line {
             let values = &one.model.values;
             if values.cycle_ms != first.cycle_ms || values.speeds_kmh != first.speeds_kmh {
                 let names = (&compiled[0].names.station, &one.names.station);
-                return Err(format!("{} and {} differ in cycle_ms or in speeds_kmh: give both the same", names.0, names.1));
+                return Err(format!(
+                    "{} and {} differ in cycle_ms or in speeds_kmh: give both the same",
+                    names.0, names.1
+                ));
             }
         }
         let values = |of: fn(&atc_layout::model::Values) -> u32| compiled.iter().map(move |one| of(&one.model.values));
@@ -208,6 +213,7 @@ impl Line {
             telegram_age_ms: values(|values| values.telegram_age_ms).min().unwrap_or(0),
             shunt_loss_ms: values(|values| u32::from(values.loss) * values.cycle_ms).min().unwrap_or(0),
             residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
+            clears_at_once: false,
             stations: Vec::new(),
             links,
             track,
@@ -243,7 +249,10 @@ impl Line {
                 circuits.into_iter().map(|circuit| self.track.sites[number].circuits[circuit]).collect()
             };
             let paths: Vec<Vec<usize>> = model.routes.iter().map(|route| global(route.circuits().collect())).collect();
-            let lines = [number.checked_sub(1).map(|west| self.links[west].segments[1]), self.links.get(number).map(|link| link.segments[0])];
+            let lines = [
+                number.checked_sub(1).map(|west| self.links[west].segments[1]),
+                self.links.get(number).map(|link| link.segments[0]),
+            ];
             let platforms = self.platforms(number, model, lines, &paths);
             for side in [Bound::West, Bound::East] {
                 let through = |platform: &Platform| {
@@ -278,7 +287,8 @@ impl Line {
         for (route, path) in model.routes.iter().zip(paths).enumerate().map(|(number, (_, path))| (number, path)) {
             let from = model.routes[route].from;
             let Some(side) = (0..2).find(|side| from.is_some() && lines[*side] == from) else { continue };
-            let mut circuits: Vec<usize> = path.iter().rev().copied().take_while(|circuit| plain(circuit).is_some()).collect();
+            let mut circuits: Vec<usize> =
+                path.iter().rev().copied().take_while(|circuit| plain(circuit).is_some()).collect();
             let pieces: Vec<usize> = circuits.iter().filter_map(plain).collect();
             // From the end of the route back; the legs are for a train to the east.
             let mut exit = track.pieces[pieces[0]].joints.iter().copied().find(|joint| {
@@ -289,7 +299,11 @@ impl Line {
             for piece in pieces {
                 let Some(out) = exit else { break };
                 let (enter, _) = track.leave(piece, out, false);
-                legs.push(if side == 0 { Leg { piece, enter, exit: out } } else { Leg { piece, enter: out, exit: enter } });
+                legs.push(if side == 0 {
+                    Leg { piece, enter, exit: out }
+                } else {
+                    Leg { piece, enter: out, exit: enter }
+                });
                 exit = Some(enter);
             }
             if side == 0 {
@@ -298,7 +312,8 @@ impl Line {
             }
             let there = platforms.iter().position(|platform| platform.circuits == circuits);
             let at = there.unwrap_or_else(|| {
-                let name = circuits.iter().map(|circuit| track.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join("+");
+                let name =
+                    circuits.iter().map(|circuit| track.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join("+");
                 platforms.push(Platform { name, circuits, legs, arrive: [None; 2], depart: [None; 2] });
                 platforms.len() - 1
             });
@@ -319,7 +334,7 @@ impl Line {
     /// # Errors
     /// What the kernel says of the layout; it was checked when it was compiled.
     pub fn device(&self, station: usize) -> Result<Box<dyn Device>, String> {
-        let description = &self.stations[station].description;
+        let description = (&self.stations[station].description, self.clears_at_once);
         if let Ok(device) = sized::<8, 4, 2, 2>(description) {
             return Ok(device);
         }
@@ -342,10 +357,17 @@ impl Line {
 }
 
 fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
-    description: &Description,
+    (description, clears_at_once): (&Description, bool),
 ) -> Result<Box<dyn Device>, String> {
     let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
-    let layout = Layout::new(*compiled.plan).map_err(|broken| format!("{broken:?}"))?;
+    let mut plan = compiled.plan;
+    let layout = if clears_at_once {
+        plan.clear = 1;
+        Layout::with_what_proofs_need(*plan)
+    } else {
+        Layout::new(*plan)
+    };
+    let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
     Ok(Box::new(Held::new(Box::new(layout))))
 }
 
@@ -361,7 +383,12 @@ fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<[usize; 2
         let common: Vec<String> = named(one).intersection(&named(other)).cloned().collect();
         let [line] = common.as_slice() else {
             let names = (&compiled[west].names.station, &compiled[west + 1].names.station);
-            return Err(format!("{} and {} name {} lines in common; one is possible here", names.0, names.1, common.len()));
+            return Err(format!(
+                "{} and {} name {} lines in common; one is possible here",
+                names.0,
+                names.1,
+                common.len()
+            ));
         };
         let find = |model: &atc_layout::model::Model| {
             model.segments.iter().position(|segment| segment.line.as_ref() == Some(line)).unwrap_or(0)

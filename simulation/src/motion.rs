@@ -72,7 +72,8 @@ impl Body {
     /// A train at a stand on these pieces, its front so far into the last of them.
     pub fn standing(track: &Track, legs: &[Leg], front_m: f64, length_m: f64) -> Self {
         let behind: f64 = legs.iter().rev().skip(1).map(|leg| track.pieces[leg.piece].length_m).sum();
-        let mut body = Self { legs: legs.iter().copied().collect(), front_m, tail_m: behind + front_m - length_m, speed: 0.0 };
+        let mut body =
+            Self { legs: legs.iter().copied().collect(), front_m, tail_m: behind + front_m - length_m, speed: 0.0 };
         body.leave(track, &mut |_| ());
         body
     }
@@ -141,7 +142,8 @@ impl Body {
     pub fn turn(&mut self, track: &Track) {
         let length = |piece: usize| track.pieces[piece].length_m;
         let (front, tail) = (length(self.front().piece) - self.front_m, length(self.legs[0].piece) - self.tail_m);
-        self.legs = self.legs.iter().rev().map(|leg| Leg { piece: leg.piece, enter: leg.exit, exit: leg.enter }).collect();
+        self.legs =
+            self.legs.iter().rev().map(|leg| Leg { piece: leg.piece, enter: leg.exit, exit: leg.enter }).collect();
         (self.front_m, self.tail_m) = (tail, front);
     }
 

@@ -75,7 +75,8 @@ impl Device {
         for (rank, speed) in speeds.iter().enumerate() {
             named[rank][rank] = Some(*speed);
         }
-        let codes = CodeTable::new(frequencies(MAIN)?, frequencies(SUB)?, named).map_err(|error| format!("{error:?}"))?;
+        let codes =
+            CodeTable::new(frequencies(MAIN)?, frequencies(SUB)?, named).map_err(|error| format!("{error:?}"))?;
         let life = Cycle::new(Millis(cycle_ms)).and_then(|cycle| cycle.at_most(Millis(LIFE_MS))).unwrap_or(Ticks(1));
         let sequence = Sequence::new(4, 1, life).map_err(|error| format!("telegrams: {error:?}"))?;
         let settings = Settings {

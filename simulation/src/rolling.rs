@@ -185,7 +185,9 @@ impl World<'_> {
                 needless = true;
             }
             let rival = self.rival.step(&mut train.rival, disturbed, speed).brake;
-            train.alone += u32::from(moves && rival == Brake::Release && before == Brake::Release && train.cab.brake != Brake::Release);
+            train.alone += u32::from(
+                moves && rival == Brake::Release && before == Brake::Release && train.cab.brake != Brake::Release,
+            );
         }
         let (emergency, braked) = (train.cab.brake == Brake::Emergency, train.cab.brake != Brake::Release);
         let began = moves && before == Brake::Release && braked;

@@ -130,7 +130,8 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
         let (joints, joints_there) = (along(model, segment)?, along(there, segment_there)?);
         let (here, its) = (&model.segments[segment], &there.segments[segment_there]);
         for place in 0..=here.shared {
-            let (joint, other) = (joints[here.circuits.len() - here.shared + place], joints_there[its.circuits.len() - place]);
+            let (joint, other) =
+                (joints[here.circuits.len() - here.shared + place], joints_there[its.circuits.len() - place]);
             same[bases[west + 1] + other] = bases[west] + joint;
         }
         shared.push(here.shared);
@@ -157,7 +158,8 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
         }
         let mut site = Site::default();
         for (own, (circuit, known)) in model.circuits.iter().zip(&known[station]).enumerate() {
-            let on_line = model.segments.iter().any(|segment| segment.line.is_some() && segment.circuits.contains(&own));
+            let on_line =
+                model.segments.iter().any(|segment| segment.line.is_some() && segment.circuits.contains(&own));
             site.circuits.push(known.unwrap_or_else(|| {
                 let name = if on_line { circuit.name.clone() } else { format!("{name} {}", circuit.name) };
                 track.circuits.push(Circuit { name, length_m: f64::from(circuit.length.0) });
@@ -171,8 +173,11 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
         lay(&mut track, &mut site, (model, &known[station]), |joint, track| number(bases[station] + joint, track));
         if let Some([segment, segment_there]) = station.checked_sub(1).map(|west| pairs[west]) {
             let (before, its) = (models[station - 1].1, &model.segments[segment_there]);
-            let mut circuits: Vec<usize> =
-                before.segments[segment].circuits.iter().map(|circuit| track.sites[station - 1].circuits[*circuit]).collect();
+            let mut circuits: Vec<usize> = before.segments[segment]
+                .circuits
+                .iter()
+                .map(|circuit| track.sites[station - 1].circuits[*circuit])
+                .collect();
             let own = its.circuits.len() - shared[station - 1];
             circuits.extend(its.circuits[..own].iter().rev().map(|circuit| site.circuits[*circuit]));
             links.push(Link { segments: [segment, segment_there], circuits });
@@ -205,7 +210,13 @@ fn lay(
             };
             let plain = model.graph.tracks.iter().filter(|other| other.circuit == piece.circuit).count() == 1;
             let length_m = track.circuits[circuit].length_m;
-            track.pieces.push(Piece { circuit, joints: joints.clone(), point, length_m, plain: plain && point.is_none() });
+            track.pieces.push(Piece {
+                circuit,
+                joints: joints.clone(),
+                point,
+                length_m,
+                plain: plain && point.is_none(),
+            });
             for joint in &joints {
                 track.joints[*joint].push(track.pieces.len() - 1);
             }

@@ -210,7 +210,8 @@ impl<'a> World<'a> {
             for leg in &train.body.legs {
                 let circuit = track.pieces[leg.piece].circuit;
                 let others = self.trains.iter().filter(|other| !std::ptr::eq(*other, train));
-                let shared = others.flat_map(|other| &other.body.legs).any(|leg| track.pieces[leg.piece].circuit == circuit);
+                let shared =
+                    others.flat_map(|other| &other.body.legs).any(|leg| track.pieces[leg.piece].circuit == circuit);
                 if (all || circuit == front) && !shared {
                     reported[circuit] = false;
                 }
@@ -250,10 +251,8 @@ impl<'a> World<'a> {
             self.trains[train].turn(track);
         }
         let requests = self.dispatcher.requests(self.now_ms);
-        let late: Vec<(usize, u32)> = self
-            .faults(Kind::LatePoint, length)
-            .map(|fault| (fault.which % track.points.len(), fault.much))
-            .collect();
+        let late: Vec<(usize, u32)> =
+            self.faults(Kind::LatePoint, length).map(|fault| (fault.which % track.points.len(), fault.much)).collect();
         let late = |point: usize| late.iter().filter(|(at, _)| *at == point).map(|(_, ms)| ms).sum();
         let stuck: Vec<usize> =
             self.faults(Kind::RepeatedCode, length).map(|fault| fault.which % track.circuits.len()).collect();
