@@ -51,6 +51,9 @@ pub struct SimulateArgs {
     /// Runs so many times with one fault each, and tells in how many runs something unsafe happened
     #[arg(long, value_name = "RUNS")]
     campaign: Option<u64>,
+    /// How many faults each run of a campaign has, all of one kind
+    #[arg(long, default_value_t = 1, requires = "campaign", value_name = "FAULTS")]
+    each: usize,
     /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
     #[arg(long, conflicts_with = "campaign")]
     headline: bool,
@@ -162,7 +165,7 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
         runs,
         kinds,
         extent: extent(args),
-        faults: 1,
+        faults: args.each,
         trains,
         seconds: args.time.unwrap_or(600),
         seed: args.seed,
@@ -197,9 +200,8 @@ fn measure(args: &SimulateArgs) -> Result<Done, String> {
     extent.seconds = args.time.unwrap_or(extent.seconds);
     extent.trains = args.trains.unwrap_or(extent.trains);
     let measured = headline::measure(&extent)?;
-    let json = serde_json::to_string_pretty(&measured).map_err(|error| error.to_string())?;
     let svg = charts::headline(&measured).map_err(|error| error.to_string())?;
     let is_unsafe = measured.unsafe_events() > 0;
-    let files = vec![("headline.csv", measured.csv()), ("headline.json", json + "\n"), ("shortened-operate.svg", svg)];
+    let files = vec![("shortened-operate.csv", measured.csv()), ("shortened-operate.svg", svg)];
     Ok(Done { files, text: measured.csv(), is_unsafe, ..Done::default() })
 }

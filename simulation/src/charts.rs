@@ -37,10 +37,7 @@ pub fn headline(headline: &Headline) -> Result<String, PlotError> {
     let x = || Axis::new("length of the interruption of the cab signal (ms)", 0.0, longest);
     let share = both(|one| one.share() * 100.0);
     let delay = both(|one| one.delay_s);
-    let mut margin = both(|one| one.pattern_m);
-    for one in &mut margin {
-        one.name.clear();
-    }
+    let margin = both(|one| one.pattern_m);
     let (late, far) = (top(&delay, 5.0), top(&margin, 20.0) + 20.0);
     let charts = [
         Chart {
@@ -48,7 +45,7 @@ pub fn headline(headline: &Headline) -> Result<String, PlotError> {
             x: x(),
             y: Axis::new("share (%)", 0.0, 105.0),
             scale: Scale::Linear,
-            legend: Legend::UpperLeft,
+            legend: Legend::None,
             series: share,
         },
         Chart {
@@ -56,7 +53,7 @@ pub fn headline(headline: &Headline) -> Result<String, PlotError> {
             x: x(),
             y: Axis::new("delay at the end (s)", 0.0, late),
             scale: Scale::Linear,
-            legend: Legend::None,
+            legend: Legend::UpperLeft,
             series: delay,
         },
         Chart {

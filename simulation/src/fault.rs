@@ -16,7 +16,7 @@ pub enum Kind {
     MisreadCode,
     /// A circuit is reported occupied.
     FalseOccupancy,
-    /// A train is not reported in any circuit.
+    /// A train is not reported in any circuit, or not in that of its rear.
     ShuntLoss,
     /// A train is not reported in the circuit of its front.
     MissedDetection,
@@ -131,7 +131,8 @@ pub struct Fault {
     pub lasts_ms: f64,
     /// Which train, circuit, point or station: counted on over all of them.
     pub which: usize,
-    /// How much: of a late point the time in ms, of a late telegram the same, of a misread code its rank.
+    /// How much: of a late point the time in ms, of a late telegram the same, of a misread code its rank; a loss of
+    /// shunt is of every circuit (even) or of the rear.
     pub much: u32,
 }
 

@@ -50,7 +50,7 @@ pub struct Measured {
     pub stop_m: f64,
     /// The least of the same less the braking distance.
     pub pattern_m: f64,
-    /// The least distance from a front to the next train.
+    /// The least distance from a front to the next train; 3 km if there was none in sight.
     pub train_m: f64,
     /// How many unsafe events there were.
     pub unsafe_events: u32,
@@ -135,9 +135,9 @@ fn measure_one(line: &Line, extent: &Extent, (length_ms, operate): (u32, Operate
         needless: sum(|train| train.needless),
         alone: sum(|train| train.alone),
         delay_s: 0.0,
-        stop_m: margins.stop_m,
-        pattern_m: margins.pattern_m,
-        train_m: margins.train_m,
+        stop_m: margins.stop_m.min(crate::judge::SIGHT_M),
+        pattern_m: margins.pattern_m.min(crate::judge::SIGHT_M),
+        train_m: margins.train_m.min(crate::judge::SIGHT_M),
         unsafe_events: u32::from(world.is_unsafe),
     };
     Ok((arrivals, measured))

@@ -6,7 +6,7 @@ use crate::rolling::Margins;
 use crate::world::World;
 
 /// How far a train looks for another one, in m.
-const SIGHT_M: f64 = 3_000.0;
+pub const SIGHT_M: f64 = 3_000.0;
 
 impl World<'_> {
     /// Looks for trains that share ground.

@@ -295,7 +295,8 @@ impl Track {
                         let toe = it.point.is_none() || place == 0 || it.joints[0] == joint;
                         if *other != joint && toe {
                             let right = self.rightward(*piece, *other);
-                            next.push((*other, if right { at + it.length_m } else { at - it.length_m }));
+                            let length_m = if self.is_inner(it) { 0.0 } else { it.length_m };
+                            next.push((*other, if right { at + length_m } else { at - length_m }));
                         }
                     }
                 }
@@ -304,6 +305,12 @@ impl Track {
         }
         let least = along.iter().flatten().copied().fold(f64::INFINITY, f64::min);
         self.along_m = along.into_iter().map(|at| at.map_or(0.0, |at| at - least)).collect();
+    }
+
+    /// Whether a piece lies behind another one of its circuit: a chain of points is drawn as long as its shortest way.
+    fn is_inner(&self, piece: &Piece) -> bool {
+        let toe = &self.joints[piece.joints[0]];
+        piece.point.is_some() && toe.iter().all(|other| self.pieces[*other].circuit == piece.circuit)
     }
 
     fn rightward(&self, piece: usize, joint: usize) -> bool {

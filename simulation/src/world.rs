@@ -205,23 +205,25 @@ impl<'a> World<'a> {
     fn report(&self) -> Vec<bool> {
         let mut reported: Vec<bool> = self.on_circuit.iter().map(|trains| *trains > 0).collect();
         let (track, length) = (&self.line.track, f64::from(self.line.cycle_ms));
-        let mut hide = |train: &Train, all: bool| {
-            let front = track.pieces[train.body.front().piece].circuit;
+        let mut hide = |fault: &Fault| {
+            let train = &self.trains[fault.which % self.trains.len()];
+            let circuit = |leg: &crate::motion::Leg| track.pieces[leg.piece].circuit;
+            let (front, rear) = (circuit(&train.body.front()), circuit(&train.body.legs[0]));
             for leg in &train.body.legs {
-                let circuit = track.pieces[leg.piece].circuit;
+                let here = circuit(leg);
+                let lost = match (fault.kind, fault.much % 2) {
+                    (Kind::MissedDetection, _) => here == front,
+                    (_, 0) => true,
+                    _ => here == rear,
+                };
                 let others = self.trains.iter().filter(|other| !std::ptr::eq(*other, train));
-                let shared =
-                    others.flat_map(|other| &other.body.legs).any(|leg| track.pieces[leg.piece].circuit == circuit);
-                if (all || circuit == front) && !shared {
-                    reported[circuit] = false;
+                if lost && !others.flat_map(|other| &other.body.legs).any(|leg| circuit(leg) == here) {
+                    reported[here] = false;
                 }
             }
         };
-        for fault in self.faults(Kind::ShuntLoss, length) {
-            hide(&self.trains[fault.which % self.trains.len()], true);
-        }
-        for fault in self.faults(Kind::MissedDetection, length) {
-            hide(&self.trains[fault.which % self.trains.len()], false);
+        for kind in [Kind::ShuntLoss, Kind::MissedDetection] {
+            self.faults(kind, length).for_each(&mut hide);
         }
         for fault in self.faults(Kind::FalseOccupancy, length) {
             let circuits = reported.len();
