@@ -155,8 +155,8 @@ impl<'a> Dispatcher<'a> {
     /// Looks at the trains, and decides; `told` hears of what happens. The trains whose driver changes ends are returned.
     pub fn look(&mut self, now_ms: u64, seen: &[Seen], proceed: &[RouteSet], told: &mut dyn FnMut(What)) -> Vec<usize> {
         let mut turned = Vec::new();
-        for train in 0..self.agents.len() {
-            self.follow(train, (now_ms, seen[train]), proceed, told, &mut turned);
+        for (train, seen) in seen.iter().enumerate() {
+            self.follow(train, (now_ms, *seen), proceed, told, &mut turned);
         }
         for step in 0..self.agents.len() {
             let train = (step + self.turn) % self.agents.len();
@@ -325,17 +325,16 @@ impl<'a> Dispatcher<'a> {
             (Err(refusal), request) => {
                 agent.again_ms = now_ms + AGAIN_MS;
                 // A device that started anew has forgotten the direction.
-                if refusal == Refusal::Direction && matches!(request, Request::Set(_)) && agent.jobs.len() < 3 {
-                    if let Some((to, _)) = agent.target {
-                        let link = if bound == Bound::East { to - 1 } else { to };
-                        let mut jobs = self.turning(link, bound);
-                        if station == to {
-                            jobs.truncate(1);
-                        }
-                        let agent = &mut self.agents[train];
-                        jobs.append(&mut agent.jobs);
-                        agent.jobs = jobs;
+                let forgotten = refusal == Refusal::Direction && matches!(request, Request::Set(_));
+                if let Some((to, _)) = agent.target.filter(|_| forgotten && agent.jobs.len() < 3) {
+                    let link = if bound == Bound::East { to - 1 } else { to };
+                    let mut jobs = self.turning(link, bound);
+                    if station == to {
+                        jobs.truncate(1);
                     }
+                    let agent = &mut self.agents[train];
+                    jobs.append(&mut agent.jobs);
+                    agent.jobs = jobs;
                 }
             }
         }

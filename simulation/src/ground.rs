@@ -176,11 +176,10 @@ impl Station {
     /// The code that a train hears whose front is in the circuit of this number and faces so; and what it is told.
     pub fn code(&self, number: usize, faces: Option<Heading>) -> (Option<u8>, Option<Movement>) {
         match self.telegrams[number] {
-            None => (None, None),
             Some(movement) if movement.heading.is_none() => (Some(0), Some(movement)),
             // The code of a telegram comes from the end towards which it is for: the train's own axles keep it from the other end.
             Some(movement) if movement.heading == faces => (Some(movement.speed.0), Some(movement)),
-            Some(_) => (None, None),
+            _ => (None, None),
         }
     }
 }

@@ -53,10 +53,11 @@ impl World<'_> {
         let (mut stop_m, mut train_m) = (None, f64::INFINITY);
         // The one ahead in the same piece.
         for (at, other) in self.trains.iter().enumerate() {
-            if at != number && self.on_piece[piece] > 1 {
-                if let (Some(mine), Some(its)) = (train.body.on(track, piece), other.body.on(track, piece)) {
-                    train_m = train_m.min(if its.0 >= mine.1 { its.0 - mine.1 } else { mine.0 - its.1 }.max(0.0));
-                }
+            if at == number || self.on_piece[piece] < 2 {
+                continue;
+            }
+            if let Some((mine, its)) = train.body.on(track, piece).zip(other.body.on(track, piece)) {
+                train_m = train_m.min(if its.0 >= mine.1 { its.0 - mine.1 } else { mine.0 - its.1 }.max(0.0));
             }
         }
         while ahead_m < SIGHT_M {

@@ -227,7 +227,7 @@ impl Line {
         if positive.iter().any(|value| !(value.is_finite() && *value > 0.0)) {
             return Err("[trains]: length_m, acceleration, service and emergency must be above 0".to_owned());
         }
-        if self.train_cycle_ms == 0 || self.cycle_ms % self.train_cycle_ms != 0 {
+        if self.train_cycle_ms == 0 || !self.cycle_ms.is_multiple_of(self.train_cycle_ms) {
             let (train, ground) = (self.train_cycle_ms, self.cycle_ms);
             return Err(format!("train_cycle_ms = {train}: it must divide the {ground} ms of the stations' cycle"));
         }

@@ -145,7 +145,7 @@ impl<'a> World<'a> {
     /// One cycle on board; and of the ground, where one begins.
     pub fn tick(&mut self) {
         self.begin_faults();
-        if self.now_ms % u64::from(self.line.cycle_ms) == 0 {
+        if self.now_ms.is_multiple_of(u64::from(self.line.cycle_ms)) {
             self.cycle();
         }
         for train in 0..self.trains.len() {
@@ -259,7 +259,7 @@ impl<'a> World<'a> {
         let stuck: Vec<usize> =
             self.faults(Kind::RepeatedCode, length).map(|fault| fault.which % track.circuits.len()).collect();
         let mut began = Vec::new();
-        for station in 0..self.stations.len() {
+        for (station, request) in requests.into_iter().enumerate() {
             let drives = self.stations[station].reply.drives;
             let cycle = (line.cycle_ms, &late as &dyn Fn(usize) -> u32);
             let detected: Positions =
@@ -271,7 +271,7 @@ impl<'a> World<'a> {
                 frozen = frozen.or(CircuitSet::nth(number).only_if(stuck.contains(circuit)));
             }
             let times = (self.now_ms, u64::from(consent_life_ms(line)));
-            self.stations[station].cycle(times, (occupied, detected), requests[station], frozen);
+            self.stations[station].cycle(times, (occupied, detected), request, frozen);
             let answer = self.stations[station].reply.answer;
             if let Some(route) = self.dispatcher.answered(self.now_ms, station, answer) {
                 let place = &line.stations[station];

@@ -32,7 +32,8 @@ fn no_single_fault_leads_to_harm() {
 #[test]
 fn a_broken_condition_leads_to_harm_and_is_seen() {
     for kind in [Kind::MisreadCode, Kind::ShuntLoss] {
-        let outcomes = run(&line(), &campaign(24, &[kind], Extent::Beyond), &|_| ()).expect("a campaign");
+        let campaign = Campaign { faults: 4, ..campaign(16, &[kind], Extent::Beyond) };
+        let outcomes = run(&line(), &campaign, &|_| ()).expect("a campaign");
         assert!(outcomes[&kind].unsafe_runs > 0, "{kind:?}: the campaign saw nothing");
         let (_, event) = outcomes[&kind].first.as_ref().expect("an unsafe run");
         assert!(event.what.is_unsafe(), "{event:?}");

@@ -1,5 +1,6 @@
 //! Lines: what is read, what is refused, and that a run is the same every time.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -20,7 +21,7 @@ fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name)
 }
 
-fn ended<'a>(line: &'a Line, setting: Setting, seconds: u64) -> World<'a> {
+fn ended(line: &Line, setting: Setting, seconds: u64) -> World<'_> {
     let mut world = World::new(line, setting).expect("a world");
     world.run(seconds * 1000);
     world
@@ -66,7 +67,7 @@ fn stations_may_be_files_of_their_own() {
     let mut text = "name = \"Files\"\n".to_owned();
     for (number, (_, layout)) in Shape::loops(3, 4).stations().into_iter().enumerate() {
         fs::write(folder.join(format!("{number}.toml")), layout).expect("a file");
-        text += &format!("[[station]]\nlayout = \"{number}.toml\"\n");
+        writeln!(text, "[[station]]\nlayout = \"{number}.toml\"").expect("a string");
     }
     fs::write(folder.join("line.toml"), text).expect("a file");
     let (line, made) =
