@@ -24,6 +24,7 @@ fn the_edges_are_those_that_are_proved() {
     let between = headline.rows.iter().filter(|row| (500..700).contains(&row.length_ms));
     for row in between {
         assert!(row.shortened.share() < 0.1 && row.conventional.share() > 0.9, "{row:?}");
+        assert!(row.conventional.alone >= 50, "who brakes alone is not counted: {row:?}");
     }
     // The picture and its data are what is measured today.
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
