@@ -14,8 +14,19 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the programs are compiled from.
-const FOLDERS: [&str; 10] =
-    ["arithmetic", "evidence", "kernel", "layout", "layouts", "models", "oracle", "proofs", "tests", "waveform"];
+const FOLDERS: [&str; 11] = [
+    "arithmetic",
+    "evidence",
+    "kernel",
+    "layout",
+    "layouts",
+    "models",
+    "oracle",
+    "proofs",
+    "simulation",
+    "tests",
+    "waveform",
+];
 
 /// The names of the mutants to select, with commas.
 const VARIABLE: &str = "ATC_OLD_RULES";
@@ -180,8 +191,8 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
     // As the tests are built, as in ci/evidence: what others have written is there already.
     cargo.args(["--workspace", "--test", "contracts"]);
     cargo.arg("--target-dir").arg(root.join("target"));
-    // Nothing here runs the waveforms, and the hunts are short: optimised, these take a minute to compile.
-    for (package, level) in [("atc-waveform", 0), ("atc-tests", 1)] {
+    // Nothing here runs the waveforms or the simulation, and the hunts are short: optimised, these take a minute to compile.
+    for (package, level) in [("atc-waveform", 0), ("atc-simulation", 0), ("atc-tests", 1)] {
         cargo.arg("--config").arg(format!("profile.{profile}.package.{package}.opt-level={level}"));
     }
     for program in programs {
