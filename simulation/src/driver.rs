@@ -27,8 +27,10 @@ pub fn drive(dynamics: &Dynamics, sight: Sight) -> f64 {
     let aim = aim.min(to_stop);
     if sight.speed < aim - 0.3 {
         dynamics.acceleration
+    } else if sight.speed > aim + 1.0 {
+        -dynamics.service.max(COMFORTABLE)
     } else if sight.speed > aim {
-        -COMFORTABLE.max(if sight.speed > aim + 1.0 { dynamics.service } else { COMFORTABLE })
+        -COMFORTABLE
     } else {
         0.0
     }

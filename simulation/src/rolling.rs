@@ -1,5 +1,6 @@
 //! A train at work: what it hears, what its device makes of it, and how it moves.
 
+use atc_kernel::interlocking::CircuitSet;
 use atc_kernel::speed::RawKmhTenths;
 use atc_kernel::supervision::Brake;
 use atc_kernel::train::Cab;
@@ -140,7 +141,7 @@ impl World<'_> {
         train.told_ms[circuit] = now;
         if let Some((station, movement)) = told {
             for (local, circuit) in track.sites[station].circuits.iter().enumerate() {
-                if movement.hold.meets(atc_kernel::interlocking::CircuitSet::nth(local)) {
+                if movement.hold.meets(CircuitSet::nth(local)) {
                     train.told_ms[*circuit] = now;
                 }
             }

@@ -1,6 +1,6 @@
 //! Everything together, a cycle at a time: the ground's devices every `cycle_ms`, the trains' every `train_cycle_ms`.
 
-use atc_kernel::interlocking::{CircuitSet, Position, Positions, RouteSet};
+use atc_kernel::interlocking::{CircuitSet, Positions, RouteSet, SegmentSet};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -327,7 +327,7 @@ impl<'a> World<'a> {
                 let delay = delays.find(|fault| fault.which % stations == receiver).map(|fault| fault.much);
                 drop(delays);
                 let permits = self.stations[sender].reply.permits;
-                let given = permits.meets(atc_kernel::interlocking::SegmentSet::nth(joined.segments[from]));
+                let given = permits.meets(SegmentSet::nth(joined.segments[from]));
                 if !lost {
                     let now = self.now_ms;
                     self.stations[receiver].post(now, u64::from(delay.unwrap_or(0)), joined.segments[to], given);
@@ -343,11 +343,6 @@ impl<'a> World<'a> {
         if let Some(train) = self.trains.iter().position(on) {
             self.tell(What::MovedUnder { train, point: track.points[point].name.clone() });
         }
-    }
-
-    /// The position of a point as a word.
-    pub fn position(&self, point: usize) -> Option<Position> {
-        self.points[point].lie().map(|reverse| if reverse { Position::Reverse } else { Position::Normal })
     }
 }
 
