@@ -67,12 +67,12 @@ pub const TARGETS: &[Target] = &[
     target("position-samples", "position", "Nor is one whose levels were measured from samples, with noise."),
     target(
         line::SAFE,
-        "train",
+        "code",
         "Nothing unsafe happens on the simulated line, however long the cab signal is interrupted.",
     ),
     target(
         line::ALONE,
-        "train",
+        "code",
         "A device with the shortened operate time never brakes where the conventional one, that hears the same, does not.",
     ),
 ];
