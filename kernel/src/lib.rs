@@ -16,6 +16,7 @@
 //! | [`pattern`] | the braking pattern | JP4845985B2 |
 //! | [`permitted`] | the permitted speed from codes and telegrams | JP4845985B2 |
 //! | [`position`] | the train's position from a level difference | JP4045174B2 |
+//! | [`train`] | the on-board device: all of these in one step, from the antennas to the brake | JP4845985B2, JP3886280B2 |
 //! | [`interlocking`] | routes, points, signals and the telegrams of every track circuit | JP4290933B2 |
 //! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
 //! | [`time`], [`speed`], [`distance`] | the units that all of them share | |
@@ -45,6 +46,7 @@ pub mod speed;
 pub mod supervision;
 pub mod telegram;
 pub mod time;
+pub mod train;
 
 /// A pure, total state machine. The machine itself is its (checked) parameters.
 pub trait Machine {

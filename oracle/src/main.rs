@@ -3,6 +3,7 @@
 mod conformance;
 mod layout;
 mod line;
+mod simulate;
 
 use std::fmt;
 use std::fs;
@@ -53,6 +54,8 @@ enum Command {
         #[arg(value_enum, default_value = "protocol")]
         of: SchemaOf,
     },
+    /// Runs a line with trains under the kernel's devices, judged by the truth and not by the devices; exit code 1 if it is unsafe
+    Simulate(simulate::SimulateArgs),
     /// Prints what a shell needs to complete the commands
     Completions {
         /// The shell
@@ -170,6 +173,7 @@ fn main() -> ExitCode {
             SchemaOf::Report => atc_oracle::conform::report::schema(),
             SchemaOf::Vector => atc_oracle::conform::vectors::schema(),
         }),
+        Command::Simulate(args) => simulate(&args),
         Command::Completions { shell } => completions(shell),
     };
     match result {
@@ -245,6 +249,19 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
         // Only a configuration that was named can be wrong.
         SignalError::Config(reason) => Err(Failure::Config(path.unwrap_or(Path::new("-")).to_owned(), reason)),
     })
+}
+
+fn simulate(args: &simulate::SimulateArgs) -> Result<(), Failure> {
+    let done = simulate::run(args).map_err(Failure::Signal)?;
+    if let Some(folder) = &args.output {
+        fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.clone(), error))?;
+        for (name, text) in &done.files {
+            write(&folder.join(name), text)?;
+        }
+    }
+    print(&done.text)?;
+    remark(&done.remarks);
+    if done.is_unsafe { Err(Failure::Differs) } else { Ok(()) }
 }
 
 fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {

@@ -75,6 +75,8 @@ pub enum Scale {
 pub enum Legend {
     /// In the upper right corner.
     UpperRight,
+    /// In the upper left corner.
+    UpperLeft,
     /// In the lower left corner.
     LowerLeft,
     /// There is none.
@@ -217,6 +219,7 @@ impl Chart {
         }
         let position = match self.legend {
             Legend::UpperRight => SeriesLabelPosition::UpperRight,
+            Legend::UpperLeft => SeriesLabelPosition::UpperLeft,
             Legend::LowerLeft => SeriesLabelPosition::LowerLeft,
             Legend::None => return Ok(()),
         };

@@ -10,9 +10,9 @@ use maud::{Markup, PreEscaped, html};
 pub fn render(case: &Case) -> Markup {
     let measured = &case.measurements;
     html! {
-        h3 #measured { "4.14 The signal and the position, measured" }
+        h3 #measured { "4.14 The signal, the position and the line, measured" }
         p { "The waveform package sends telegrams and codes through a simulated channel and rail, and hears them with receivers in \
-             floating point, outside the kernel. " strong { "Figures are measured, and nothing here is proved." }
+             floating point, outside the kernel. The simulation runs trains on a line under the kernel's devices, and interrupts their cab signal. " strong { "Figures are measured, and nothing here is proved." }
              " A target that is missed fails; a figure without one is shown only, and so is every time. They discharge no "
              a href="#conditions" { "condition" } ": a device's receivers are for their manufacturer." }
         (targets(case))

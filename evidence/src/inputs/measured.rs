@@ -1,9 +1,10 @@
-//! What the waveform package measures: run, read, and judged against the targets that the argument names.
+//! What the waveform package measures, and the headline of the simulation: run, read, and judged against the targets that the argument names.
 //!
 //! Figures are measured and never proved. Those without a target are shown only; no target is a time.
 
 mod bench;
 mod figures;
+mod line;
 
 pub use bench::Bench;
 pub use figures::{SPEED, shown};
@@ -11,6 +12,7 @@ pub use figures::{SPEED, shown};
 use super::cargo;
 use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
 use crate::verdict::Verdict;
+use atc_simulation::headline::Headline;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::path::Path;
@@ -19,7 +21,7 @@ use std::time::{Duration, Instant};
 
 /// The waveform package, as an engine.
 pub const ENGINE: &str = "waveform";
-const WHAT: &str = "generator, channel, receivers and the track as a line, in floating point, outside the kernel";
+const WHAT: &str = "generator, channel, receivers, the track as a line, and a line with trains in motion, in floating point, outside the kernel";
 const COMMAND: &str = "cargo run -p atc-waveform --bin waveform -- bench --quick --out FOLDER";
 
 /// The source of a run that was started here, on these sources.
@@ -63,6 +65,16 @@ pub const TARGETS: &[Target] = &[
     ),
     target("position-inside", "position", "Inside the limits of its table no interval is without the train."),
     target("position-samples", "position", "Nor is one whose levels were measured from samples, with noise."),
+    target(
+        line::SAFE,
+        "code",
+        "Nothing unsafe happens on the simulated line, however long the cab signal is interrupted.",
+    ),
+    target(
+        line::ALONE,
+        "code",
+        "A device with the shortened operate time never brakes where the conventional one, that hears the same, does not.",
+    ),
 ];
 
 /// The evidence id of a target.
@@ -86,6 +98,9 @@ pub enum Run {
 pub struct Ran {
     /// Its figures.
     pub bench: Bench,
+    /// What the shortened operate time buys on a simulated line; nothing if that was not measured.
+    #[serde(default)]
+    pub headline: Option<Headline>,
     /// Its plots: name and drawing.
     pub plots: Vec<(String, String)>,
     /// [`HERE`], or the folder.
@@ -131,7 +146,7 @@ pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -
             let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
             Run::Failed(format!("the measurement ended with an error: {last}"))
         }
-        Ok(Some(_)) => match read(folder, HERE) {
+        Ok(Some(_)) => match line::measure(folder).map_or_else(Run::Failed, |()| read(folder, HERE)) {
             Run::Ran(ran) => Run::Ran(Box::new(Ran { seconds: start.elapsed().as_secs_f64(), ..*ran })),
             other => other,
         },
@@ -149,6 +164,10 @@ pub fn read(folder: &Path, source: &str) -> Run {
         Ok(bench) => bench,
         Err(error) => return Run::Failed(format!("bench.json is not what `waveform bench` writes: {error}")),
     };
+    let headline = match line::read(folder) {
+        Ok(headline) => headline,
+        Err(error) => return Run::Failed(error),
+    };
     let mut plots = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -161,14 +180,14 @@ pub fn read(folder: &Path, source: &str) -> Run {
         }
     }
     plots.sort();
-    Run::Ran(Box::new(Ran { bench, plots, source: source.to_owned(), seconds: 0.0 }))
+    Run::Ran(Box::new(Ran { bench, headline, plots, source: source.to_owned(), seconds: 0.0 }))
 }
 
 /// Leaves nothing of the raw results but the figures and the log: the plots are in the case.
 pub fn tidy(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
-        let keep = ["bench.json", "bench.log"].iter().any(|name| path.ends_with(name));
+        let keep = ["bench.json", "bench.log", line::FILE].iter().any(|name| path.ends_with(name));
         if !keep {
             // What stays is in the way of nobody.
             let _ = fs::remove_file(&path);
@@ -186,9 +205,19 @@ pub fn evidence(run: &Run) -> (Vec<Evidence>, Measurements) {
         Run::NotRun(why) => bare(Verdict::NotRun, why),
         Run::Failed(why) => bare(Verdict::Undecided, why),
         Run::Ran(ran) => {
-            let figures = figures::all(&ran.bench);
+            let mut figures = figures::all(&ran.bench);
+            figures.extend(ran.headline.as_ref().map(line::figures).unwrap_or_default());
             let judged = TARGETS.iter().map(|target| {
-                let (verdict, detail, reason) = judge(target, &figures, &ran.bench);
+                let (verdict, detail, reason) = match (line::is_of(target), &ran.headline) {
+                    (true, None) => (Verdict::NotRun, String::new(), Some("the line was not measured".to_owned())),
+                    (true, Some(headline)) => {
+                        judge(target, &figures, &|_| line::contradiction(headline), &|_| line::vacuous(headline))
+                    }
+                    (false, _) => {
+                        let bench = &ran.bench;
+                        judge(target, &figures, &|name| bench.contradiction(name), &|name| bench.vacuous(name))
+                    }
+                };
                 one(target, verdict, detail, reason)
             });
             let evidence = judged.collect();
@@ -210,7 +239,12 @@ pub fn evidence(run: &Run) -> (Vec<Evidence>, Measurements) {
 }
 
 /// A target is met if each of its figures is there and not above it, and the run looked at something.
-fn judge(target: &Target, figures: &[Figure], bench: &Bench) -> (Verdict, String, Option<String>) {
+fn judge(
+    target: &Target,
+    figures: &[Figure],
+    contradiction: &dyn Fn(&str) -> Option<String>,
+    vacuous: &dyn Fn(&str) -> Option<String>,
+) -> (Verdict, String, Option<String>) {
     let id = id(target.name);
     let mine: Vec<_> = figures.iter().filter(|figure| figure.evidence.as_deref() == Some(&id)).collect();
     let detail: Vec<_> =
@@ -219,10 +253,10 @@ fn judge(target: &Target, figures: &[Figure], bench: &Bench) -> (Verdict, String
     if mine.is_empty() {
         return (Verdict::Vacuous, detail, Some("no figure belongs to this target".to_owned()));
     }
-    if let Some(why) = bench.contradiction(target.name) {
+    if let Some(why) = contradiction(target.name) {
         return (Verdict::Undecided, detail, Some(why));
     }
-    if let Some(why) = bench.vacuous(target.name) {
+    if let Some(why) = vacuous(target.name) {
         return (Verdict::Vacuous, detail, Some(why));
     }
     for figure in mine {

@@ -42,10 +42,33 @@ fn good() -> Value {
     })
 }
 
+/// What was measured of the line, with every target met.
+fn line() -> Value {
+    let one = |needless: u32| {
+        json!({ "interruptions": 70, "needless": needless, "alone": 0, "delay_s": 1.0, "stop_m": 74.0,
+        "pattern_m": 59.0, "train_m": 80.0, "unsafe_events": 0 })
+    };
+    json!({
+        "extent": { "trains": 3, "seconds": 900, "every_s": 12, "longest_ms": 700, "step_ms": 200, "seed": 1 },
+        "rows": [
+            { "length_ms": 500, "shortened": one(1), "conventional": one(70) },
+            { "length_ms": 700, "shortened": one(70), "conventional": one(69) },
+        ]
+    })
+}
+
+/// A good run but for the line; `Value::Null` if that was not measured.
+fn with_line(line: &Value) -> Run {
+    let Run::Ran(mut ran) = ran(&good()) else { panic!("a run") };
+    ran.headline = serde_json::from_value(line.clone()).expect("a headline");
+    Run::Ran(ran)
+}
+
 fn ran(bench: &Value) -> Run {
     let bench: Bench = serde_json::from_value(bench.clone()).expect("a run");
+    let headline = serde_json::from_value(line()).expect("a headline");
     let plots = vec![("bit-errors".to_owned(), "<?xml version=\"1.0\"?>\n<svg>curve</svg>\n".to_owned())];
-    Run::Ran(Box::new(Ran { bench, plots, source: "run here".to_owned(), seconds: 1.0 }))
+    Run::Ran(Box::new(Ran { bench, headline, plots, source: "run here".to_owned(), seconds: 1.0 }))
 }
 
 /// The verdict of a target after a change at a JSON pointer.
@@ -75,7 +98,7 @@ fn a_good_run_meets_every_target_and_is_called_measured() {
     assert_eq!(measured.plots[0].svg, "<svg>curve</svg>");
     let engine = engine(&all, &measured);
     assert_eq!((engine.name.as_str(), engine.verdict), ("waveform", Verdict::Measured));
-    assert!(engine.summary.contains("9 of 9 targets met"), "{}", engine.summary);
+    assert!(engine.summary.contains("11 of 11 targets met"), "{}", engine.summary);
 }
 
 #[test]
@@ -101,6 +124,27 @@ fn every_target_can_be_missed() {
         let one = all.iter().find(|one| one.title == target).expect("a target");
         assert_eq!(one.verdict, Verdict::Failed, "{target}");
     }
+}
+
+#[test]
+fn what_is_measured_of_the_line_can_be_missed_vacuous_or_not_run() {
+    let verdicts = |line: &Value| {
+        let (all, _) = evidence(&with_line(line));
+        ["line-safe", "line-needless"].map(|name| all.iter().find(|one| one.title == name).expect("a target").verdict)
+    };
+    let changed = |at: &str, to: Value| {
+        let mut line = line();
+        *line.pointer_mut(at).unwrap_or_else(|| panic!("{at} is not there")) = to;
+        verdicts(&line)
+    };
+    assert_eq!(verdicts(&line()), [Verdict::Measured; 2]);
+    assert_eq!(changed("/rows/0/shortened/unsafe_events", json!(1)), [Verdict::Failed, Verdict::Measured]);
+    assert_eq!(changed("/rows/1/conventional/unsafe_events", json!(1)), [Verdict::Failed, Verdict::Measured]);
+    assert_eq!(changed("/rows/1/shortened/alone", json!(1)), [Verdict::Measured, Verdict::Failed]);
+    assert_eq!(changed("/rows/1/shortened/interruptions", json!(69)), [Verdict::Undecided; 2]);
+    assert_eq!(changed("/rows/0/shortened/interruptions", json!(19)), [Verdict::Vacuous; 2]);
+    assert_eq!(changed("/rows", json!([])), [Verdict::Vacuous; 2]);
+    assert_eq!(verdicts(&Value::Null), [Verdict::NotRun; 2]);
 }
 
 #[test]

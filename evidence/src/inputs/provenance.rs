@@ -9,8 +9,20 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The folders whose contents are evidence or produce it, each with its own hash.
-pub const FOLDERS: &[&str] =
-    &["arithmetic", "kernel", "layout", "line", "proofs", "models", "oracle", "waveform", "tests", "spec", "evidence"];
+pub const FOLDERS: &[&str] = &[
+    "arithmetic",
+    "kernel",
+    "layout",
+    "line",
+    "proofs",
+    "models",
+    "oracle",
+    "waveform",
+    "simulation",
+    "tests",
+    "spec",
+    "evidence",
+];
 
 /// The SHA-256 of the contents of a folder, file names and sizes included; build output and hidden files excluded.
 ///

@@ -66,6 +66,9 @@ impl Moved {
     /// Not at all.
     pub const STANDING: Self = Self { least: 0, most: 0 };
 
+    /// Anything that can be said: up to 32.7 m either way. What an odometer says that says nothing.
+    pub const ANY: Self = Self { least: i16::MIN, most: i16::MAX };
+
     /// From `least` to `most` millimetres; `None` if they are the wrong way round.
     pub const fn new(least: i16, most: i16) -> Option<Self> {
         if least > most { None } else { Some(Self { least, most }) }

@@ -76,11 +76,11 @@ fn raised(exponent: f64) -> String {
     format!("{exponent:.0}").chars().map(digit).collect()
 }
 
-fn figure(group: &str, name: String, value: Option<f64>, unit: &str, of: String) -> Figure {
+pub(super) fn figure(group: &str, name: String, value: Option<f64>, unit: &str, of: String) -> Figure {
     Figure { group: group.to_owned(), name, value, unit: unit.to_owned(), of, ..Figure::default() }
 }
 
-fn aimed(figure: Figure, at_most: f64, target: &str) -> Figure {
+pub(super) fn aimed(figure: Figure, at_most: f64, target: &str) -> Figure {
     Figure { at_most: Some(at_most), evidence: Some(id(target)), ..figure }
 }
 
@@ -269,6 +269,10 @@ pub fn caption(name: &str) -> String {
         "position-run-a" => "A train through a section, one transmitter and two frequencies: interval and truth.",
         "position-run-b" => "The same with two transmitters ahead.",
         "position-run-c" => "The same with one transmitter ahead and one behind.",
+        "shortened-operate" => {
+            "A line with trains in motion: interruptions that brake a train needlessly, delay and margin against their length, \
+             with the shortened operate time and without."
+        }
         "position-run-from-samples" => "The same with levels measured from samples with noise.",
         other => other,
     };

@@ -1,0 +1,207 @@
+//! `oracle simulate`: a line with trains, one run or a campaign of them, and the headline.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use atc_simulation::campaign::{self, Campaign};
+use atc_simulation::fault::{Extent, Fault, Kind};
+use atc_simulation::headline;
+use atc_simulation::line::Line;
+use atc_simulation::onboard::Operate;
+use atc_simulation::record::Record;
+use atc_simulation::world::{Setting, World};
+use atc_simulation::{charts, diagram};
+use clap::{Args, ValueEnum};
+
+#[derive(Args)]
+#[command(after_help = "A line file names its stations from west to east, or has them made:\n\n  \
+    name = \"My line\"\n  [[station]]\n  layout = \"west.toml\"        # a layout file, beside this one\n  [[station]]\n  layout = \"east.toml\"\n\n  \
+    [generated]                 # in place of [[station]]\n  tracks = [2, 2, 2]\n  blocks = [4, 4]\n\n\
+    Faults: interruption, misread-code, false-occupancy, shunt-loss, missed-detection, late-point, lost-telegram, \
+    delayed-telegram, repeated-code, restart-station, restart-train.")]
+pub struct SimulateArgs {
+    /// The line: stations and trains (TOML)
+    #[arg(required_unless_present = "headline", value_name = "LINE.toml")]
+    file: Option<PathBuf>,
+    /// What chance depends on; a run is the same every time for one seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How long a run is, in seconds of the line [default: 1800; in a campaign 600]
+    #[arg(long)]
+    time: Option<u32>,
+    /// How many trains there are [default: as the file says]
+    #[arg(long)]
+    trains: Option<usize>,
+    /// What fails, each once at a random time; in a campaign each run has one of them [default there: everything]
+    #[arg(long, value_delimiter = ',', value_parser = kind, value_name = "FAULT,…")]
+    faults: Vec<Kind>,
+    /// Faults last far longer than the conditions allow
+    #[arg(long)]
+    beyond: bool,
+    /// The trains' device
+    #[arg(long, value_enum, default_value = "shortened")]
+    device: Device,
+    /// An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
+    #[arg(long)]
+    clears_at_once: bool,
+    /// The train of the speed profile
+    #[arg(long, default_value_t = 0, value_name = "TRAIN")]
+    profile: usize,
+    /// Runs so many times with one fault each, and tells in how many runs something unsafe happened
+    #[arg(long, value_name = "RUNS")]
+    campaign: Option<u64>,
+    /// How many faults each run of a campaign has, all of one kind
+    #[arg(long, default_value_t = 1, requires = "campaign", value_name = "FAULTS")]
+    each: usize,
+    /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
+    #[arg(long, conflicts_with = "campaign")]
+    headline: bool,
+    /// Where events (JSON lines), pictures (SVG) and figures go [default: the events to standard output]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Device {
+    /// With the shortened operate time
+    Shortened,
+    /// Without it
+    Conventional,
+}
+
+fn kind(name: &str) -> Result<Kind, String> {
+    let known = || Kind::ALL.map(Kind::name).join(", ");
+    Kind::named(name).ok_or_else(|| format!("there is no such fault; there are {}", known()))
+}
+
+/// What came of the command.
+#[derive(Default)]
+pub struct Done {
+    /// Files for the folder.
+    pub files: Vec<(&'static str, String)>,
+    /// What goes to standard output.
+    pub text: String,
+    /// What is said beside it.
+    pub remarks: String,
+    /// Whether something unsafe happened.
+    pub is_unsafe: bool,
+}
+
+/// Runs what is asked for.
+pub fn run(args: &SimulateArgs) -> Result<Done, String> {
+    if args.headline {
+        return measure(args);
+    }
+    let file = args.file.as_ref().ok_or("a line file is needed")?;
+    let mut line = Line::read(file)?;
+    line.clears_at_once = args.clears_at_once;
+    let trains = args.trains.or(line.number_of_trains).unwrap_or_else(|| line.room().saturating_sub(1));
+    match args.campaign {
+        Some(runs) => many(args, &line, (trains, runs)),
+        None => one(args, &line, trains),
+    }
+}
+
+const fn extent(args: &SimulateArgs) -> Extent {
+    if args.beyond { Extent::Beyond } else { Extent::Tolerated }
+}
+
+fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> {
+    let seconds = args.time.unwrap_or(1_800);
+    let mut faults = Vec::new();
+    for (number, kind) in args.faults.iter().enumerate() {
+        let window = (60_000.0_f64.min(f64::from(seconds) * 500.0), f64::from(seconds) * 1000.0);
+        faults.push(Fault::drawn(*kind, extent(args), line, window, args.seed + number as u64));
+    }
+    let operate = match args.device {
+        Device::Shortened => Operate::Shortened,
+        Device::Conventional => Operate::Conventional,
+    };
+    if args.profile >= trains {
+        return Err(format!("--profile {}: the trains are 0 to {}", args.profile, trains.saturating_sub(1)));
+    }
+    let setting = Setting { operate, trains, seed: args.seed, faults, compared: false };
+    let mut world = World::new(line, setting)?;
+    let start = Instant::now();
+    let record = Record::of(&mut world, u64::from(seconds) * 1000, 1_000);
+    let took = start.elapsed().as_secs_f64();
+    let mut events = String::new();
+    for event in &world.events {
+        events += &serde_json::to_string(event).map_err(|error| error.to_string())?;
+        events.push('\n');
+    }
+    let mut done = Done { is_unsafe: world.is_unsafe, ..Done::default() };
+    let ran = f64::from(u32::try_from(world.now_ms).unwrap_or(u32::MAX)) / 1000.0;
+    let circuits = line.track.circuits.len();
+    let _ = writeln!(
+        done.remarks,
+        "{}: {} stations, {circuits} circuits, {trains} trains; {ran:.0} s in {took:.1} s, {:.0} times real time",
+        line.name,
+        line.stations.len(),
+        ran / took.max(1e-9)
+    );
+    if let Some(event) = world.events.iter().find(|event| event.what.is_unsafe()) {
+        let event = serde_json::to_string(event).map_err(|error| error.to_string())?;
+        let _ = writeln!(done.remarks, "UNSAFE: {event}");
+    }
+    if args.output.is_none() {
+        done.text = events;
+        return Ok(done);
+    }
+    let profile = charts::profile(&record, args.profile, &format!("Train {}", args.profile))
+        .map_err(|error| error.to_string())?;
+    done.files = vec![
+        ("events.jsonl", events),
+        ("diagram.svg", diagram::draw(line, &record, &line.name)),
+        ("profile.svg", profile),
+    ];
+    Ok(done)
+}
+
+fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Result<Done, String> {
+    let kinds = if args.faults.is_empty() { Kind::ALL.to_vec() } else { args.faults.clone() };
+    let campaign = Campaign {
+        runs,
+        kinds,
+        extent: extent(args),
+        faults: args.each,
+        trains,
+        seconds: args.time.unwrap_or(600),
+        seed: args.seed,
+    };
+    let outcomes = campaign::run(line, &campaign, &|_| ())?;
+    let mut done = Done::default();
+    let _ = writeln!(done.text, "{:<18} {:>7} {:>7} {:>9}  first unsafe run", "fault", "runs", "unsafe", "arrivals");
+    for (kind, outcome) in &outcomes {
+        let first = match &outcome.first {
+            Some((seed, event)) => {
+                format!("seed {seed}: {}", serde_json::to_string(event).map_err(|error| error.to_string())?)
+            }
+            None => String::new(),
+        };
+        let row = format!(
+            "{:<18} {:>7} {:>7} {:>9}  {first}",
+            kind.name(),
+            outcome.runs,
+            outcome.unsafe_runs,
+            outcome.arrivals
+        );
+        let _ = writeln!(done.text, "{}", row.trim_end());
+        done.is_unsafe |= outcome.unsafe_runs > 0;
+    }
+    let json = serde_json::to_string_pretty(&outcomes).map_err(|error| error.to_string())?;
+    done.files = vec![("campaign.json", json + "\n")];
+    Ok(done)
+}
+
+fn measure(args: &SimulateArgs) -> Result<Done, String> {
+    let mut extent = headline::Extent { seed: args.seed, ..headline::Extent::default() };
+    extent.seconds = args.time.unwrap_or(extent.seconds);
+    extent.trains = args.trains.unwrap_or(extent.trains);
+    let measured = headline::measure(&extent)?;
+    let svg = charts::headline(&measured).map_err(|error| error.to_string())?;
+    let is_unsafe = measured.unsafe_events() > 0;
+    let files = vec![("shortened-operate.csv", measured.csv()), ("shortened-operate.svg", svg)];
+    Ok(Done { files, text: measured.csv(), is_unsafe, ..Done::default() })
+}

@@ -1,0 +1,218 @@
+//! The ground's devices: the kernel's [`Combined`] of every station, the points that they drive, and the telegrams between them.
+
+use std::collections::VecDeque;
+
+use atc_kernel::Machine as _;
+use atc_kernel::interlocking::{
+    CircuitSet, Combined, Heading, Input, Layout, MAX_CIRCUITS, Memory, Movement, Orders, PointSet, Positions, Refusal,
+    Request, RouteSet, SegmentSet,
+};
+
+use crate::motion::Lie;
+use crate::track::Track;
+
+/// What a station's device puts out in one cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Reply {
+    /// The signals at proceed, by route.
+    pub proceed: RouteSet,
+    /// The points that are driven.
+    pub drives: Positions,
+    /// The segments where the neighbour may send.
+    pub permits: SegmentSet,
+    /// What became of the request.
+    pub answer: Option<Result<(), Refusal>>,
+    /// The telegram of each circuit.
+    pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+}
+
+/// A device of any size.
+pub trait Device: Send {
+    /// One cycle.
+    fn step(&mut self, input: Input) -> Reply;
+    /// Starts it anew.
+    fn restart(&mut self);
+}
+
+/// The kernel's device for one layout.
+pub struct Held<const R: usize, const P: usize, const N: usize, const S: usize> {
+    layout: Box<Layout<R, P, N, S>>,
+    memory: Memory<R, S>,
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Held<R, P, N, S> {
+    /// The device, just started.
+    pub const fn new(layout: Box<Layout<R, P, N, S>>) -> Self {
+        Self { layout, memory: Memory::INITIAL }
+    }
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Held<R, P, N, S> {
+    fn step(&mut self, input: Input) -> Reply {
+        let (memory, commands) = Combined(&self.layout).step(self.memory, input);
+        self.memory = memory;
+        let output = commands.interlocking;
+        Reply {
+            proceed: output.proceed,
+            drives: output.drives,
+            permits: output.permits,
+            answer: output.answer,
+            telegrams: commands.telegrams,
+        }
+    }
+
+    fn restart(&mut self) {
+        self.memory = Memory::INITIAL;
+    }
+}
+
+/// A point as it lies.
+#[derive(Clone, Copy, Debug)]
+pub struct PointState {
+    /// Whether it stands, or last stood, in reverse.
+    pub reverse: bool,
+    /// How long it still moves, in ms.
+    pub moves_ms: Option<u32>,
+    /// The time of its stroke, in ms.
+    pub stroke_ms: u32,
+}
+
+impl PointState {
+    /// How a train finds it.
+    pub fn lie(&self) -> Lie {
+        if self.moves_ms.is_some() { None } else { Some(self.reverse) }
+    }
+}
+
+/// The last telegram from a neighbour about one segment.
+#[derive(Clone, Copy, Debug, Default)]
+struct Consent {
+    sent_ms: u64,
+    received_ms: u64,
+    given: bool,
+}
+
+/// A telegram on its way to a station.
+#[derive(Clone, Copy, Debug)]
+struct Message {
+    arrives_ms: u64,
+    sent_ms: u64,
+    segment: usize,
+    given: bool,
+}
+
+/// A station at work.
+pub struct Station {
+    device: Box<dyn Device>,
+    /// What is sent in the circuits now.
+    pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+    /// What the device said last.
+    pub reply: Reply,
+    consents: Vec<Consent>,
+    inbox: VecDeque<Message>,
+    unblocked: bool,
+}
+
+impl Station {
+    /// A station whose device has just started, with so many segments.
+    pub fn new(device: Box<dyn Device>, segments: usize) -> Self {
+        let reply = Reply {
+            proceed: RouteSet::EMPTY,
+            drives: Positions::NONE,
+            permits: SegmentSet::EMPTY,
+            answer: None,
+            telegrams: [None; MAX_CIRCUITS],
+        };
+        let consents = vec![Consent::default(); segments];
+        Self { device, telegrams: [None; MAX_CIRCUITS], reply, consents, inbox: VecDeque::new(), unblocked: false }
+    }
+
+    /// Starts the device anew: it forgets what it knew, and staff unblock the circuits again.
+    pub fn restart(&mut self) {
+        self.device.restart();
+        self.unblocked = false;
+        self.consents.fill(Consent::default());
+    }
+
+    /// Puts a telegram of the neighbour on its way: whether trains may be sent into `segment`.
+    pub fn post(&mut self, now_ms: u64, delay_ms: u64, segment: usize, given: bool) {
+        self.inbox.push_back(Message { arrives_ms: now_ms + delay_ms, sent_ms: now_ms + 1, segment, given });
+    }
+
+    /// One cycle at `now_ms`: what was said in the cycle before goes into the rails, but for the circuits in `stuck`.
+    pub fn cycle(
+        &mut self,
+        (now_ms, life_ms): (u64, u64),
+        (occupied, detected): (CircuitSet, Positions),
+        request: Option<Request>,
+        stuck: CircuitSet,
+    ) {
+        for (number, telegram) in self.reply.telegrams.iter().enumerate() {
+            if !stuck.meets(CircuitSet::nth(number)) {
+                self.telegrams[number] = *telegram;
+            }
+        }
+        while self.inbox.front().is_some_and(|message| message.arrives_ms <= now_ms) {
+            let Some(message) = self.inbox.pop_front() else { break };
+            let consent = &mut self.consents[message.segment];
+            // A telegram that was sent before the last one is no news.
+            if message.sent_ms > consent.sent_ms {
+                *consent = Consent { sent_ms: message.sent_ms, received_ms: now_ms, given: message.given };
+            }
+        }
+        let mut consent = SegmentSet::EMPTY;
+        for (number, last) in self.consents.iter().enumerate() {
+            consent = consent.or(SegmentSet::nth(number).only_if(last.given && now_ms - last.received_ms <= life_ms));
+        }
+        let mut orders = Orders::default();
+        if !self.unblocked {
+            orders.unblock = CircuitSet::ALL;
+            orders.lift = CircuitSet::ALL;
+            self.unblocked = true;
+        }
+        self.reply = self.device.step(Input { occupied, detected, request, orders, consent });
+    }
+
+    /// The code that a train hears whose front is in the circuit of this number and faces so; and what it is told.
+    pub fn code(&self, number: usize, faces: Option<Heading>) -> (Option<u8>, Option<Movement>) {
+        match self.telegrams[number] {
+            Some(movement) if movement.heading.is_none() => (Some(0), Some(movement)),
+            // The code of a telegram comes from the end towards which it is for: the train's own axles keep it from the other end.
+            Some(movement) if movement.heading == faces => (Some(movement.speed.0), Some(movement)),
+            _ => (None, None),
+        }
+    }
+}
+
+/// Drives the points of a station for one cycle; `began` hears of each that begins to move. `late_ms` is added to strokes.
+pub fn drive(
+    track: &Track,
+    site: usize,
+    points: &mut [PointState],
+    drives: Positions,
+    (cycle_ms, late_ms): (u32, &dyn Fn(usize) -> u32),
+    began: &mut dyn FnMut(usize),
+) -> Positions {
+    let mut detected = Positions::NONE;
+    for (number, global) in track.sites[site].points.iter().enumerate() {
+        let it = PointSet::nth(number);
+        let state = &mut points[*global];
+        if let Some(left) = state.moves_ms {
+            state.moves_ms = left.checked_sub(cycle_ms).filter(|left| *left > 0);
+        }
+        let wanted = (drives.reverse.meets(it), drives.normal.meets(it));
+        if state.moves_ms.is_none()
+            && (wanted == (true, false) && !state.reverse || wanted == (false, true) && state.reverse)
+        {
+            state.reverse = !state.reverse;
+            state.moves_ms = Some(state.stroke_ms + late_ms(*global));
+            began(*global);
+        }
+        match state.lie() {
+            Some(true) => detected.reverse = detected.reverse.or(it),
+            Some(false) => detected.normal = detected.normal.or(it),
+            None => {}
+        }
+    }
+    detected
+}

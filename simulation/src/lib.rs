@@ -1,0 +1,40 @@
+//! A line with trains in continuous motion, under the kernel's own machines; floating point, outside the verified kernel.
+//!
+//! The ground is [`Combined`](atc_kernel::interlocking::Combined) for every station, the trains are
+//! [`Train`](atc_kernel::train::Train). What is true of trains and points is kept apart from all devices, and is what a run is judged
+//! by: trains that share ground, a train over a point that does not stand for it, a point that moves under a train, a train
+//! past the point where it had to stop.
+//!
+//! | module | part |
+//! |---|---|
+//! | [`line`], [`generate`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
+//! | [`motion`], [`driver`] | trains as bodies, and who drives them |
+//! | [`onboard`], [`ground`] | the kernel's devices |
+//! | [`dispatcher`] | who asks for routes and turns lines |
+//! | [`fault`] | what fails, when, for how long |
+//! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
+//! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
+//! | [`record`], [`diagram`], [`charts`] | pictures |
+//!
+//! A run is the same every time for one seed.
+
+#![forbid(unsafe_code)]
+
+pub mod campaign;
+pub mod charts;
+pub mod diagram;
+pub mod dispatcher;
+pub mod driver;
+pub mod event;
+pub mod fault;
+pub mod generate;
+pub mod ground;
+pub mod headline;
+mod judge;
+pub mod line;
+pub mod motion;
+pub mod onboard;
+pub mod record;
+pub mod rolling;
+pub mod track;
+pub mod world;

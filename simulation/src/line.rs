@@ -1,0 +1,399 @@
+//! A line: the stations in their order, read from a file or made by [`crate::generate`], and joined.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use atc_kernel::interlocking::{Heading, Layout};
+use atc_layout::{Compiled, Description, border};
+use serde::{Deserialize, Serialize};
+
+use crate::generate::Shape;
+use crate::ground::{Device, Held};
+use crate::motion::{Dynamics, Leg};
+use crate::track::{Link, Track, join};
+
+/// The form of a line file, in TOML.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct File {
+    /// The name of the line.
+    pub name: String,
+    /// The stations from west to east: the layout file of each, beside the line file.
+    #[serde(default, rename = "station")]
+    pub stations: Vec<StationFile>,
+    /// Or stations that are made: how many tracks each has, and how many blocks lie between them.
+    #[serde(default)]
+    pub generated: Option<Generated>,
+    /// How trains move.
+    #[serde(default)]
+    pub trains: Dynamics,
+    /// How many trains there are [default: as many as there is room for, less one].
+    #[serde(default)]
+    pub number_of_trains: Option<usize>,
+    /// The length of the logic cycle on board, in ms [default: 10].
+    #[serde(default)]
+    pub train_cycle_ms: Option<u32>,
+}
+
+/// A station of a line file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StationFile {
+    /// The layout file.
+    pub layout: String,
+}
+
+/// Stations that are made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Generated {
+    /// How many tracks each station has.
+    pub tracks: Vec<usize>,
+    /// How many blocks lie between one and the next.
+    pub blocks: Vec<usize>,
+}
+
+/// West or east: the direction of a train along the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bound {
+    /// Towards the first station.
+    West,
+    /// Towards the last station.
+    East,
+}
+
+impl Bound {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::West => Self::East,
+            Self::East => Self::West,
+        }
+    }
+
+    /// 0 for west, 1 for east.
+    pub const fn side(self) -> usize {
+        match self {
+            Self::West => 0,
+            Self::East => 1,
+        }
+    }
+}
+
+/// A track of a station where trains stop.
+#[derive(Clone, Debug)]
+pub struct Platform {
+    /// Its name, after the circuits.
+    pub name: String,
+    /// Its circuits on the ground, from west to east.
+    pub circuits: Vec<usize>,
+    /// Its pieces for a train to the east, from west to east.
+    pub legs: Vec<Leg>,
+    /// The route by which a train comes in from the west, and from the east.
+    pub arrive: [Option<usize>; 2],
+    /// The route by which a train leaves to the west, and to the east.
+    pub depart: [Option<usize>; 2],
+}
+
+/// A station.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Its name.
+    pub name: String,
+    /// Its layout.
+    pub description: Description,
+    /// The same, compiled.
+    pub compiled: Compiled,
+    /// Its tracks.
+    pub platforms: Vec<Platform>,
+    /// For each route the circuits of its path on the ground.
+    pub paths: Vec<Vec<usize>>,
+}
+
+/// A line.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Its name.
+    pub name: String,
+    /// The stations from west to east.
+    pub stations: Vec<Place>,
+    /// The lines between them.
+    pub links: Vec<Link>,
+    /// The ground.
+    pub track: Track,
+    /// How trains move.
+    pub dynamics: Dynamics,
+    /// How many trains the file asks for.
+    pub number_of_trains: Option<usize>,
+    /// The logic cycle of the stations.
+    pub cycle_ms: u32,
+    /// The logic cycle on board.
+    pub train_cycle_ms: u32,
+    /// The speed of each code in km/h; 0 where there is none.
+    pub speeds_kmh: Vec<u16>,
+    /// For how long the ground counts on telegrams.
+    pub telegram_age_ms: u32,
+    /// The longest loss of shunt that is tolerated.
+    pub shunt_loss_ms: u32,
+    /// For how long a train may run on after its authority was taken away.
+    pub residual_ms: u32,
+    /// An old rule, to see that a campaign finds it out: a circuit counts as clear at once when it is reported clear.
+    pub clears_at_once: bool,
+}
+
+impl Line {
+    /// The line of a file.
+    ///
+    /// # Errors
+    /// What is wrong, and in which file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let text = std::fs::read_to_string(path).map_err(|error| at(&format!("cannot be read: {error}")))?;
+        let file: File = toml::from_str(&text).map_err(|error| at(&error.to_string().trim_end()))?;
+        let mut layouts = Vec::new();
+        for station in &file.stations {
+            let path = path.parent().unwrap_or(Path::new("")).join(&station.layout);
+            layouts.push(atc_layout::read(&path).map_err(|errors| errors.to_string())?);
+        }
+        Self::of(&file, layouts).map_err(|error| at(&error))
+    }
+
+    /// A line of stations that are made.
+    ///
+    /// # Errors
+    /// What is wrong with the shape.
+    pub fn generate(name: &str, shape: &Shape) -> Result<Self, String> {
+        let generated = Generated { tracks: shape.tracks.clone(), blocks: shape.blocks.clone() };
+        Self::of(&File { name: name.to_owned(), generated: Some(generated), ..File::default() }, Vec::new())
+    }
+
+    fn of(file: &File, mut layouts: Vec<Description>) -> Result<Self, String> {
+        match (&file.generated, layouts.len()) {
+            (Some(_), 1..) => return Err("give [[station]] or [generated], not both".to_owned()),
+            (Some(generated), 0) => {
+                let shape = Shape { tracks: generated.tracks.clone(), blocks: generated.blocks.clone() };
+                if let Some(wrong) = shape.wrong() {
+                    return Err(wrong);
+                }
+                for (name, text) in shape.stations() {
+                    layouts.push(Description::from_toml(&name, &text).map_err(|errors| errors.to_string())?);
+                }
+            }
+            (None, 0 | 1) => return Err("a line has two stations or more: name each in [[station]]".to_owned()),
+            (None, _) => {}
+        }
+        let compiled: Vec<Compiled> = layouts
+            .iter()
+            .map(|layout| layout.compile().map_err(|errors| errors.to_string()))
+            .collect::<Result<_, _>>()?;
+        let pairs = pairs(&layouts, &compiled)?;
+        let models: Vec<_> = compiled.iter().map(|one| (one.names.station.as_str(), &one.model)).collect();
+        let (track, links) = join(&models, &pairs)?;
+        let first = &compiled[0].model.values;
+        for one in &compiled {
+            let values = &one.model.values;
+            if values.cycle_ms != first.cycle_ms || values.speeds_kmh != first.speeds_kmh {
+                let names = (&compiled[0].names.station, &one.names.station);
+                return Err(format!(
+                    "{} and {} differ in cycle_ms or in speeds_kmh: give both the same",
+                    names.0, names.1
+                ));
+            }
+        }
+        let values = |of: fn(&atc_layout::model::Values) -> u32| compiled.iter().map(move |one| of(&one.model.values));
+        let line = Self {
+            name: file.name.clone(),
+            dynamics: file.trains,
+            number_of_trains: file.number_of_trains,
+            cycle_ms: first.cycle_ms,
+            train_cycle_ms: file.train_cycle_ms.unwrap_or(10),
+            speeds_kmh: first.speeds_kmh.to_vec(),
+            telegram_age_ms: values(|values| values.telegram_age_ms).min().unwrap_or(0),
+            shunt_loss_ms: values(|values| u32::from(values.loss) * values.cycle_ms).min().unwrap_or(0),
+            residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
+            clears_at_once: false,
+            stations: Vec::new(),
+            links,
+            track,
+        };
+        line.checked()?.with_stations(layouts, compiled)
+    }
+
+    fn checked(self) -> Result<Self, String> {
+        let moves = &self.dynamics;
+        let positive = [moves.length_m, moves.acceleration, moves.service, moves.emergency];
+        if positive.iter().any(|value| !(value.is_finite() && *value > 0.0)) {
+            return Err("[trains]: length_m, acceleration, service and emergency must be above 0".to_owned());
+        }
+        if self.train_cycle_ms == 0 || !self.cycle_ms.is_multiple_of(self.train_cycle_ms) {
+            let (train, ground) = (self.train_cycle_ms, self.cycle_ms);
+            return Err(format!("train_cycle_ms = {train}: it must divide the {ground} ms of the stations' cycle"));
+        }
+        Ok(self)
+    }
+
+    fn with_stations(mut self, layouts: Vec<Description>, compiled: Vec<Compiled>) -> Result<Self, String> {
+        for (number, (description, compiled)) in layouts.into_iter().zip(compiled).enumerate() {
+            let model = &compiled.model;
+            let needs = model.values.longest_train.map_or(f64::INFINITY, |longest| f64::from(longest.0));
+            let brake = f64::from(description.station.braking.deceleration_mm_s2.value) / 1000.0;
+            if self.dynamics.length_m > needs || self.dynamics.service < brake {
+                return Err(format!(
+                    "{} counts on trains of at most {needs} m that brake with {brake} m/s²; [trains] has {} m and {} m/s²",
+                    compiled.names.station, self.dynamics.length_m, self.dynamics.service
+                ));
+            }
+            let global = |circuits: Vec<usize>| -> Vec<usize> {
+                circuits.into_iter().map(|circuit| self.track.sites[number].circuits[circuit]).collect()
+            };
+            let paths: Vec<Vec<usize>> = model.routes.iter().map(|route| global(route.circuits().collect())).collect();
+            let lines = [
+                number.checked_sub(1).map(|west| self.links[west].segments[1]),
+                self.links.get(number).map(|link| link.segments[0]),
+            ];
+            let platforms = self.platforms(number, model, lines, &paths);
+            for side in [Bound::West, Bound::East] {
+                let through = |platform: &Platform| {
+                    let from = if lines[side.other().side()].is_some() { side.other() } else { side };
+                    platform.arrive[from.side()].is_some() && platform.depart[side.side()].is_some()
+                };
+                if lines[side.side()].is_some() && !platforms.iter().any(through) {
+                    return Err(format!(
+                        "{}: no track is reached by one route from the line and left by one to the {side:?}",
+                        compiled.names.station
+                    ));
+                }
+            }
+            self.stations.push(Place { name: compiled.names.station.clone(), description, compiled, platforms, paths });
+        }
+        Ok(self)
+    }
+
+    fn platforms(
+        &self,
+        number: usize,
+        model: &atc_layout::model::Model,
+        lines: [Option<usize>; 2],
+        paths: &[Vec<usize>],
+    ) -> Vec<Platform> {
+        let track = &self.track;
+        let plain = |circuit: &usize| {
+            let mut pieces = (0..track.pieces.len()).filter(|piece| track.pieces[*piece].circuit == *circuit);
+            pieces.next().filter(|piece| track.pieces[*piece].plain)
+        };
+        let mut platforms: Vec<Platform> = Vec::new();
+        for (route, path) in model.routes.iter().zip(paths).enumerate().map(|(number, (_, path))| (number, path)) {
+            let from = model.routes[route].from;
+            let Some(side) = (0..2).find(|side| from.is_some() && lines[*side] == from) else { continue };
+            let mut circuits: Vec<usize> =
+                path.iter().rev().copied().take_while(|circuit| plain(circuit).is_some()).collect();
+            let pieces: Vec<usize> = circuits.iter().filter_map(plain).collect();
+            // From the end of the route back; the legs are for a train to the east.
+            let mut exit = track.pieces[pieces[0]].joints.iter().copied().find(|joint| {
+                let heading = track.heading(number, pieces[0], *joint);
+                heading == Some(if side == 0 { Heading::Right } else { Heading::Left })
+            });
+            let mut legs = Vec::new();
+            for piece in pieces {
+                let Some(out) = exit else { break };
+                let (enter, _) = track.leave(piece, out, false);
+                legs.push(if side == 0 {
+                    Leg { piece, enter, exit: out }
+                } else {
+                    Leg { piece, enter: out, exit: enter }
+                });
+                exit = Some(enter);
+            }
+            if side == 0 {
+                circuits.reverse();
+                legs.reverse();
+            }
+            let there = platforms.iter().position(|platform| platform.circuits == circuits);
+            let at = there.unwrap_or_else(|| {
+                let name =
+                    circuits.iter().map(|circuit| track.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join("+");
+                platforms.push(Platform { name, circuits, legs, arrive: [None; 2], depart: [None; 2] });
+                platforms.len() - 1
+            });
+            platforms[at].arrive[side] = Some(route);
+        }
+        for (number_of_route, route) in model.routes.iter().enumerate() {
+            let Some(side) = (0..2).find(|side| route.to.is_some() && lines[*side] == route.to) else { continue };
+            let entry = track.sites[number].circuits[route.entry];
+            if let Some(platform) = platforms.iter_mut().find(|platform| platform.circuits.contains(&entry)) {
+                platform.depart[side] = Some(number_of_route);
+            }
+        }
+        platforms
+    }
+
+    /// The device of a station, of the smallest size that holds its layout.
+    ///
+    /// # Errors
+    /// What the kernel says of the layout; it was checked when it was compiled.
+    pub fn device(&self, station: usize) -> Result<Box<dyn Device>, String> {
+        let description = (&self.stations[station].description, self.clears_at_once);
+        if let Ok(device) = sized::<8, 4, 2, 2>(description) {
+            return Ok(device);
+        }
+        if let Ok(device) = sized::<24, 4, 10, 2>(description) {
+            return Ok(device);
+        }
+        sized::<64, 16, 32, 8>(description)
+    }
+
+    /// The least brake that the stations count on, in m/s².
+    pub fn counted_brake(&self) -> f64 {
+        let of = |place: &Place| f64::from(place.description.station.braking.deceleration_mm_s2.value) / 1000.0;
+        self.stations.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How many trains there is room for.
+    pub fn room(&self) -> usize {
+        self.stations.iter().map(|station| station.platforms.len()).sum()
+    }
+}
+
+fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
+    (description, clears_at_once): (&Description, bool),
+) -> Result<Box<dyn Device>, String> {
+    let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
+    let mut plan = compiled.plan;
+    let layout = if clears_at_once {
+        plan.clear = 1;
+        Layout::with_what_proofs_need(*plan)
+    } else {
+        Layout::new(*plan)
+    };
+    let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
+    Ok(Box::new(Held::new(Box::new(layout))))
+}
+
+/// The segments by which each station and the next are joined.
+fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<[usize; 2]>, String> {
+    let mut pairs = Vec::new();
+    for west in 0..layouts.len().saturating_sub(1) {
+        let (one, other) = (&compiled[west].model, &compiled[west + 1].model);
+        border::compare((&layouts[west], one), (&layouts[west + 1], other)).map_err(|errors| errors.to_string())?;
+        let named = |model: &atc_layout::model::Model| -> BTreeSet<String> {
+            model.segments.iter().filter_map(|segment| segment.line.clone()).collect()
+        };
+        let common: Vec<String> = named(one).intersection(&named(other)).cloned().collect();
+        let [line] = common.as_slice() else {
+            let names = (&compiled[west].names.station, &compiled[west + 1].names.station);
+            return Err(format!(
+                "{} and {} name {} lines in common; one is possible here",
+                names.0,
+                names.1,
+                common.len()
+            ));
+        };
+        let find = |model: &atc_layout::model::Model| {
+            model.segments.iter().position(|segment| segment.line.as_ref() == Some(line)).unwrap_or(0)
+        };
+        pairs.push([find(one), find(other)]);
+    }
+    Ok(pairs)
+}

@@ -1,0 +1,98 @@
+//! `oracle simulate` on the command line: the real process, its exit codes, messages and files.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use atc_tests::device;
+use serde_json::Value;
+
+const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../simulation/examples");
+
+fn simulate(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(device::oracle());
+    command.arg("simulate").args(arguments).current_dir(folder).stdin(Stdio::null());
+    command.output().expect("the oracle runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("UTF-8")
+}
+
+fn example(name: &str) -> String {
+    format!("{EXAMPLES}/{name}")
+}
+
+#[test]
+fn a_run_writes_events_and_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let output = simulate(folder.path(), &[&line, "--time", "400", "-o", "out"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("Three stations: 3 stations, 24 circuits, 4 trains; 400 s in"));
+    let events = fs::read_to_string(folder.path().join("out/events.jsonl")).expect("events");
+    let arrived = |line: &&str| serde_json::from_str::<Value>(line).expect("JSON")["event"] == "arrived";
+    assert!(events.lines().filter(arrived).count() >= 2, "{events}");
+    for picture in ["diagram.svg", "profile.svg"] {
+        let svg = fs::read_to_string(folder.path().join("out").join(picture)).expect(picture);
+        assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{picture}");
+    }
+    // The same without a folder, on standard output.
+    let output = simulate(folder.path(), &[&line, "--time", "400"]);
+    assert_eq!(text(&output.stdout), events);
+}
+
+#[test]
+fn harm_is_exit_code_1() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("four-tracks.toml");
+    let faults = ["--faults", "misread-code,misread-code,misread-code"];
+    let beyond = [[line.as_str(), "--time", "500", "--beyond"].as_slice(), &faults].concat();
+    let output = simulate(folder.path(), &beyond);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("UNSAFE: {"), "{}", text(&output.stderr));
+    let last = text(&output.stdout);
+    assert!(last.lines().last().expect("an event").contains("\"overrun\""), "{last}");
+    // The same faults, as short as they may be.
+    let output = simulate(folder.path(), &[[line.as_str(), "--time", "500"].as_slice(), &faults].concat());
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+#[test]
+fn a_campaign_tells_what_became_of_each_fault() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let arguments =
+        [line.as_str(), "--campaign", "4", "--time", "200", "--faults", "interruption,late-point", "-o", "out"];
+    let output = simulate(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let rows: Vec<Vec<String>> =
+        text(&output.stdout).lines().map(|row| row.split_whitespace().map(str::to_owned).collect()).collect();
+    assert_eq!(
+        (&rows[1][..3], &rows[2][..3]),
+        (&["interruption", "2", "0"].map(str::to_owned)[..], &["late-point", "2", "0"].map(str::to_owned)[..])
+    );
+    let json = fs::read_to_string(folder.path().join("out/campaign.json")).expect("a file");
+    assert_eq!(serde_json::from_str::<Value>(&json).expect("JSON")["late-point"]["runs"], 2);
+}
+
+#[test]
+fn what_cannot_be_run_is_said_and_nothing_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let line = line.as_str();
+    for (arguments, code, says) in [
+        (vec!["none.toml"], 1, "none.toml: cannot be read"),
+        (vec![line, "--trains", "6"], 1, "6 trains: 1 to 5 are possible"),
+        (vec![line, "--profile", "4"], 1, "--profile 4: the trains are 0 to 3"),
+        (vec![line, "--campaign", "1", "--time", "60"], 1, "more than 60 s"),
+        (vec![line, "--faults", "rain"], 2, "there is no such fault"),
+        (vec![], 2, "LINE.toml"),
+    ] {
+        let arguments: Vec<&str> = [arguments.as_slice(), &["-o", "out"]].concat();
+        let output = simulate(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}");
+        assert!(text(&output.stderr).contains(says), "{says:?} is not in {}", text(&output.stderr));
+        assert!(!folder.path().join("out").exists());
+    }
+}
