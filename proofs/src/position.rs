@@ -33,7 +33,7 @@ pub const ALL: &[Harness] = &[
 ];
 
 /// A word as a signed number.
-fn signed(word: u16) -> i16 {
+pub(crate) fn signed(word: u16) -> i16 {
     i16::from_le_bytes(word.to_le_bytes())
 }
 
@@ -65,7 +65,7 @@ fn table<E: Engine + ?Sized>(e: &mut E, curves: Curves, spacing: Spacing) -> Opt
 }
 
 /// A device with one table: straight lines, 1 mB for a decimetre, so that levels give any interval of whole decimetres.
-fn straight<E: Engine + ?Sized>(e: &mut E) -> Option<Position> {
+pub(crate) fn straight<E: Engine + ?Sized>(e: &mut E) -> Option<Position> {
     let lowest = [0, 16, 32, 48, 64, 80, 96, 112, 128, 144, 160, 176, 192, 208, 224, 240, 256];
     let highest = lowest.map(|level| Millibels(level + 8));
     let table = Spacing::new(4).and_then(|spacing| Table::new(spacing, lowest.map(Millibels), highest).ok());
