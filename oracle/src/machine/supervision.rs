@@ -29,6 +29,29 @@ impl Default for Config {
     }
 }
 
+impl Config {
+    /// The parameters in the kernel's form.
+    ///
+    /// # Errors
+    /// The rule that they break, in a sentence.
+    pub fn supervision(&self) -> Result<Supervision, String> {
+        let tenths = |name: &str, speed: Kmh| {
+            u16::try_from(speed.0)
+                .map(KmhTenths)
+                .map_err(|_| format!("{name} is {speed} km/h; it must be 0 to 6553.5 km/h"))
+        };
+        let maximum = tenths("maximum_km_h", self.maximum_km_h)?;
+        let margin = tenths("release_margin_km_h", self.release_margin_km_h)?;
+        Supervision::new(maximum, margin).map_err(|error| match error {
+            SupervisionError::NoMaximum => "maximum_km_h is 0; it must be above 0".to_owned(),
+            SupervisionError::MarginAboveMaximum => format!(
+                "release_margin_km_h is {} km/h, above maximum_km_h, {} km/h; it must not be",
+                self.release_margin_km_h, self.maximum_km_h
+            ),
+        })
+    }
+}
+
 /// The brake command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -134,20 +157,7 @@ impl Machine for Supervised {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        let tenths = |name: &str, speed: Kmh| {
-            u16::try_from(speed.0)
-                .map(KmhTenths)
-                .map_err(|_| format!("{name} is {speed} km/h; it must be 0 to 6553.5 km/h"))
-        };
-        let maximum = tenths("maximum_km_h", config.maximum_km_h)?;
-        let margin = tenths("release_margin_km_h", config.release_margin_km_h)?;
-        let parameters = Supervision::new(maximum, margin).map_err(|error| match error {
-            SupervisionError::NoMaximum => "maximum_km_h is 0; it must be above 0".to_owned(),
-            SupervisionError::MarginAboveMaximum => format!(
-                "release_margin_km_h is {} km/h, above maximum_km_h, {} km/h; it must not be",
-                config.release_margin_km_h, config.maximum_km_h
-            ),
-        })?;
+        let parameters = config.supervision()?;
         Ok(Self { parameters, previous: parameters.initial() })
     }
 

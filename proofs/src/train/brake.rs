@@ -1,6 +1,6 @@
 //! From the code to the brake, and no step skipped: T-TRN-2 and T-TRN-5.
 
-use super::{BOUND, RANKS, any_cycle, any_device_state, any_received};
+use super::{BOUND, RANKS, STEADY, any_cycle, any_device_state, any_received, any_steady_cycle};
 use crate::permitted::any_line;
 use atc_kernel::aspect::AspectSet;
 use atc_kernel::permitted::Basis;
@@ -104,8 +104,8 @@ harness! {
     t_trn_5(e)
     theorem "T-TRN-5";
     requirements ["TRN-7"];
-    assumptions ["four-for-sixteen", "four-speeds"];
-    bound BOUND;
+    assumptions ["four-speeds", "printed-sizes"];
+    bound STEADY;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -123,7 +123,7 @@ harness! {
     }
     {
         let Some(line) = any_line(e) else { return };
-        let Some(cycle) = any_cycle(e, line, None) else { return };
+        let Some(cycle) = any_steady_cycle(e, line, None) else { return };
         let (cab, measured) = (cycle.cab, cycle.received.speed.map(|speed| speed.0));
         let maximum = i32::from(cycle.device.train.parts().supervision.maximum().0);
         let plausible = measured.is_some_and(|speed| 0 <= speed && speed <= maximum);

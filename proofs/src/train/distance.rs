@@ -1,11 +1,12 @@
 //! Distances, their end and their section: T-TRN-6.
 
-use super::{BOUND, any_cycle, any_device_state, any_received};
+use super::{STEADY, any_received, any_steady_cycle, any_steady_state};
 use crate::any_u32;
 use crate::permitted::any_line;
 use crate::position::straight;
 use atc_kernel::distance::Millimetres;
 use atc_kernel::position::step;
+use atc_kernel::train::Received;
 
 harness! {
     /// The distance to the exit is the nearest end of this cycle's interval, and of no other one; the interval of the cycle before plays a part
@@ -13,8 +14,8 @@ harness! {
     t_trn_6(e)
     theorem "T-TRN-6";
     requirements ["TRN-4", "TRN-5"];
-    assumptions ["four-for-sixteen", "four-speeds", "printed-sizes"];
-    bound "4 aspects, tables of 4 speeds, one table";
+    assumptions ["four-speeds", "printed-sizes"];
+    bound "tables of 4 speeds, one accepted aspect or none, one table";
     cases 1;
     unwind 35 = 1 + 2 * atc_kernel::position::KNOTS;
     solver kissat;
@@ -32,7 +33,7 @@ harness! {
     {
         let Some(line) = any_line(e) else { return };
         let Some(position) = straight(e) else { return };
-        let Some(cycle) = any_cycle(e, line, Some(position)) else { return };
+        let Some(cycle) = any_steady_cycle(e, line, Some(position)) else { return };
         let (before, after, cab) = (cycle.before, cycle.after, cycle.cab);
         let fresh = before.permitted.fix.is_none() && cycle.received.main.is_none();
         let nearest = cab.position.map(|interval| interval.nearest());
@@ -59,11 +60,11 @@ harness! {
     theorem "T-TRN-6";
     requirements ["TRN-4", "TRN-5"];
     assumptions [
-        "four-for-sixteen", "four-speeds", "printed-sizes", "odometer-bound", "levels-of-one-section", "levels-within-tolerance",
+        "four-speeds", "printed-sizes", "odometer-bound", "levels-of-one-section", "levels-within-tolerance",
         "calibration-covers-the-weather", "transmitter-at-exit",
     ];
     built_in &[("transmitter-at-exit", "the distance to the transmitter is the one to the exit")];
-    bound "4 aspects, tables of 4 speeds, one table, distances up to 2 147 km";
+    bound "tables of 4 speeds, one accepted aspect or none, one table, distances up to 2 147 km";
     cases 1;
     unwind 35 = 1 + 2 * atc_kernel::position::KNOTS;
     solver kissat;
@@ -79,8 +80,9 @@ harness! {
     {
         let Some(line) = any_line(e) else { return };
         let Some(position) = straight(e) else { return };
-        let Some((device, before)) = any_device_state(e, line, Some(position)) else { return };
+        let Some((device, before, detected)) = any_steady_state(e, line, Some(position)) else { return };
         let Some(received) = any_received(e) else { return };
+        let received = Received { detected, ..received };
         // The truth: before, the movement, and after. Past the transmitter the distance is that to the next one.
         let near = before.position.map_or(0, |interval| i64::from(interval.nearest().0));
         let was = near + i64::from(any_u32(e, "train before, beyond the nearest (mm)", 0..=9000));
@@ -121,8 +123,8 @@ harness! {
     t_trn_6_moved(e)
     theorem "T-TRN-6";
     requirements ["TRN-9"];
-    assumptions ["four-for-sixteen", "four-speeds"];
-    bound BOUND;
+    assumptions ["four-speeds", "printed-sizes"];
+    bound STEADY;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -137,7 +139,7 @@ harness! {
     }
     {
         let Some(line) = any_line(e) else { return };
-        let Some(cycle) = any_cycle(e, line, None) else { return };
+        let Some(cycle) = any_steady_cycle(e, line, None) else { return };
         let (before, after) = (cycle.before.permitted, cycle.after.permitted);
         let most = i64::from(cycle.received.measured.moved.most());
         let forward = if most > 0 { most } else { 0 };

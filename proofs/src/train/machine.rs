@@ -101,7 +101,7 @@ harness! {
     assumptions ["four-for-sixteen", "four-speeds"];
     bound "4 aspects, tables of 4 speeds";
     cases 2;
-    unwind 33 = 1 + crate::aspect::LONGEST;
+    unwind 65 = 1 + MAX_CODES * MAX_CODES;
     apart [0 1];
     claims {
         Exact: "accepted if and only if the acceptance has as many ranks as the table has speeds, the highest speed is plausible, and every speed that a pair names is in the table",

@@ -16,13 +16,14 @@ use crate::position::signed;
 use crate::supervision::any_speed;
 use crate::{Engine, Harness, any_flag};
 use atc_kernel::Machine;
-use atc_kernel::aspect::{Acceptance, AspectSet};
+use atc_kernel::aspect::{self, Acceptance, AspectSet, Times};
 use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES, Millihertz};
 use atc_kernel::permitted::Heard;
 use atc_kernel::position::{Interval, Measured, Millibels, Moved, Position};
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
 use atc_kernel::supervision::{Brake, Supervision};
 use atc_kernel::telegram::{Judgement, Main};
+use atc_kernel::time::Ticks;
 use atc_kernel::train::{Cab, Parts, Received, State, Train};
 
 pub use brake::{t_trn_2, t_trn_2_only, t_trn_5};
@@ -57,6 +58,9 @@ const RANKS: usize = crate::permitted::SPEEDS;
 /// What these harnesses say of their bound.
 const BOUND: &str = "4 aspects, tables of 4 speeds";
 
+/// The same where acceptance plays no part.
+const STEADY: &str = "tables of 4 speeds, one accepted aspect or none";
+
 /// A device, and the line that it was made for.
 struct Device {
     train: Train<RANKS>,
@@ -69,10 +73,10 @@ fn carriers() -> Option<[CodeFrequencies; 2]> {
     Some([carrier([10, 20, 30, 40])?, carrier([15, 25, 35, 45])?])
 }
 
-/// A code table in which the code of each rank, on both carriers, names its speed.
-fn codes(speeds: [KmhTenths; RANKS]) -> Option<CodeTable> {
+/// A code table in which the codes of a place, on both carriers, name this speed.
+fn codes<const PAIRS: usize>(pairs: [KmhTenths; PAIRS]) -> Option<CodeTable> {
     let mut named = [[None; MAX_CODES]; MAX_CODES];
-    for (place, speed) in speeds.into_iter().enumerate() {
+    for (place, speed) in pairs.into_iter().enumerate() {
         named[place][place] = Some(speed);
     }
     let [main, sub] = carriers()?;
@@ -90,7 +94,8 @@ fn any_device<E: Engine + ?Sized>(
     let margin = KmhTenths(e.word("release margin (0.1 km/h)", 0..=5));
     let supervision = Supervision::new(maximum, margin);
     e.assume(supervision.is_ok());
-    let (codes, permitted) = (codes(line.speeds)?, line.permitted);
+    // What codes name is `t_trn_4_code`'s: here one pair is enough.
+    let (codes, permitted) = (codes([line.speeds[RANKS - 1]])?, line.permitted);
     let train = Train::new(Parts { codes, acceptance, permitted, supervision: supervision.ok()?, position });
     e.assume(train.is_ok());
     Some(Device { train: train.ok()?, line })
@@ -135,6 +140,36 @@ fn any_received<E: Engine + ?Sized>(e: &mut E) -> Option<Received> {
         speed: any_speed(e, "measured speed (0.1 km/h, two's complement)").map(RawKmhTenths),
         line,
     })
+}
+
+/// A device in an arbitrary valid state of all but acceptance, and what is detected: the highest aspect is displayed before and after a cycle, or
+/// none. Which one matters by what is displayed alone (`t_trn_2_only`).
+fn any_steady_state<E: Engine + ?Sized>(
+    e: &mut E,
+    line: Line,
+    position: Option<Position>,
+) -> Option<(Device, State<RANKS>, AspectSet)> {
+    let times = Times::from_ticks(Ticks(3), Ticks(4), Ticks(4), Ticks(7), Ticks(1)).ok()?;
+    let (acceptance, detected) = if any_flag(e, "a code is displayed (odd: yes)") {
+        let parts = aspect::Parts { run: [0, 0, 0, 3], age: [0; RANKS], accepted: 8, dropped: 0, credited: 0, last: 8 };
+        (aspect::State::from_parts(parts), AspectSet::from_bits(8))
+    } else {
+        (aspect::State::INITIAL, AspectSet::EMPTY)
+    };
+    let permitted = any_state(e, &line);
+    let interval = any_interval(e).filter(|_| position.is_some());
+    let device = any_device(e, line, Acceptance { times }, position)?;
+    let state = State { acceptance, permitted, position: interval, brake: any_brake(e) };
+    Some((device, state, detected))
+}
+
+/// One cycle from such a state.
+fn any_steady_cycle<E: Engine + ?Sized>(e: &mut E, line: Line, position: Option<Position>) -> Option<Cycle> {
+    let (device, before, detected) = any_steady_state(e, line, position)?;
+    let received = Received { detected, ..any_received(e)? };
+    let (after, cab) = device.train.act(before, received);
+    let used_main = used_main(&device, &before, &received);
+    Some(Cycle { device, before, received, after, cab, used_main })
 }
 
 /// A device in an arbitrary valid state.

@@ -1,22 +1,46 @@
 //! What the antennas give, read: T-TRN-4.
 
-use super::{RANKS, any_device, any_moved};
+use super::{RANKS, any_device, any_moved, codes};
 use crate::permitted::{any_line, knows_main, knows_sub};
 use crate::telegram::any_telegram;
 use crate::{Engine, any_flag, any_u32};
-use atc_kernel::aspect::{Acceptance, Times};
+use atc_kernel::aspect::{Acceptance, AspectId, AspectTable, Times};
 use atc_kernel::code::Millihertz;
+use atc_kernel::distance::Metres;
+use atc_kernel::pattern::Deceleration;
+use atc_kernel::permitted::{Permitted, Settings};
 use atc_kernel::position::{Millibels, Moved};
-use atc_kernel::speed::RawKmhTenths;
-use atc_kernel::telegram::{Frame, Telegram, decode, encode};
+use atc_kernel::speed::{KmhTenths, RawKmhTenths};
+use atc_kernel::supervision::Supervision;
+use atc_kernel::telegram::{Frame, Gradient, Sequence, Telegram, decode, encode};
 use atc_kernel::time::Ticks;
-use atc_kernel::train::{Antennas, Carrier};
+use atc_kernel::train::{Antennas, Carrier, Parts, Train};
 
 /// A device; what it accepts, and when, does not matter here.
 fn any_receiver<E: Engine + ?Sized>(e: &mut E) -> Option<super::Device> {
     let line = any_line(e)?;
     let times = Times::from_ticks(Ticks(3), Ticks(4), Ticks(4), Ticks(7), Ticks(1)).ok()?;
     any_device(e, line, Acceptance { times }, None)
+}
+
+/// A device for these speeds, and codes that name these.
+fn receiver(speeds: [KmhTenths; RANKS], named: [KmhTenths; RANKS]) -> Option<Train<RANKS>> {
+    let sequence = Sequence::new(3, 1, Ticks(4)).ok()?;
+    let permitted = Permitted::new(Settings {
+        speeds: AspectTable::new(&speeds).ok()?,
+        lowest: AspectId::new(1)?,
+        brake: Deceleration::brake(1000)?,
+        worst: Gradient(-10),
+        margin: Metres(10),
+        fresh: Ticks(4),
+        life: Ticks(8),
+        fixed_life: Ticks(8),
+        sequence,
+    });
+    let times = Times::from_ticks(Ticks(3), Ticks(4), Ticks(4), Ticks(7), Ticks(1)).ok()?;
+    let (permitted, supervision) = (permitted.ok()?, Supervision::default());
+    Train::new(Parts { codes: codes(named)?, acceptance: Acceptance { times }, permitted, supervision, position: None })
+        .ok()
 }
 
 /// Anything that the antennas give besides the two carriers.
@@ -55,7 +79,7 @@ harness! {
     theorem "T-TRN-4";
     requirements ["TRN-3"];
     assumptions ["four-speeds"];
-    bound "tables of 4 speeds, words of wrong bits in a frame";
+    bound "tables of 4 speeds, 32 wrong bits in a frame";
     cases 2;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -110,9 +134,9 @@ harness! {
     t_trn_4_code(e)
     theorem "T-TRN-4";
     requirements ["TRN-1", "TRN-6"];
-    assumptions ["four-speeds", "detected-throughout"];
+    assumptions ["printed-sizes", "detected-throughout"];
     built_in &[("detected-throughout", "a code frequency is there in a cycle or it is not")];
-    bound "tables of 4 speeds, one table of codes";
+    bound "one table of codes and of 4 speeds";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     claims {
@@ -127,7 +151,9 @@ harness! {
         Silent: "the odometer says nothing",
     }
     {
-        let Some(device) = any_receiver(e) else { return };
+        // The places of the codes are not the ranks of their speeds.
+        let speeds = [0, 150, 450, 900].map(KmhTenths);
+        let Some(train) = receiver(speeds, [2, 0, 3, 1].map(|rank: usize| speeds[rank])) else { return };
         let any_code = |e: &mut E, what, likely| {
             let measured = any_u32(e, what, likely);
             any_flag(e, "a code there (odd: yes)").then_some(Millihertz(measured))
@@ -136,7 +162,7 @@ harness! {
         let sub_code = any_code(e, "sub code frequency (mHz)", 13..=47);
         let carrier = |code| Carrier { code, frame: None };
         let Some(antennas) = any_antennas(e, carrier(main_code), carrier(sub_code)) else { return };
-        let received = device.train.receive(antennas);
+        let received = train.receive(antennas);
         // The codes are 10 mHz apart, with 2 mHz either way.
         let place = |code: Option<Millihertz>, first: u32| {
             let mut found = None;
@@ -151,7 +177,7 @@ harness! {
         let (main, sub) = (place(main_code, 10), place(sub_code, 15));
         let pair = main.filter(|main| sub == Some(*main));
         let bits = received.detected.bits();
-        e.claim(Claim::Aspect as u32, pair.is_none_or(|rank| bits == 1 << rank));
+        e.claim(Claim::Aspect as u32, pair.is_none_or(|place| bits == [4, 1, 8, 2][place]));
         e.claim(Claim::None as u32, pair.is_some() || bits == 0);
         let levels = received.measured.first == antennas.first && received.measured.second == antennas.second;
         let moved = antennas.moved.is_none_or(|moved| received.measured.moved == moved);

@@ -21,12 +21,14 @@ harness! {
     claims {
         Counted: "an accepted aspect is lost for at least as long as the ghost counts, and a target, also that of the section behind, is older than that",
         Braked: "once the ghost has counted the oldest evidence the emergency brake is commanded, and nothing is displayed or permitted",
+        Sooner: "so it is already when it has counted T2 + T3 and the freshness",
+        Oldest: "no target is older than the oldest evidence, and no accepted aspect is lost for as long",
         Start: "so it is in the initial state, whatever the ghost has counted",
     }
     covers {
         Ends: "in the cycle in which it has counted so far a target or an aspect is forgotten",
         Code: "one cycle less, and a code still permits",
-        Telegram: "one cycle less, and a telegram still permits",
+        Telegram: "one cycle less, and a target is still kept",
         Announced: "after all that a line is announced",
     }
     {
@@ -51,6 +53,16 @@ harness! {
         let cab = cycle.cab;
         let stopped = cab.brake == Brake::Emergency && cab.permission.speed.is_none() && cab.display.is_none();
         e.claim(Claim::Braked as u32, now < oldest || stopped);
+        let settings = line.settings;
+        let expiry = u32::from(cycle.device.train.parts().acceptance.times.expiry().0);
+        let sooner = now >= expiry && now >= u32::from(settings.fresh.0);
+        e.claim(Claim::Sooner as u32, !sooner || stopped);
+        let parts = cycle.after.acceptance.parts();
+        let mut young = cycle.after.permitted.target.is_none_or(|target| u32::from(target.age.0) <= oldest);
+        for rank in 0..RANKS {
+            young &= parts.accepted >> rank & 1 == 0 || u32::from(parts.age[rank]) < oldest;
+        }
+        e.claim(Claim::Oldest as u32, young);
         e.claim(Claim::Start as u32, counted(&cycle.device.train.initial(), u32::MAX));
         let forgotten = cycle.before.permitted.target.is_some() && cycle.after.permitted.target.is_none()
             || cycle.before.acceptance.parts().accepted != 0 && cycle.after.acceptance.parts().accepted == 0;

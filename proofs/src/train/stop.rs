@@ -1,13 +1,13 @@
 //! The stopping point, with a train: T-TRN-1.
 
-use super::{any_device_state, any_received, used_main};
-use crate::permitted::any_line;
+use super::{any_received, any_steady_state, used_main};
+use crate::permitted::{Line, any_line};
 use crate::{Engine, any_u32};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::pattern::Deceleration;
-use atc_kernel::permitted::{Basis, Permitted, Settings};
+use atc_kernel::permitted::{Basis, Fixed, Permitted, Settings, Target};
 use atc_kernel::supervision::Brake;
-use atc_kernel::telegram::Gradient;
+use atc_kernel::telegram::{Gradient, Sub};
 
 /// The margin of this harness, in millimetres.
 const MARGIN_MM: i64 = 10_000;
@@ -31,7 +31,7 @@ harness! {
     theorem "T-TRN-1";
     requirements ["TRN-7", "TRN-9"];
     assumptions [
-        "four-speeds", "four-for-sixteen", "printed-sizes", "odometer-bound", "one-section-at-a-time", "fix-of-the-section-heard",
+        "four-speeds", "printed-sizes", "odometer-bound", "one-section-at-a-time", "fix-of-the-section-heard",
         "margin-covers-the-crossing", "stop-point-life", "gravity", "sub-data-worst", "speed-not-under",
     ];
     built_in &[
@@ -43,7 +43,7 @@ harness! {
         ("sub-data-worst", "every gradient that is told, and the worst, is that of the ground"),
         ("speed-not-under", "the train is no faster than it measures"),
     ];
-    bound "4 aspects, tables of 4 speeds, distances of 0, 1, 100 and 3000 m and less than a metre more, or under the margin, one deceleration, one margin";
+    bound "tables of 4 speeds, one accepted aspect or none, distances of 0, 1, 100 and 3000 m and less than a metre more, or under the margin, one deceleration, one margin";
     cases 5;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -83,11 +83,12 @@ harness! {
         let gradient = Gradient(-10);
         let settings = Settings { brake, worst: gradient, margin: Metres(10), ..line.settings };
         let Ok(permitted) = Permitted::new(settings) else { return e.assume(false) };
-        let line = crate::permitted::Line { permitted, settings, ..line };
-        let Some((device, mut before)) = any_device_state(e, line, None) else { return };
+        let line = Line { permitted, settings, ..line };
+        let Some((device, mut before, detected)) = any_steady_state(e, line, None) else { return };
         let Some(mut received) = any_received(e) else { return };
-        before.permitted.fixed = before.permitted.fixed.map(|fixed| fixed.map(|fixed| atc_kernel::permitted::Fixed { gradient, ..fixed }));
-        received.sub = received.sub.map(|sub| atc_kernel::telegram::Sub { gradient, ..sub });
+        received.detected = detected;
+        before.permitted.fixed = before.permitted.fixed.map(|fixed| fixed.map(|fixed| Fixed { gradient, ..fixed }));
+        received.sub = received.sub.map(|sub| Sub { gradient, ..sub });
 
         // The movement, and from it the truth before the cycle.
         let moved = i64::from(received.measured.moved.most()) - i64::from(any_u32(e, "moved less than the most by (mm)", 0..=3000));
@@ -102,7 +103,7 @@ harness! {
         e.suppose("margin-covers-the-crossing", used.is_none() || told >= 0 || told + moved >= 0);
         if used.is_none() || again {
             let known = any_sound(e, now + moved);
-            before.permitted.target = target.map(|target| atc_kernel::permitted::Target { to_stop: known, ..target });
+            before.permitted.target = target.map(|target| Target { to_stop: known, ..target });
         }
         if fixed {
             before.permitted.fix = Some(any_sound(e, told + moved));

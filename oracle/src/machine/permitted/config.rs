@@ -151,6 +151,6 @@ impl Config {
 }
 
 /// A speed that must fit, or a sentence that says so.
-pub(super) fn tenths(field: &str, speed: Kmh) -> Result<KmhTenths, String> {
+pub(in crate::machine) fn tenths(field: &str, speed: Kmh) -> Result<KmhTenths, String> {
     u16::try_from(speed.0).map(KmhTenths).map_err(|_| format!("{field} is {speed} km/h; it must be 0 to 6553.5 km/h"))
 }

@@ -3,7 +3,7 @@
 mod config;
 
 pub use config::Config;
-use config::tenths;
+pub(super) use config::tenths;
 
 use atc_kernel::distance::Millimetres;
 use atc_kernel::permitted::{self, Heard, Permitted, State};
@@ -81,6 +81,15 @@ impl Named for Basis {
 impl<'de> Deserialize<'de> for Basis {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         names::read(deserializer)
+    }
+}
+
+impl From<LineKind> for permitted::LineKind {
+    fn from(line: LineKind) -> Self {
+        match line {
+            LineKind::Analog => Self::Analog,
+            LineKind::Digital => Self::Digital,
+        }
     }
 }
 
@@ -196,10 +205,7 @@ impl Step {
     /// The first field that does not fit, in a sentence.
     pub fn heard(&self) -> Result<Heard, String> {
         Ok(Heard {
-            line: self.line.map(|line| match line {
-                LineKind::Analog => permitted::LineKind::Analog,
-                LineKind::Digital => permitted::LineKind::Digital,
-            }),
+            line: self.line.map(Into::into),
             analog: self.analog_km_h.map(|speed| tenths("analog_km_h", speed)).transpose()?,
             main: self.main.as_ref().map(MainTelegram::kernel).transpose()?,
             sub: self.sub.as_ref().map(SubTelegram::kernel).transpose()?,
