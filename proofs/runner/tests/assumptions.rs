@@ -196,8 +196,8 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("telegram/counter.rs", "any_heard(e)", CASE),
     ("telegram/counter.rs", "knows(&before, advances, silent)", AGAIN),
     ("train/distance.rs", "before.position.is_none_or(|interval| was <= i64::from(interval.farthest().0))", AGAIN),
+    ("train/mod.rs", "moved.is_some()", "what the constructor of a movement accepts, either way"),
     ("train/silence.rs", "counted(&cycle.before, silent)", AGAIN),
-    ("train/stop.rs", "part < 1000", "a range: the millimetres in less than a metre"),
 ];
 
 const CASE: &str = "the case that the theorem is about";
