@@ -34,8 +34,8 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
         ],
         guides: changes(&brakes).into_iter().skip(1).map(|(at, _)| at + 1).collect(),
         legend: vec![
-            (Tone::Signal, "measured speed; a code on both carriers"),
-            (Tone::Limit, "permitted speed; a telegram"),
+            (Tone::Signal, "measured speed, codes"),
+            (Tone::Limit, "permitted, telegrams"),
             (Tone::Service, "service brake"),
             (Tone::Emergency, "emergency brake"),
         ],

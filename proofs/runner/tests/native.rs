@@ -36,7 +36,7 @@ fn every_harness_holds_on_drawn_values_and_they_hit_its_cover_points() {
 const RARE: [&str; 69] = [
     "t_trn_1::Runs",
     "t_trn_1::Last",
-    "t_trn_1::Fixed",
+    "t_trn_1_distance::Fixed",
     "t_trn_2::Lower",
     "t_trn_3::Ends",
     "t_trn_3::Code",

@@ -31,12 +31,13 @@ pub use distance::{t_trn_6, t_trn_6_inside, t_trn_6_moved};
 pub use machine::{trn_8, trn_machine, trn_valid};
 pub use reception::{t_trn_4, t_trn_4_code};
 pub use silence::{t_trn_3, trn_10};
-pub use stop::t_trn_1;
+pub use stop::{t_trn_1, t_trn_1_distance};
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]
 pub const ALL: &[Harness] = &[
     t_trn_1::HARNESS,
+    t_trn_1_distance::HARNESS,
     t_trn_2::HARNESS,
     t_trn_2_only::HARNESS,
     t_trn_3::HARNESS,
