@@ -9,11 +9,11 @@ use atc_kernel::supervision::Brake;
 use atc_kernel::train::Received;
 
 /// The speed of the one aspect of these bits; `None` without one.
-fn speed_of(bits: u16, speeds: &[KmhTenths; RANKS]) -> Option<KmhTenths> {
+fn speed_of(bits: u16, speeds: [KmhTenths; RANKS]) -> Option<KmhTenths> {
     let mut found = None;
-    for (rank, speed) in speeds.iter().enumerate() {
+    for (rank, speed) in speeds.into_iter().enumerate() {
         if bits == 1 << rank {
-            found = Some(*speed);
+            found = Some(speed);
         }
     }
     found
@@ -48,7 +48,7 @@ harness! {
         let satisfied = parts.accepted & !parts.dropped & 15;
         let lowest = satisfied & satisfied.wrapping_neg();
         let displayed = if lowest <= parts.last { lowest } else { 0 };
-        e.claim(Claim::Shown as u32, cycle.cab.display == speed_of(displayed, &line.speeds));
+        e.claim(Claim::Shown as u32, cycle.cab.display == speed_of(displayed, line.speeds));
         let (cab, display) = (cycle.cab, cycle.cab.display);
         e.claim(Claim::Below as u32, display.is_none() || cab.permission.speed <= display);
         let counts = matches!(cab.permission.basis, Basis::Analog | Basis::Both | Basis::RunningDown);
@@ -92,7 +92,7 @@ harness! {
         e.claim(Claim::Rest as u32, one.permitted == other.permitted && one.position == other.position);
         let alike = shown == also && one.brake == other.brake;
         e.claim(Claim::Cab as u32, shown.display != also.display || alike);
-        let heard = received.detected.bits() & 15 != 0 && detected.bits() & 15 == 0;
+        let heard = received.detected != AspectSet::EMPTY && detected == AspectSet::EMPTY;
         e.cover(Cover::Heard as u32, heard && shown.display == also.display);
         e.cover(Cover::Differ as u32, shown.display != also.display);
     }

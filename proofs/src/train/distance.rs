@@ -5,7 +5,7 @@ use crate::any_u32;
 use crate::permitted::any_line;
 use crate::position::straight;
 use atc_kernel::distance::Millimetres;
-use atc_kernel::position::step;
+use atc_kernel::position::{Interval, step};
 use atc_kernel::train::Received;
 
 harness! {
@@ -36,7 +36,7 @@ harness! {
         let Some(cycle) = any_steady_cycle(e, line, Some(position)) else { return };
         let (before, after, cab) = (cycle.before, cycle.after, cycle.cab);
         let fresh = before.permitted.fix.is_none() && cycle.received.main.is_none();
-        let nearest = cab.position.map(|interval| interval.nearest());
+        let nearest = cab.position.map(Interval::nearest);
         e.claim(Claim::Nearest as u32, !fresh || after.permitted.fix == nearest);
         let last = before.permitted.main_stream.last;
         let border = cycle.received.main.is_some_and(|main| last.is_none_or(|last| last.section != main.section));
@@ -92,7 +92,7 @@ harness! {
         e.suppose("odometer-bound", i64::from(moved.least()) <= by && by <= i64::from(moved.most()));
         let ahead = was - by;
         let now = if ahead > 0 { ahead } else { i64::from(any_u32(e, "distance to the next transmitter (mm)", 0..=20_000)) };
-        let inside = |interval: Option<atc_kernel::position::Interval>| {
+        let inside = |interval: Option<Interval>| {
             interval.is_none_or(|found| i64::from(found.nearest().0) <= now && now <= i64::from(found.farthest().0))
         };
         // What T-POS-1 makes of levels, before the transmitter and behind it.

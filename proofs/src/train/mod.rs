@@ -121,7 +121,7 @@ fn any_brake<E: Engine + ?Sized>(e: &mut E) -> Brake {
 /// An arbitrary movement.
 fn any_moved<E: Engine + ?Sized>(e: &mut E) -> Option<Moved> {
     let [least, most] = [0..=300, 300..=3000].map(|likely| signed(e.word("least, most movement (mm)", likely)));
-    let away = e.word("the other way (0 mod 8: yes)", 0..=7) & 7 == 0;
+    let away = e.word("the other way (7 mod 8: yes)", 0..=7) & 7 == 7;
     let moved = if away { Moved::new(most.wrapping_neg(), least.wrapping_neg()) } else { Moved::new(least, most) };
     e.assume(moved.is_some());
     moved
