@@ -251,19 +251,23 @@ impl Ride {
         let mut rank = || AspectId::new(u8::try_from(dice.below(ranks)).unwrap()).unwrap();
         let (speed, curve, restriction) = (rank(), rank(), rank());
         let mut telegram = None;
-        if self.cycle % 6 == 0 {
-            self.counters[0] = self.counters[0].wrapping_add(1);
-            let route = match dice.below(3) {
-                0 => Route::Closed,
-                1 => Route::OpenFor(Metres(400)),
-                _ => Route::OpenFor(Metres(50)),
-            };
-            telegram = Some(Telegram::Main(Main { section, counter: Counter(self.counters[0]), route, speed }));
-        } else if self.cycle % 6 == 3 {
-            self.counters[1] = self.counters[1].wrapping_add(1);
-            let (length, gradient) = (Length::new(Metres(120)).unwrap(), Gradient(-5));
-            let counter = Counter(self.counters[1]);
-            telegram = Some(Telegram::Sub(Sub { section, counter, length, gradient, curve, restriction }));
+        match self.cycle % 6 {
+            0 => {
+                self.counters[0] = self.counters[0].wrapping_add(1);
+                let route = match dice.below(3) {
+                    0 => Route::Closed,
+                    1 => Route::OpenFor(Metres(400)),
+                    _ => Route::OpenFor(Metres(50)),
+                };
+                telegram = Some(Telegram::Main(Main { section, counter: Counter(self.counters[0]), route, speed }));
+            }
+            3 => {
+                self.counters[1] = self.counters[1].wrapping_add(1);
+                let (length, gradient) = (Length::new(Metres(120)).unwrap(), Gradient(-5));
+                let counter = Counter(self.counters[1]);
+                telegram = Some(Telegram::Sub(Sub { section, counter, length, gradient, curve, restriction }));
+            }
+            _ => {}
         }
         let mut frames = [None; 2];
         if let (Some(telegram), true) = (telegram, heard) {
@@ -406,112 +410,119 @@ fn parts_that_do_not_belong_together_are_refused() {
     assert_eq!(Device::new(right).map(|train| *train.parts()), Ok(right));
 }
 
-/// Every state that differs from `state` in one bit of one field, or in whether something is there.
-fn flips(state: State<5>) -> Vec<State<5>> {
+fn words(word: u16) -> impl Iterator<Item = u16> {
+    (0..16).map(move |bit| word ^ 1 << bit)
+}
+
+fn longs(long: u32) -> impl Iterator<Item = u32> {
+    (0..32).map(move |bit| long ^ 1 << bit)
+}
+
+/// Every set of fields of acceptance that differs in one bit.
+fn wrong_acceptances(right: aspect::Parts<5>) -> Vec<aspect::Parts<5>> {
     let mut all = Vec::new();
-    let words = |word: u16| (0..16).map(move |bit| word ^ 1 << bit);
-    let longs = |long: u32| (0..32).map(move |bit| long ^ 1 << bit);
-    let acceptance = state.acceptance.parts();
     for rank in 0..5 {
-        for run in words(acceptance.run[rank]) {
-            let mut parts = acceptance;
-            parts.run[rank] = run;
-            all.push(State { acceptance: aspect::State::from_parts(parts), ..state });
+        for run in words(right.run[rank]) {
+            let mut wrong = right;
+            wrong.run[rank] = run;
+            all.push(wrong);
         }
-        for age in words(acceptance.age[rank]) {
-            let mut parts = acceptance;
-            parts.age[rank] = age;
-            all.push(State { acceptance: aspect::State::from_parts(parts), ..state });
-        }
-    }
-    for bit in 0..16 {
-        for field in 0..4 {
-            let mut parts = acceptance;
-            *[&mut parts.accepted, &mut parts.dropped, &mut parts.credited, &mut parts.last][field] ^= 1 << bit;
-            all.push(State { acceptance: aspect::State::from_parts(parts), ..state });
+        for age in words(right.age[rank]) {
+            let mut wrong = right;
+            wrong.age[rank] = age;
+            all.push(wrong);
         }
     }
-    let with = |permitted: permitted::State| State { permitted, ..state };
-    let it = state.permitted;
-    let other = match it.line {
+    all.extend(words(right.accepted).map(|accepted| aspect::Parts { accepted, ..right }));
+    all.extend(words(right.dropped).map(|dropped| aspect::Parts { dropped, ..right }));
+    all.extend(words(right.credited).map(|credited| aspect::Parts { credited, ..right }));
+    all.extend(words(right.last).map(|last| aspect::Parts { last, ..right }));
+    all
+}
+
+/// Every target that differs in one bit, or in whether it is there.
+fn wrong_targets(right: Option<Target>) -> Vec<Option<Target>> {
+    let section = SectionId(0);
+    let Some(right) = right else {
+        let (beyond, limit, to_stop, age) = (Metres(0), KmhTenths(0), Millimetres(0), Ticks(0));
+        return vec![Some(Target { section, beyond, limit, to_stop, age })];
+    };
+    let mut all = vec![None];
+    all.extend(words(right.section.0).map(|section| Some(Target { section: SectionId(section), ..right })));
+    all.extend(words(right.beyond.0).map(|beyond| Some(Target { beyond: Metres(beyond), ..right })));
+    all.extend(words(right.limit.0).map(|limit| Some(Target { limit: KmhTenths(limit), ..right })));
+    all.extend(words(right.age.0).map(|age| Some(Target { age: Ticks(age), ..right })));
+    all.extend(longs(right.to_stop.0).map(|to| Some(Target { to_stop: Millimetres(to), ..right })));
+    all
+}
+
+/// All fixed data that differ in one bit, or in whether they are there.
+fn wrong_data(right: Option<Fixed>) -> Vec<Option<Fixed>> {
+    let Some(right) = right else {
+        let (section, gradient, limit, age) = (SectionId(0), Gradient(0), KmhTenths(0), Ticks(0));
+        return vec![Some(Fixed { section, gradient, limit, age })];
+    };
+    let mut all = vec![None];
+    all.extend(words(right.section.0).map(|section| Some(Fixed { section: SectionId(section), ..right })));
+    all.extend(words(right.limit.0).map(|limit| Some(Fixed { limit: KmhTenths(limit), ..right })));
+    all.extend(words(right.age.0).map(|age| Some(Fixed { age: Ticks(age), ..right })));
+    let [byte] = right.gradient.0.to_le_bytes();
+    all.extend((0..8).map(|bit| {
+        let gradient = Gradient(i8::from_le_bytes([byte ^ 1 << bit]));
+        Some(Fixed { gradient, ..right })
+    }));
+    all
+}
+
+/// Every stream that differs in one bit, or in whether there is a last telegram.
+fn wrong_streams(right: Stream) -> Vec<Stream> {
+    let empty = Header { section: SectionId(0), counter: Counter(0) };
+    let mut all = vec![Stream { last: if right.last.is_some() { None } else { Some(empty) }, ..right }];
+    all.extend((0..8).map(|bit| Stream { in_order: right.in_order ^ 1 << bit, ..right }));
+    all.extend(words(right.age.0).map(|age| Stream { age: Ticks(age), ..right }));
+    if let Some(last) = right.last {
+        let header = |last| Stream { last: Some(last), ..right };
+        all.extend(words(last.section.0).map(|section| header(Header { section: SectionId(section), ..last })));
+        all.extend((0..8).map(|bit| header(Header { counter: Counter(last.counter.0 ^ 1 << bit), ..last })));
+    }
+    all
+}
+
+/// Every state of the permitted speed that differs in one bit of one field, or in whether something is there.
+fn wrong_permitted(right: permitted::State) -> Vec<permitted::State> {
+    let line = match right.line {
         LineKind::Analog => LineKind::Digital,
         LineKind::Digital => LineKind::Analog,
     };
-    all.push(with(permitted::State { line: other, ..it }));
-    let fix = it.fix.unwrap_or_default();
-    let toggled = if it.fix.is_some() { None } else { Some(fix) };
-    all.push(with(permitted::State { fix: toggled, ..it }));
-    if it.fix.is_some() {
-        all.extend(longs(fix.0).map(|fix| with(permitted::State { fix: Some(Millimetres(fix)), ..it })));
-    }
-    let empty = Target {
-        section: SectionId(0),
-        beyond: Metres(0),
-        limit: KmhTenths(0),
-        to_stop: Millimetres(0),
-        age: Ticks(0),
-    };
-    for behind in [false, true] {
-        let old = if behind { it.behind } else { it.target };
-        let mut changed = vec![if old.is_some() { None } else { Some(empty) }];
-        if let Some(target) = old {
-            changed
-                .extend(words(target.section.0).map(|section| Some(Target { section: SectionId(section), ..target })));
-            changed.extend(words(target.beyond.0).map(|beyond| Some(Target { beyond: Metres(beyond), ..target })));
-            changed.extend(words(target.limit.0).map(|limit| Some(Target { limit: KmhTenths(limit), ..target })));
-            changed.extend(words(target.age.0).map(|age| Some(Target { age: Ticks(age), ..target })));
-            changed.extend(longs(target.to_stop.0).map(|to| Some(Target { to_stop: Millimetres(to), ..target })));
-        }
-        for target in changed {
-            all.push(with(if behind {
-                permitted::State { behind: target, ..it }
-            } else {
-                permitted::State { target, ..it }
-            }));
-        }
-    }
-    let unknown = Fixed { section: SectionId(0), gradient: Gradient(0), limit: KmhTenths(0), age: Ticks(0) };
-    for slot in 0..2 {
-        let old = it.fixed[slot];
-        let mut changed = vec![if old.is_some() { None } else { Some(unknown) }];
-        if let Some(fixed) = old {
-            changed.extend(words(fixed.section.0).map(|section| Some(Fixed { section: SectionId(section), ..fixed })));
-            changed.extend(words(fixed.limit.0).map(|limit| Some(Fixed { limit: KmhTenths(limit), ..fixed })));
-            changed.extend(words(fixed.age.0).map(|age| Some(Fixed { age: Ticks(age), ..fixed })));
-            changed.extend((0..8).map(|bit| {
-                let [byte] = fixed.gradient.0.to_le_bytes();
-                Some(Fixed { gradient: Gradient(i8::from_le_bytes([byte ^ 1 << bit])), ..fixed })
-            }));
-        }
-        for fixed in changed {
-            let mut next = it;
-            next.fixed[slot] = fixed;
-            all.push(with(next));
-        }
-    }
-    for of_sub in [false, true] {
-        let old = if of_sub { it.sub_stream } else { it.main_stream };
-        let empty = Header { section: SectionId(0), counter: Counter(0) };
-        let mut changed = vec![Stream { last: if old.last.is_some() { None } else { Some(empty) }, ..old }];
-        changed.extend((0..8).map(|bit| Stream { in_order: old.in_order ^ 1 << bit, ..old }));
-        changed.extend(words(old.age.0).map(|age| Stream { age: Ticks(age), ..old }));
-        if let Some(last) = old.last {
-            let header = |last| Stream { last: Some(last), ..old };
-            changed.extend(words(last.section.0).map(|section| header(Header { section: SectionId(section), ..last })));
-            changed.extend((0..8).map(|bit| header(Header { counter: Counter(last.counter.0 ^ 1 << bit), ..last })));
-        }
-        for stream in changed {
-            all.push(with(if of_sub {
-                permitted::State { sub_stream: stream, ..it }
-            } else {
-                permitted::State { main_stream: stream, ..it }
-            }));
-        }
-    }
-    let place = state.position.unwrap_or(Interval::new(Millimetres(0), Millimetres(0)).unwrap());
-    let (near, far) = (place.nearest(), place.farthest());
-    all.push(State { position: if state.position.is_some() { None } else { Some(place) }, ..state });
-    if state.position.is_some() {
+    let mut all = vec![permitted::State { line, ..right }];
+    let fix = if right.fix.is_some() { None } else { Some(Millimetres(0)) };
+    all.push(permitted::State { fix, ..right });
+    let fixes = right.fix.into_iter().flat_map(|fix| longs(fix.0));
+    all.extend(fixes.map(|fix| permitted::State { fix: Some(Millimetres(fix)), ..right }));
+    all.extend(wrong_targets(right.target).into_iter().map(|target| permitted::State { target, ..right }));
+    all.extend(wrong_targets(right.behind).into_iter().map(|behind| permitted::State { behind, ..right }));
+    let [newest, other] = right.fixed;
+    all.extend(wrong_data(newest).into_iter().map(|wrong| permitted::State { fixed: [wrong, other], ..right }));
+    all.extend(wrong_data(other).into_iter().map(|wrong| permitted::State { fixed: [newest, wrong], ..right }));
+    let streams = wrong_streams(right.main_stream).into_iter();
+    all.extend(streams.map(|main_stream| permitted::State { main_stream, ..right }));
+    let streams = wrong_streams(right.sub_stream).into_iter();
+    all.extend(streams.map(|sub_stream| permitted::State { sub_stream, ..right }));
+    all
+}
+
+/// Every state that differs from `state` in one bit of one field, or in whether something is there.
+fn flips(state: State<5>) -> Vec<State<5>> {
+    let acceptances = wrong_acceptances(state.acceptance.parts()).into_iter();
+    let mut all: Vec<_> =
+        acceptances.map(|parts| State { acceptance: aspect::State::from_parts(parts), ..state }).collect();
+    all.extend(wrong_permitted(state.permitted).into_iter().map(|permitted| State { permitted, ..state }));
+    all.push(State {
+        position: if state.position.is_some() { None } else { Interval::new(Millimetres(0), Millimetres(0)) },
+        ..state
+    });
+    if let Some(place) = state.position {
+        let (near, far) = (place.nearest(), place.farthest());
         // The ends that are the wrong way round cannot be written: there is no such interval.
         let ends = longs(near.0).map(|near| Interval::new(Millimetres(near), far));
         let ends = ends.chain(longs(far.0).map(|far| Interval::new(near, Millimetres(far))));
