@@ -140,6 +140,7 @@ harness! {
             let Some((acceptance, _)) = any_machine_state::<3, E>(e) else { return };
             let made = Train::new(Parts { codes, acceptance, permitted, supervision, position: None });
             e.claim(Claim::Exact as u32, made.is_err());
+            e.claim(Claim::Kept as u32, made.as_ref().map_or(true, |train| train.parts().acceptance == acceptance));
             e.claim(Claim::Told as u32, matches!(made, Err(TrainError::TooManyRanks)));
         } else {
             let Some((acceptance, _)) = any_machine_state::<RANKS, E>(e) else { return };

@@ -1,14 +1,19 @@
 //! The stopping point, with a train: T-TRN-1.
 
-use super::{STEADY, any_received, any_steady_state, used_main};
-use crate::permitted::{Line, any_line};
+use super::{Device, RANKS, any_moved, any_received, any_steady_state, codes, used_main};
+use crate::permitted::{Line, any_line, any_parts, knows_main};
+use crate::telegram::any_main;
 use crate::{Engine, any_flag, any_u32};
+use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, AspectTable, Times};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::pattern::Deceleration;
 use atc_kernel::permitted::{Basis, Fixed, Permitted, Settings, Target};
-use atc_kernel::supervision::Brake;
-use atc_kernel::telegram::{Gradient, Sub};
-use atc_kernel::train::Received;
+use atc_kernel::position::Measured;
+use atc_kernel::speed::KmhTenths;
+use atc_kernel::supervision::{Brake, Supervision};
+use atc_kernel::telegram::{Gradient, Sequence, Sub};
+use atc_kernel::time::Ticks;
+use atc_kernel::train::{Parts, Received, State, Train};
 
 /// The margin of this harness, in millimetres.
 const MARGIN_MM: i64 = 10_000;
@@ -24,9 +29,44 @@ fn sound(bound: Millimetres, truth: i64) -> bool {
     bound.0 == 0 || i64::from(bound.0) <= truth
 }
 
+/// A line of which only the lives matter, and a device for it in which a code plays no part: what a distance is made of.
+fn any_distances<E: Engine + ?Sized>(e: &mut E) -> Option<(Device, State<RANKS>)> {
+    let speeds = [0, 150, 450, 900].map(KmhTenths);
+    let settings = Settings {
+        speeds: AspectTable::new(&speeds).ok()?,
+        lowest: AspectId::new(1)?,
+        brake: Deceleration::brake(1000)?,
+        worst: Gradient(-10),
+        margin: Metres(10),
+        fresh: Ticks(1),
+        life: Ticks(e.word("life (cycles)", 4..=8)),
+        fixed_life: Ticks(8),
+        sequence: Sequence::new(3, 1, Ticks(4)).ok()?,
+    };
+    let permitted = Permitted::new(settings);
+    e.assume(permitted.is_ok());
+    let line = Line { permitted: permitted.ok()?, settings, speeds };
+    let times = Times::from_ticks(Ticks(3), Ticks(4), Ticks(4), Ticks(7), Ticks(1)).ok()?;
+    let (supervision, acceptance) = (Supervision::default(), Acceptance { times });
+    let codes = codes([speeds[RANKS - 1]])?;
+    let train = Train::new(Parts { codes, acceptance, permitted: line.permitted, supervision, position: None }).ok()?;
+    let state = any_parts(e);
+    let none = State::<RANKS>::INITIAL;
+    let unheard = none.permitted;
+    let permitted = atc_kernel::permitted::State {
+        behind: unheard.behind,
+        fixed: unheard.fixed,
+        sub_stream: unheard.sub_stream,
+        ..state
+    };
+    e.assume(permitted.is_valid(&line.permitted));
+    Some((Device { train, line }, State { permitted, ..none }))
+}
+
 harness! {
     /// A ghost train has a true distance to its stopping point, which the main telegram that is in use named, and which the ground keeps. What the
-    /// device knows of it is no longer than that, or 0. So it is after any cycle.
+    /// device knows of it is no longer than that, or 0. So it is after any cycle. Codes, sub telegrams and the target behind play no part in it, as
+    /// T-PER-4 says of all of them.
     t_trn_1_distance(e)
     theorem "T-TRN-1";
     requirements ["TRN-9"];
@@ -40,23 +80,33 @@ harness! {
         ("fix-of-the-section-heard", "a fix that is used is no longer than the true distance to the exit that the telegram means"),
         ("stop-point-life", "the point stays where it is while the target is kept"),
     ];
-    bound STEADY;
-    cases 1;
+    bound "one line and any life of its telegrams, no code, no sub telegram, no target of the section behind";
+    cases 3;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
+    apart [0 1 2];
     claims {
         Distance: "the distance that is kept to the stopping point is at most the true one, or 0",
     }
     covers {
-        Fixed: "the distance comes from a fix",
-        Again: "the longer distance to the same point is kept",
-        Older: "a target stays, and is not at 0",
+        Fixed: "the distance comes from a fix, or there is none that is used",
+        Again: "the longer distance to the same point is kept, or there is no telegram",
+        Older: "a target stays, and is not at 0, or a fix is used",
     }
     {
-        let Some(line) = any_line(e) else { return };
-        let Some((device, mut before, detected)) = any_steady_state(e, line, None) else { return };
-        let Some(received) = any_received(e) else { return };
-        let received = Received { detected, ..received };
+        let case = e.choose("main telegram (0: none, 1: without a fix of its section, 2: with one)", 3);
+        let Some((device, mut before)) = any_distances(e) else { return };
+        let Some(main) = any_main(e) else { return };
+        e.assume(knows_main(main));
+        let Some(moved) = any_moved(e) else { return };
+        let received = Received {
+            detected: AspectSet::EMPTY,
+            main: if case == 0 { None } else { Some(main) },
+            sub: None,
+            measured: Measured { first: None, second: None, moved },
+            speed: None,
+            line: None,
+        };
         // The truth after the cycle, 2 147 km ahead or behind.
         let now = i64::from(i32::from_le_bytes(any_u32(e, "true distance to the stopping point (mm)", 0..=60_000).to_le_bytes()));
         let moved = i64::from(received.measured.moved.most()) - i64::from(any_u32(e, "moved less than the most by (mm)", 0..=3000));
@@ -66,6 +116,7 @@ harness! {
         let again = used.is_some_and(|main| target.is_some_and(|target| target.section == main.section && target.beyond == beyond));
         let between = used.is_some_and(|main| before.permitted.main_stream.last.is_some_and(|last| last.section == main.section));
         let fixed = between && before.permitted.fix.is_some();
+        e.assume(fixed == (case == 2));
         // Of the telegram of this cycle: the true distance to the exit of its section.
         let told = now - i64::from(beyond.0) * 1000;
         e.suppose("margin-covers-the-crossing", used.is_none() || told >= 0 || told + moved >= 0);
@@ -81,9 +132,9 @@ harness! {
         e.claim(Claim::Distance as u32, known.is_none_or(|known| sound(known.to_stop, now)));
         let beyond_mm = u32::from(beyond.0) * 1000;
         let above = known.is_some_and(|known| known.to_stop.0 > 0);
-        e.cover(Cover::Fixed as u32, fixed && !again && known.is_some_and(|known| beyond_mm < known.to_stop.0));
-        e.cover(Cover::Again as u32, again && !fixed && known.is_some_and(|known| beyond_mm < known.to_stop.0));
-        e.cover(Cover::Older as u32, used.is_none() && above);
+        e.cover(Cover::Fixed as u32, case < 2 || fixed && !again && known.is_some_and(|known| beyond_mm < known.to_stop.0));
+        e.cover(Cover::Again as u32, case == 0 || again && known.is_some_and(|known| beyond_mm < known.to_stop.0));
+        e.cover(Cover::Older as u32, case == 2 || used.is_none() && above);
     }
 }
 
