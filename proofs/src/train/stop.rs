@@ -118,7 +118,8 @@ harness! {
         let fixed = between && before.permitted.fix.is_some();
         e.assume(fixed == (case == 2));
         // Of the telegram of this cycle: the true distance to the exit of its section.
-        let told = now - i64::from(beyond.0) * 1000;
+        let beyond_mm = u32::from(beyond.0) * 1000;
+        let told = now - i64::from(beyond_mm);
         e.suppose("margin-covers-the-crossing", used.is_none() || told >= 0 || told + moved >= 0);
         if used.is_none() || again {
             let known = any_sound(e, now + moved);
@@ -130,7 +131,6 @@ harness! {
         let (after, _) = device.train.act(before, received);
         let known = after.permitted.target;
         e.claim(Claim::Distance as u32, known.is_none_or(|known| sound(known.to_stop, now)));
-        let beyond_mm = u32::from(beyond.0) * 1000;
         let above = known.is_some_and(|known| known.to_stop.0 > 0);
         e.cover(Cover::Fixed as u32, case < 2 || fixed && !again && known.is_some_and(|known| beyond_mm < known.to_stop.0));
         e.cover(Cover::Again as u32, case == 0 || again && known.is_some_and(|known| beyond_mm < known.to_stop.0));
