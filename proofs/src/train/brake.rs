@@ -1,11 +1,15 @@
 //! From the code to the brake, and no step skipped: T-TRN-2 and T-TRN-5.
 
 use super::{BOUND, RANKS, STEADY, any_cycle, any_device_state, any_received, any_steady_cycle};
-use crate::permitted::any_line;
+use crate::permitted::{Line, any_line};
 use atc_kernel::aspect::AspectSet;
-use atc_kernel::permitted::Basis;
+use atc_kernel::distance::{Metres, Millimetres};
+use atc_kernel::pattern::Deceleration;
+use atc_kernel::permitted::{Basis, Fixed, Permitted, Settings, Target};
+use atc_kernel::position::Moved;
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::supervision::Brake;
+use atc_kernel::telegram::{Gradient, Main, Route, Sub};
 use atc_kernel::train::Received;
 
 /// The speed of the one aspect of these bits; `None` without one.
@@ -70,7 +74,7 @@ harness! {
     theorem "T-TRN-2";
     requirements ["TRN-2"];
     assumptions ["four-for-sixteen", "four-speeds"];
-    bound BOUND;
+    bound "4 aspects, tables of 4 speeds, one deceleration, distances of 0 and 3000 m";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
@@ -84,8 +88,25 @@ harness! {
     }
     {
         let Some(line) = any_line(e) else { return };
-        let Some((device, before)) = any_device_state(e, line, None) else { return };
-        let Some(received) = any_received(e) else { return };
+        // The pattern is of constants: it is computed twice, and which one it is does not matter here.
+        let Some(brake) = Deceleration::brake(1000) else { return };
+        let gradient = Gradient(-10);
+        let settings = Settings { brake, worst: gradient, margin: Metres(10), ..line.settings };
+        let Ok(permitted) = Permitted::new(settings) else { return e.assume(false) };
+        let line = Line { permitted, settings, ..line };
+        let Some((device, mut before)) = any_device_state(e, line, None) else { return };
+        let Some(mut received) = any_received(e) else { return };
+        let far = |target: Target| {
+            let to_stop = Millimetres(if target.to_stop.0 & 1 == 1 { 3_000_000 } else { 0 });
+            Target { to_stop, ..target }
+        };
+        before.permitted.target = before.permitted.target.map(far);
+        before.permitted.behind = before.permitted.behind.map(far);
+        before.permitted.fix = None;
+        before.permitted.fixed = before.permitted.fixed.map(|fixed| fixed.map(|fixed| Fixed { gradient, ..fixed }));
+        received.main = received.main.map(|main| Main { route: Route::Closed, ..main });
+        received.sub = received.sub.map(|sub| Sub { gradient, ..sub });
+        received.measured.moved = Moved::STANDING;
         let detected = AspectSet::from_bits(e.word("detected by the other (bits)", 0..=15));
         let (one, shown) = device.train.act(before, received);
         let (other, also) = device.train.act(before, Received { detected, ..received });

@@ -1,6 +1,6 @@
 //! The machine as a whole: T-TRN-7.
 
-use super::{BOUND, RANKS, any_cycle, any_device_state, any_received, carriers};
+use super::{RANKS, any_cycle, any_device_state, any_received, carriers};
 use crate::aspect::any_machine_state;
 use crate::permitted::any_line;
 use crate::position::straight;
@@ -49,13 +49,13 @@ harness! {
     theorem "T-TRN-7";
     requirements ["GEN-1"];
     assumptions ["four-for-sixteen", "four-speeds"];
-    bound BOUND;
+    bound "4 aspects, tables of 4 speeds, before the step no main telegram was used";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
     claims {
         Step: "a step with antennas that receive nothing is what was received, acted on",
-        Start: "the initial state is valid, knows nothing and brakes; in its first cycle, whatever is received, nothing above 0 is permitted by telegrams",
+        Start: "the initial state is valid, knows nothing and brakes; in its first cycle, whatever is received, nothing is permitted by telegrams",
         Safe: "the safe output is the emergency brake, no display, no permission and no position",
     }
     covers {
@@ -63,8 +63,9 @@ harness! {
     }
     {
         let Some(line) = any_line(e) else { return };
-        let Some((device, before)) = any_device_state(e, line, None) else { return };
+        let Some((device, mut before)) = any_device_state(e, line, None) else { return };
         let Some(received) = any_received(e) else { return };
+        (before.permitted.target, before.permitted.behind) = (None, None);
         let silent = Carrier { code: None, frame: None };
         let antennas = Antennas {
             main: silent,
@@ -83,9 +84,8 @@ harness! {
         let unknown = start.permitted.target.is_none() && start.permitted.fix.is_none() && start.position.is_none();
         let quiet = start.acceptance.parts().accepted == 0 && start.acceptance.parts().last == 0;
         let by_telegrams = matches!(cab.permission.basis, Basis::Both | Basis::Pattern | Basis::RunningDown);
-        let stopped = cab.permission.speed.is_none_or(|speed| speed.0 == 0) || !by_telegrams;
         let begins = start == State::INITIAL && start.is_valid(&device.train) && start.brake == Brake::Emergency;
-        e.claim(Claim::Start as u32, begins && unknown && quiet && stopped);
+        e.claim(Claim::Start as u32, begins && unknown && quiet && !by_telegrams);
         let nothing = Permission { speed: None, basis: Basis::Nothing };
         let safe = Cab { display: None, permission: nothing, position: None, brake: Brake::Emergency };
         e.claim(Claim::Safe as u32, <Train<RANKS> as Machine>::SAFE == safe);
