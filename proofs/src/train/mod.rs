@@ -1,7 +1,8 @@
 //! The on-board device as one machine: theorems T-TRN-1 to T-TRN-7.
 //!
-//! Every harness is one cycle from any valid state of all parts together, with any parameters and anything received. Where the
-//! train, the exits and the stopping points really are, and for how long nothing was received, are ghosts.
+//! Every harness is one cycle from any valid state of all parts together, with any parameters and anything received, but
+//! for what its bound says. Where the train, the exits and the stopping points really are, and for how long nothing was
+//! received, are ghosts.
 
 mod brake;
 mod distance;
