@@ -210,6 +210,15 @@ quantity!(
     "A level in dB, in whole hundredths: -12.5 or 3.25, not 3.255."
 );
 
+quantity!(
+    /// A frequency in millihertz. On the wire a JSON number of hertz, such as `16.5`.
+    Hertz,
+    3,
+    "Hz",
+    "millihertz",
+    "A frequency in Hz, in whole millihertz: 22 or 16.5, not 0.0005."
+);
+
 /// The schema of a value that may be null but not missing. (An `Option` may be missing.)
 pub struct OrNull<T>(PhantomData<T>);
 

@@ -27,6 +27,7 @@ pub mod position;
 pub mod supervision;
 pub mod telegram;
 pub mod time;
+pub mod train;
 
 #[cfg(kani)]
 mod contracts;
@@ -63,6 +64,7 @@ pub static HARNESSES: &[&[Harness]] = &[
     pattern::ALL,
     permitted::ALL,
     position::ALL,
+    train::ALL,
     interlocking::ALL,
     duplex::ALL,
 ];

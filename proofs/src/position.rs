@@ -33,7 +33,7 @@ pub const ALL: &[Harness] = &[
 ];
 
 /// A word as a signed number.
-fn signed(word: u16) -> i16 {
+pub(crate) fn signed(word: u16) -> i16 {
     i16::from_le_bytes(word.to_le_bytes())
 }
 
@@ -65,13 +65,17 @@ fn table<E: Engine + ?Sized>(e: &mut E, curves: Curves, spacing: Spacing) -> Opt
 }
 
 /// A device with one table: straight lines, 1 mB for a decimetre, so that levels give any interval of whole decimetres.
-fn straight<E: Engine + ?Sized>(e: &mut E) -> Option<Position> {
-    let lowest = [0, 16, 32, 48, 64, 80, 96, 112, 128, 144, 160, 176, 192, 208, 224, 240, 256];
-    let highest = lowest.map(|level| Millibels(level + 8));
-    let table = Spacing::new(4).and_then(|spacing| Table::new(spacing, lowest.map(Millibels), highest).ok());
+pub(crate) fn straight<E: Engine + ?Sized>(e: &mut E) -> Option<Position> {
     let tolerance = signed(e.word("tolerance (mB)", 0..=8));
-    let position =
-        table.and_then(|table| Position::new(table, Millibels(tolerance), Millibels(i16::MIN), Correction::NONE));
+    let position = straight_within(Millibels(tolerance));
     e.assume(position.is_some());
     position
+}
+
+/// The same with this tolerance.
+pub(crate) fn straight_within(tolerance: Millibels) -> Option<Position> {
+    let lowest = [0, 16, 32, 48, 64, 80, 96, 112, 128, 144, 160, 176, 192, 208, 224, 240, 256];
+    let highest = lowest.map(|level| Millibels(level + 8));
+    let table = Table::new(Spacing::new(4)?, lowest.map(Millibels), highest).ok()?;
+    Position::new(table, tolerance, Millibels(i16::MIN), Correction::NONE)
 }

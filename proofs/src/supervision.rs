@@ -20,7 +20,7 @@ struct Cycle {
     unbraked: Brake,
 }
 
-fn any_speed<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Option<i32> {
+pub(crate) fn any_speed<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Option<i32> {
     let value = any_u32(e, what, 0..=30).cast_signed_compat();
     if e.word("that speed is missing (3 mod 4)", 0..=3) & 3 == 3 { None } else { Some(value) }
 }

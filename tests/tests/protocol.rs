@@ -221,6 +221,7 @@ fn every_broken_rule_is_named_with_its_numbers() {
     let times = |times: &str| aspect(&format!(r#"{{"aspects_km_h":[25],{times}}}"#));
     let supervision =
         |config: &str| format!(r#"{{"start":{{"protocol":1,"machine":"speed-supervision","config":{config}}}}}"#);
+    let train = |config: &str| format!(r#"{{"start":{{"protocol":1,"machine":"train","config":{config}}}}}"#);
     let cases = [
         (times(r#""cycle_ms":0"#), "cycle_ms is 0"),
         (times(r#""operate_ms":0"#), "operate_ms (T1) is 0"),
@@ -247,6 +248,24 @@ fn every_broken_rule_is_named_with_its_numbers() {
         (
             supervision(r#"{"maximum_km_h":5,"release_margin_km_h":5.1}"#),
             "release_margin_km_h is 5.1 km/h, above maximum_km_h, 5 km/h",
+        ),
+        (
+            train(r#"{"supervision":{"maximum_km_h":89.9}}"#),
+            "permitted.speeds_km_h has 90 km/h, above supervision.maximum_km_h, 89.9 km/h",
+        ),
+        (train(r#"{"supervision":{"maximum_km_h":0}}"#), "supervision.maximum_km_h is 0"),
+        (train(r#"{"permitted":{"fresh_ms":9}}"#), "permitted.fresh_ms is 9 ms, less than one cycle"),
+        (train(r#"{"acceptance":{"operate_ms":0}}"#), "acceptance.operate_ms (T1) is 0"),
+        (train(r#"{"codes":{"pairs":[]}}"#), "codes.pairs is empty"),
+        (
+            train(r#"{"codes":{"pairs":[{"main_hz":10,"sub_hz":12,"speed_km_h":30}]}}"#),
+            "codes.pairs names 30 km/h for 10 and 12 Hz; it must be one of permitted.speeds_km_h: 0, 15, 25, 45",
+        ),
+        (
+            train(
+                r#"{"codes":{"pairs":[{"main_hz":10,"sub_hz":12,"speed_km_h":25},{"main_hz":11.5,"sub_hz":15,"speed_km_h":45}]}}"#,
+            ),
+            "codes.pairs has main_hz 10 and 11.5 Hz; they must be more than twice codes.tolerance_hz, 1 Hz, apart",
         ),
         (SUPERVISION.replace("\"protocol\":1", "\"protocol\":2"), "protocol 2 is not spoken here; protocol 1 is"),
         (

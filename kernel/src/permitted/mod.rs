@@ -272,7 +272,8 @@ impl Guidance {
 
 impl<T> Telegrams<T> {
     /// The same with each `T` made a `U`.
-    fn map<U>(self, make: fn(T) -> U) -> Telegrams<U> {
+    #[inline]
+    fn map<U>(self, make: impl Fn(T) -> U) -> Telegrams<U> {
         match self {
             Self::Fresh(fresh) => Telegrams::Fresh(make(fresh)),
             Self::Missing(last) => Telegrams::Missing(make(last)),

@@ -16,6 +16,7 @@ pub mod position;
 mod record;
 pub mod supervision;
 pub mod telegram;
+pub mod train;
 mod value;
 mod wave;
 

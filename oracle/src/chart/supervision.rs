@@ -49,11 +49,11 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
     scene
 }
 
-fn numbers(speeds: &[Option<Kmh>]) -> Vec<(u64, Option<f64>)> {
+pub(super) fn numbers(speeds: &[Option<Kmh>]) -> Vec<(u64, Option<f64>)> {
     changes(speeds).into_iter().map(|(at, speed)| (at, speed.map(|speed| f64::from(speed.0) / 10.0))).collect()
 }
 
-fn speed_lane(measured: &[Option<Kmh>], permitted: &[Option<Kmh>]) -> Lane {
+pub(super) fn speed_lane(measured: &[Option<Kmh>], permitted: &[Option<Kmh>]) -> Lane {
     // A speed far beyond anything plausible would flatten the rest: it is drawn at the top.
     let plausible =
         measured.iter().chain(permitted).flatten().map(|speed| speed.0).filter(|tenths| (0..=6000).contains(tenths));
@@ -69,7 +69,7 @@ fn speed_lane(measured: &[Option<Kmh>], permitted: &[Option<Kmh>]) -> Lane {
 }
 
 /// What is commanded; where it is not what the kernel commands, that shows.
-fn brake_lane(label: &str, brakes: &[Brake], kernel: &[Brake]) -> Lane {
+pub(super) fn brake_lane(label: &str, brakes: &[Brake], kernel: &[Brake]) -> Lane {
     let said = brakes.iter().zip(kernel).map(|(said, kernel)| (*said, said != kernel));
     let shown = std::iter::once((Brake::Emergency, false)).chain(said).take(brakes.len());
     let marks = spans(shown).into_iter().map(|(from, to, (brake, differs))| {
@@ -89,7 +89,7 @@ fn brake_lane(label: &str, brakes: &[Brake], kernel: &[Brake]) -> Lane {
     Lane { label: label.to_owned(), first: true, height: 40, marks: marks.collect() }
 }
 
-fn brake_signal(name: &str, brakes: &[Brake]) -> Signal {
+pub(super) fn brake_signal(name: &str, brakes: &[Brake]) -> Signal {
     let shown = std::iter::once(Brake::Emergency).chain(brakes.iter().copied());
     let values = changes(shown).into_iter().map(|(at, brake)| (at, brake.name().to_owned())).collect();
     Signal { name: name.to_owned(), values: Values::State(values) }

@@ -8,6 +8,7 @@ pub mod permitted;
 pub mod position;
 pub mod supervision;
 pub mod telegram;
+pub mod train;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
@@ -126,6 +127,7 @@ pub const KINDS: &[Kind] = &[
     kind::<permitted::Permitting>(),
     kind::<position::Positioned>(),
     kind::<interlocking::Interlocked>(),
+    kind::<train::OnBoard>(),
 ];
 
 /// The machine of that name.

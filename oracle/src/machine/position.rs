@@ -49,6 +49,11 @@ pub struct Positioned {
     interval: Option<Interval>,
 }
 
+/// The ends of an interval.
+pub(super) fn ends(interval: Interval) -> [Metres; 2] {
+    [interval.nearest(), interval.farthest()].map(|end| Metres(end.0.into()))
+}
+
 impl Step {
     /// The step in the kernel's form.
     ///
@@ -82,7 +87,6 @@ impl Machine for Positioned {
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         self.interval = position::step(&self.position, self.interval, step.measured()?);
-        let ends = |interval: Interval| [interval.nearest(), interval.farthest()].map(|end| Metres(end.0.into()));
         Ok(Output { interval_m: self.interval.map(ends) })
     }
 

@@ -141,18 +141,18 @@ pub struct Codec {
     heard: u64,
 }
 
-/// Reads the characters of a frame.
-fn frame(text: &str) -> Result<Frame, String> {
+/// Reads the characters of a frame, which stand in `field`.
+pub(super) fn frame(field: &str, text: &str) -> Result<Frame, String> {
     let length = text.chars().count();
     if length != FRAME_BITS as usize {
-        return Err(format!("decode has {length} characters; a frame has {FRAME_BITS}, each 0 or 1"));
+        return Err(format!("{field} has {length} characters; a frame has {FRAME_BITS}, each 0 or 1"));
     }
     let mut bits = 0;
     for (place, letter) in text.chars().enumerate() {
         let bit = match letter {
             '0' => 0,
             '1' => 1,
-            _ => return Err(format!("decode has {letter:?} at place {place}; a bit of a frame is 0 or 1")),
+            _ => return Err(format!("{field} has {letter:?} at place {place}; a bit of a frame is 0 or 1")),
         };
         bits = bits << 1 | bit;
     }
@@ -191,7 +191,7 @@ impl Machine for Codec {
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         match step {
             Step::Encode(telegram) => Ok(Output::Frame { frame: text(kernel::encode(telegram.kernel()?)) }),
-            Step::Decode(bits) => Ok(match kernel::decode(frame(bits)?) {
+            Step::Decode(bits) => Ok(match kernel::decode(frame("decode", bits)?) {
                 Ok(telegram) => Output::Telegram { telegram: telegram.into() },
                 Err(error) => Output::Error { error: error.into() },
             }),

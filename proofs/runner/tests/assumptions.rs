@@ -195,6 +195,9 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("position/odometer.rs", "was <= far", AGAIN),
     ("telegram/counter.rs", "any_heard(e)", CASE),
     ("telegram/counter.rs", "knows(&before, advances, silent)", AGAIN),
+    ("train/distance.rs", "before.position.is_none_or(|interval| was <= i64::from(interval.farthest().0))", AGAIN),
+    ("train/mod.rs", "moved.is_some()", "what the constructor of a movement accepts, either way"),
+    ("train/silence.rs", "counted(&cycle.before, silent)", AGAIN),
 ];
 
 const CASE: &str = "the case that the theorem is about";

@@ -48,19 +48,19 @@ pub const ALL: &[Harness] = &[
 ];
 
 /// The speeds of the table in these harnesses.
-const SPEEDS: usize = 4;
+pub(crate) const SPEEDS: usize = 4;
 
 /// Arbitrary parameters, and the speeds of their table.
 #[derive(Clone, Copy)]
-struct Line {
-    permitted: Permitted,
-    settings: Settings,
-    speeds: [KmhTenths; SPEEDS],
+pub(crate) struct Line {
+    pub(crate) permitted: Permitted,
+    pub(crate) settings: Settings,
+    pub(crate) speeds: [KmhTenths; SPEEDS],
 }
 
 impl Line {
     /// The speed of a rank, found in the array; `None` from 4 on.
-    fn speed(&self, rank: AspectId) -> Option<KmhTenths> {
+    pub(crate) fn speed(&self, rank: AspectId) -> Option<KmhTenths> {
         let mut found = None;
         for (place, speed) in self.speeds.iter().enumerate() {
             if usize::from(rank.rank()) == place {
@@ -72,16 +72,16 @@ impl Line {
 }
 
 /// Whether the telegram's rank is in the table of these harnesses.
-fn knows_main(main: Main) -> bool {
+pub(crate) fn knows_main(main: Main) -> bool {
     usize::from(main.speed.rank()) < SPEEDS
 }
 
 /// Whether the telegram's ranks are in the table of these harnesses.
-fn knows_sub(sub: Sub) -> bool {
+pub(crate) fn knows_sub(sub: Sub) -> bool {
     usize::from(sub.curve.rank()) < SPEEDS && usize::from(sub.restriction.rank()) < SPEEDS
 }
 
-fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
+pub(crate) fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
     let mut speeds = [KmhTenths(0); SPEEDS];
     for place in 0..SPEEDS {
         let least = if place == 0 { 0 } else { speeds[place - 1].0.saturating_add(1) };
@@ -102,7 +102,7 @@ fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
     Some(Line { permitted: permitted.ok()?, settings, speeds })
 }
 
-fn any_distance<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Millimetres {
+pub(crate) fn any_distance<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Millimetres {
     // The likely half is of 65 m, so that drawn distances are of every size.
     let high = e.word(what, 0..=6);
     Millimetres(u32::from(high) << 16 | u32::from(e.word(what, 0..=u16::MAX)))
@@ -132,12 +132,12 @@ fn any_fixed<E: Engine + ?Sized>(e: &mut E) -> Fixed {
     }
 }
 
-fn any_kind<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> LineKind {
+pub(crate) fn any_kind<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> LineKind {
     if any_flag(e, what) { LineKind::Digital } else { LineKind::Analog }
 }
 
 /// An arbitrary state, valid or not.
-fn any_parts<E: Engine + ?Sized>(e: &mut E) -> State {
+pub(crate) fn any_parts<E: Engine + ?Sized>(e: &mut E) -> State {
     let fix = any_distance(e, "fix (65 536 mm, mm)");
     let (target, behind, newest, other) = (any_target(e), any_target(e), any_fixed(e), any_fixed(e));
     State {
@@ -152,7 +152,7 @@ fn any_parts<E: Engine + ?Sized>(e: &mut E) -> State {
 }
 
 /// An arbitrary valid state.
-fn any_state<E: Engine + ?Sized>(e: &mut E, line: &Line) -> State {
+pub(crate) fn any_state<E: Engine + ?Sized>(e: &mut E, line: &Line) -> State {
     let state = any_parts(e);
     e.assume(state.is_valid(&line.permitted));
     state
@@ -164,7 +164,7 @@ fn any_code<E: Engine + ?Sized>(e: &mut E) -> Option<KmhTenths> {
 }
 
 /// Anything that can be heard in a cycle.
-fn any_heard<E: Engine + ?Sized>(e: &mut E) -> Option<Heard> {
+pub(crate) fn any_heard<E: Engine + ?Sized>(e: &mut E) -> Option<Heard> {
     let told = any_kind(e, "line that begins (odd: digital)");
     let (main, sub) = (any_main(e)?, any_sub(e)?);
     let to_exit = any_distance(e, "distance to the exit (65 536 mm, mm)");

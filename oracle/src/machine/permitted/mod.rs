@@ -82,6 +82,15 @@ impl<'de> Deserialize<'de> for Basis {
     }
 }
 
+impl From<LineKind> for permitted::LineKind {
+    fn from(line: LineKind) -> Self {
+        match line {
+            LineKind::Analog => Self::Analog,
+            LineKind::Digital => Self::Digital,
+        }
+    }
+}
+
 impl From<permitted::Basis> for Basis {
     fn from(basis: permitted::Basis) -> Self {
         match basis {
@@ -194,10 +203,7 @@ impl Step {
     /// The first field that does not fit, in a sentence.
     pub fn heard(&self) -> Result<Heard, String> {
         Ok(Heard {
-            line: self.line.map(|line| match line {
-                LineKind::Analog => permitted::LineKind::Analog,
-                LineKind::Digital => permitted::LineKind::Digital,
-            }),
+            line: self.line.map(Into::into),
             analog: self.analog_km_h.map(|speed| tenths("analog_km_h", speed)).transpose()?,
             main: self.main.as_ref().map(MainTelegram::kernel).transpose()?,
             sub: self.sub.as_ref().map(SubTelegram::kernel).transpose()?,
