@@ -70,7 +70,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
         old_rule: &["ilk-release-without-rear"],
-        seed: 15,
+        seed: 11,
         model: "interlocking-loop-falsely-occupied",
     },
     Fault {
@@ -125,7 +125,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Worker, Family::Collision, Family::Authority],
         layout: LOOP,
         old_rule: &["line-set-without-consent", "line-proceed-without-consent", "line-granted-without-consent"],
-        seed: 20,
+        seed: 9,
         model: "interlocking-loop-line-blocked-own",
     },
     Fault {
