@@ -27,6 +27,7 @@ pub mod position;
 pub mod supervision;
 pub mod telegram;
 pub mod time;
+pub mod wayside;
 
 #[cfg(kani)]
 mod contracts;
@@ -64,5 +65,6 @@ pub static HARNESSES: &[&[Harness]] = &[
     permitted::ALL,
     position::ALL,
     interlocking::ALL,
+    wayside::ALL,
     duplex::ALL,
 ];

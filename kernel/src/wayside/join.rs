@@ -61,8 +61,8 @@ impl<const B: usize> Counted<B> {
     ///
     /// # Errors
     /// The first rule of WAY-11 to WAY-15 that is broken.
-    #[inline]
-    pub(super) fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
+    #[inline(never)]
+    pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
         join: &Join<B>,
     ) -> Result<Self, WaysideError> {

@@ -102,7 +102,6 @@ impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S
     ///
     /// # Errors
     /// The first rule that is broken.
-    #[inline]
     pub fn new(layout: &'a Layout<R, P, N, S>, equipment: &Equipment<B>) -> Result<Self, WaysideError> {
         //= spec/wayside.md#way-20-the-life-of-consent
         //# The constructor MUST reject a life of the neighbour's permission that is 0, over 60 000 cycles, or not under the layout's turn time.

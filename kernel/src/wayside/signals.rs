@@ -83,7 +83,7 @@ impl Signals {
     ///
     /// # Errors
     /// The first rule of WAY-16 to WAY-19 that is broken.
-    #[inline]
+    #[inline(never)]
     pub(super) fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
         plan: &SignalPlan,
@@ -131,7 +131,7 @@ impl Signals {
 }
 
 /// The speed codes as trains hear them.
-#[inline]
+#[inline(never)]
 fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
     //= spec/wayside.md#way-16-the-codes
     //# The constructor MUST reject signals whose code 0 is not of speed 0, whose speeds do not rise with the codes, or with a speed that is not in the trains' table of speeds or has no pair of codes.
@@ -168,7 +168,7 @@ fn rank(aspects: &AspectTable, speed: KmhTenths) -> Option<AspectId> {
 }
 
 /// The first pair of codes that names exactly this speed.
-#[inline]
+#[inline(never)]
 fn pair(codes: &CodeTable, speed: KmhTenths) -> Option<Codes> {
     let mut found = None;
     for row in 0..8_u8 {
@@ -183,7 +183,7 @@ fn pair(codes: &CodeTable, speed: KmhTenths) -> Option<Codes> {
 }
 
 /// The circuits with their lengths.
-#[inline]
+#[inline(never)]
 fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
     plan: &SignalPlan,
@@ -211,11 +211,9 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
         //= spec/wayside.md#way-19-two-numbers-a-circuit
         //# The constructor MUST reject signals in which one section number stands for two circuits, or for both directions of travel of one.
         let mut clash = fixed.left.section == fixed.right.section;
-        for (other, its) in plan.circuits.iter().enumerate() {
-            if let (true, Some(its)) = (other < index, its) {
-                clash |= its.left.section == fixed.left.section || its.left.section == fixed.right.section;
-                clash |= its.right.section == fixed.left.section || its.right.section == fixed.right.section;
-            }
+        for its in plan.circuits.iter().take(index).flatten() {
+            clash |= its.left.section == fixed.left.section || its.left.section == fixed.right.section;
+            clash |= its.right.section == fixed.left.section || its.right.section == fixed.right.section;
         }
         if clash {
             return Err(WaysideError::SectionNumberTwice(circuit));
@@ -226,7 +224,7 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
 }
 
 /// The circuits in which a train may wait for a telegram, or run by one.
-#[inline]
+#[inline(never)]
 fn used<const R: usize, const P: usize, const N: usize, const S: usize>(layout: &Layout<R, P, N, S>) -> CircuitSet {
     let mut used = CircuitSet::EMPTY;
     for route in &layout.plan().routes {
