@@ -3,8 +3,9 @@
 //! Each message echoes the last stamp that its sender has heard from the receiver. What answers a stamp was sent after it, so the
 //! receiver knows how old a message is at most, however long it was on its way and however often it is repeated.
 
+use super::WaysideError;
 use crate::interlocking::Epoch;
-use crate::time::Ticks;
+use crate::time::{MAX_TICKS, Ticks};
 
 /// The number of a device's start, never the same twice for one device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -82,11 +83,35 @@ impl Consent {
         self
     }
 
+    /// What is told to the neighbour in the cycle stamped `sent`.
+    #[must_use]
+    pub const fn tell(&self, sent: Stamp, permission: Permission) -> Message {
+        //= spec/wayside.md#way-22-what-the-neighbour-is-told
+        //# A device MUST tell its neighbour at each segment in every cycle whether it permits it to send trains, the number of the cycle, and the cycle of the neighbour that it has heard of last.
+        Message { permission, sent, echo: self.heard }
+    }
+
     /// Whether the neighbour's permission counts.
     pub const fn counts(&self, life: Ticks) -> bool {
         //= spec/wayside.md#way-8-the-age-of-consent
         //# The neighbour's permission MUST count only while no more cycles than its life have passed since the own cycle that its message echoes.
         matches!(self.permission, Permission::Granted) && self.age.0 <= life.0
+    }
+}
+
+/// Whether a permission may count for `life`, on a line with this turn time.
+///
+/// # Errors
+/// [`WaysideError::NoLife`] or [`WaysideError::LifeOutlastsTurn`].
+pub const fn check_life(life: Ticks, turn: Ticks) -> Result<(), WaysideError> {
+    //= spec/wayside.md#way-20-the-life-of-consent
+    //# The constructor MUST reject a life of the neighbour's permission that is 0, over 60 000 cycles, or not under the layout's turn time.
+    if life.0 == 0 {
+        Err(WaysideError::NoLife)
+    } else if life.0 > MAX_TICKS || life.0 >= turn.0 {
+        Err(WaysideError::LifeOutlastsTurn)
+    } else {
+        Ok(())
     }
 }
 

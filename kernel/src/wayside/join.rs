@@ -10,8 +10,8 @@ use crate::block::{
     short_window,
 };
 use crate::distance::Metres;
-use crate::interlocking::{CircuitId, CircuitSet, Layout, SegmentId, SegmentSet, Travel};
-use crate::{Machine, interlocking};
+use crate::interlocking::{CircuitId, CircuitSet, Layout, Refusal, Request, SegmentId, SegmentSet, Travel};
+use crate::Machine;
 
 /// The most sections of a block.
 const SECTIONS: usize = MAX_SECTIONS as usize;
@@ -132,9 +132,10 @@ impl<const B: usize> Counted<B> {
         self.line.blocks().first().map_or(Hold::MOST, |block| block.hold())
     }
 
-    /// One cycle: what is counted, and the circuits that are occupied by it. `reported` are the circuits that are reported.
+    /// One cycle: what is counted, and what is told to the interlocking as occupied. `reported` are the circuits that are reported.
     #[inline]
-    pub(super) fn count(
+    #[must_use]
+    pub fn count(
         &self,
         state: LineState<B>,
         blocks: [Detection; B],
@@ -145,7 +146,9 @@ impl<const B: usize> Counted<B> {
         let hold = if reported.meets(self.beyond) { self.hold() } else { Hold::NONE };
         // Beyond the exit the circuits report the train, so that it is let go at once.
         let (state, output) = self.line.step(state, LineInput { blocks, beyond: Beyond { hold, entered: true } });
-        let mut occupied = CircuitSet::EMPTY;
+        //= spec/wayside.md#way-1-occupancy
+        //# The interlocking MUST be told as occupied every circuit that is reported so, the circuit of every section that the counted line reports, and before the line's entry the circuits of as many places as it asks to hold.
+        let mut occupied = reported;
         for (report, circuits) in output.blocks.iter().zip(&self.sections) {
             for (section, circuit) in (0_u8..).zip(circuits) {
                 occupied = occupied.or(circuit.only_if(report.occupied.contains(section)));
@@ -157,20 +160,26 @@ impl<const B: usize> Counted<B> {
         (state, output, occupied)
     }
 
-    /// Whether the request would turn the line.
+    /// The request that is told to the interlocking.
+    ///
+    /// # Errors
+    /// [`Refusal::Direction`] if it would turn the line.
     #[inline]
-    pub(super) fn turns(&self, request: Option<interlocking::Request>) -> bool {
+    pub fn admit(&self, request: Option<Request>) -> Result<Option<Request>, Refusal> {
         //= spec/wayside.md#way-10-a-counted-line-is-not-turned
         //# A request to turn the segment of a counted line against its direction of travel MUST be refused.
         match request {
-            Some(interlocking::Request::Turn(segment, travel)) => segment == self.segment && travel != self.travel,
-            _ => false,
+            Some(Request::Turn(segment, travel)) if segment == self.segment && travel != self.travel => {
+                Err(Refusal::Direction)
+            }
+            other => Ok(other),
         }
     }
 
     /// Whether the segment has no direction but that of the line.
     #[inline]
-    pub(super) fn is_kept(&self, toward: SegmentSet, away: SegmentSet) -> bool {
+    #[must_use]
+    pub fn is_kept(&self, toward: SegmentSet, away: SegmentSet) -> bool {
         match self.travel {
             Travel::Toward => !away.has(self.segment),
             Travel::Away => !toward.has(self.segment),

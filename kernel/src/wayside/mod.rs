@@ -14,7 +14,7 @@ mod join;
 mod signals;
 mod speech;
 
-pub use consent::{Consent, Message, Permission, Session, Stamp};
+pub use consent::{Consent, Message, Permission, Session, Stamp, check_life};
 pub use counters::{Counters, Framed};
 pub use join::{Counted, Join, Spot};
 pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word};
@@ -26,7 +26,7 @@ use crate::interlocking::{
     self, CircuitId, CircuitSet, Combined, Commands, Layout, MAX_CIRCUITS, Memory, Orders, Positions, Refusal, Request,
     RouteSet, SegmentSet, SpeedCode,
 };
-use crate::time::{MAX_TICKS, Ticks};
+use crate::time::Ticks;
 
 /// What a device has besides its layout. Not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,14 +103,7 @@ impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S
     /// # Errors
     /// The first rule that is broken.
     pub fn new(layout: &'a Layout<R, P, N, S>, equipment: &Equipment<B>) -> Result<Self, WaysideError> {
-        //= spec/wayside.md#way-20-the-life-of-consent
-        //# The constructor MUST reject a life of the neighbour's permission that is 0, over 60 000 cycles, or not under the layout's turn time.
-        if equipment.life.0 == 0 {
-            return Err(WaysideError::NoLife);
-        }
-        if equipment.life.0 > MAX_TICKS || equipment.life >= layout.plan().turn {
-            return Err(WaysideError::LifeOutlastsTurn);
-        }
+        consent::check_life(equipment.life, layout.plan().turn)?;
         let counted = match &equipment.counted {
             Some(join) => Some(Counted::new(layout, join)?),
             None => None,
@@ -218,8 +211,8 @@ pub struct Reading<const B: usize> {
     pub input: interlocking::Input,
     /// What the counted line reports.
     pub line: Option<LineOutput<B>>,
-    /// The request would turn the counted line: it is not told to the interlocking.
-    pub turns: bool,
+    /// Why the request is not told to the interlocking; none if it is.
+    pub refused: Option<Refusal>,
 }
 
 impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize> Wayside<'_, B, R, P, N, S> {
@@ -242,26 +235,24 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         for (number, counters) in state.counters.iter_mut().enumerate() {
             *counters = counters.step(CircuitSet::nth(number), state.sent, input.framed);
         }
-        //= spec/wayside.md#way-1-occupancy
-        //# The interlocking MUST be told as occupied every circuit that is reported so, the circuit of every section that the counted line reports, and before the line's entry the circuits of as many places as it asks to hold.
         let mut occupied = input.occupied;
         let mut line = None;
-        let mut turns = false;
+        let mut request = Ok(input.request);
         if let Some(counted) = &self.counted {
-            let (next, report, by_count) = counted.count(state.line, input.blocks, input.occupied);
+            let (next, report, told) = counted.count(state.line, input.blocks, input.occupied);
             state.line = next;
-            occupied = occupied.or(by_count);
+            occupied = told;
             line = Some(report);
-            turns = counted.turns(input.request);
+            request = counted.admit(input.request);
         }
         let input = interlocking::Input {
             occupied,
             detected: input.detected,
-            request: if turns { None } else { input.request },
+            request: request.unwrap_or(None),
             orders: input.orders,
             consent,
         };
-        (state, Reading { input, line, turns })
+        (state, Reading { input, line, refused: request.err() })
     }
 
     /// The last part of a cycle: what leaves the device. `state` has the memory that interlocking and ATC have after `commands`.
@@ -288,7 +279,7 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
                 state.sent = state.sent.or(it.only_if(transmission.is_some()));
             }
         }
-        let answer = if reading.turns { Some(Err(Refusal::Direction)) } else { interlocking.answer };
+        let answer = reading.refused.map(Err).or(interlocking.answer);
         let output = Output {
             proceed: interlocking.proceed,
             drives: interlocking.drives,
@@ -305,15 +296,13 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
     #[inline]
     #[must_use]
     pub fn messages(&self, state: &State<B, R, S>, permits: SegmentSet) -> [Option<Message>; S] {
-        //= spec/wayside.md#way-22-what-the-neighbour-is-told
-        //# A device MUST tell its neighbour at each segment in every cycle whether it permits it to send trains, the number of the cycle, and the cycle of the neighbour that it has heard of last.
         let sent = Stamp { session: self.session, cycle: state.device.cycle };
         let mut messages = [None; S];
         let known = self.layout.plan().segments.iter().zip(&state.consents);
         for (number, (message, (segment, consent))) in messages.iter_mut().zip(known).enumerate() {
             let granted = permits.meets(SegmentSet::nth(number));
             let permission = if granted { Permission::Granted } else { Permission::Withheld };
-            *message = (segment.length > 0).then_some(Message { permission, sent, echo: consent.heard });
+            *message = (segment.length > 0).then_some(consent.tell(sent, permission));
         }
         messages
     }

@@ -84,7 +84,7 @@ impl Signals {
     /// # Errors
     /// The first rule of WAY-16 to WAY-19 that is broken.
     #[inline(never)]
-    pub(super) fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
+    pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
         plan: &SignalPlan,
     ) -> Result<Self, WaysideError> {
@@ -147,24 +147,11 @@ fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
             return Err(WaysideError::SpeedsFall(code));
         }
         before = Some(speed);
-        let rank = rank(&plan.aspects, speed).ok_or(WaysideError::NoRank(code))?;
+        let rank = plan.aspects.aspect(speed).ok_or(WaysideError::NoRank(code))?;
         let codes = pair(&plan.codes, speed).ok_or(WaysideError::NoPair(code))?;
         *word = Some(Word { rank, codes });
     }
     Ok(words)
-}
-
-/// The rank of exactly this speed.
-#[inline]
-fn rank(aspects: &AspectTable, speed: KmhTenths) -> Option<AspectId> {
-    let mut found = None;
-    for number in 0..16_u8 {
-        let Some(rank) = AspectId::new(number) else { continue };
-        if aspects.speed(rank) == Some(speed) {
-            found = Some(rank);
-        }
-    }
-    found
 }
 
 /// The first pair of codes that names exactly this speed.
@@ -210,17 +197,24 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
         }
         //= spec/wayside.md#way-19-two-numbers-a-circuit
         //# The constructor MUST reject signals in which one section number stands for two circuits, or for both directions of travel of one.
-        let mut clash = fixed.left.section == fixed.right.section;
-        for its in plan.circuits.iter().take(index).flatten() {
-            clash |= its.left.section == fixed.left.section || its.left.section == fixed.right.section;
-            clash |= its.right.section == fixed.left.section || its.right.section == fixed.right.section;
-        }
-        if clash {
+        if clashes(&plan.circuits, index, fixed) {
             return Err(WaysideError::SectionNumberTwice(circuit));
         }
         *place = Some((fixed, length));
     }
     Ok(kept)
+}
+
+/// Whether a number of the circuit at `index` stands for both directions of travel, or for a circuit before it.
+#[inline(never)]
+fn clashes(circuits: &[Option<Fixed>; MAX_CIRCUITS], index: usize, fixed: Fixed) -> bool {
+    let (left, right) = (fixed.left.section, fixed.right.section);
+    let mut clash = left == right;
+    for its in circuits.iter().take(index).flatten() {
+        clash |= its.left.section == left || its.left.section == right;
+        clash |= its.right.section == left || its.right.section == right;
+    }
+    clash
 }
 
 /// The circuits in which a train may wait for a telegram, or run by one.

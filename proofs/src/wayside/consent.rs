@@ -1,26 +1,10 @@
 //! Consent (T-WAY-5): never older than its life, whatever comes late, twice or out of order.
 
-use super::{LONGEST, device, plan, quiet};
 use crate::Engine;
 use crate::engine::{any_flag, any_u32};
-use atc_kernel::Machine;
-use atc_kernel::interlocking::{CircuitSet, Epoch, Layout, Segment, SegmentSet};
+use atc_kernel::interlocking::Epoch;
 use atc_kernel::time::{MAX_TICKS, Ticks};
-use atc_kernel::wayside::{Consent, Message, Permission, Session, Stamp, State, Wayside};
-
-/// A station with one segment and no route.
-type Line = Layout<1, 1, 0, 1>;
-type Device<'a> = Wayside<'a, 0, 1, 1, 0, 1>;
-
-/// The layout with any turn time.
-fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
-    let mut plan = plan();
-    plan.segments = [Segment { circuits: [CircuitSet::nth(0)], length: 1, ..Segment::NONE }];
-    plan.turn = Ticks(e.word("turn time (cycles)", 3..=9));
-    let layout = Layout::with_what_proofs_need(plan).ok();
-    e.assume(layout.is_some());
-    layout
-}
+use atc_kernel::wayside::{Consent, Message, Permission, Session, Stamp, WaysideError, check_life};
 
 fn any_permission<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Permission {
     if any_flag(e, what) { Permission::Granted } else { Permission::Withheld }
@@ -38,20 +22,16 @@ fn any_message<E: Engine + ?Sized>(e: &mut E) -> Message {
     Message { permission, sent: any_stamp(e), echo }
 }
 
-/// Any valid state as far as consent looks at it.
-fn any_state<E: Engine + ?Sized>(e: &mut E, device: &Device, life: Ticks) -> Option<State<0, 1, 1>> {
-    let mut state = device.initial();
-    let cycle = Epoch(any_u32(e, "number of the last cycle", 0..=9));
-    state.device.cycle = cycle;
-    state.device.interlocking.epoch = cycle;
+/// Any valid memory of the neighbour, and a life.
+fn any_consent<E: Engine + ?Sized>(e: &mut E) -> Option<(Ticks, Consent)> {
+    let life = Ticks(e.word("life (cycles)", 1..=6));
     let heard = any_stamp(e);
     let heard = if any_flag(e, "the neighbour has been heard (odd: yes)") { Some(heard) } else { None };
     let permission = any_permission(e, "permitted by the newest message (odd: yes)");
-    let consent = Consent { permission, age: Ticks(e.word("age (cycles)", 0..=9)), heard };
-    let valid = consent.is_valid(life);
+    let consent = Consent { permission, age: Ticks(e.word("age (cycles)", 0..=7)), heard };
+    let valid = consent.is_valid(life) && life.0 <= MAX_TICKS;
     e.assume(valid);
-    state.consents = [consent];
-    if valid { Some(state) } else { None }
+    if valid { Some((life, consent)) } else { None }
 }
 
 harness! {
@@ -60,18 +40,18 @@ harness! {
     /// only one that answers a later cycle grants again.
     t_way_5(e)
     theorem "T-WAY-5";
-    requirements ["WAY-8", "WAY-9", "WAY-20"];
+    requirements ["WAY-8", "WAY-9"];
     assumptions ["echo-answers"];
-    bound "1 route, 1 segment";
+    bound "";
     cases 1;
-    unwind 65 = 1 + LONGEST;
+    unwind 2 = 2;
     claims {
         Fresh: "a permission that is handed to the interlocking was sent no more cycles ago than its life",
         Kept: "what is remembered to be permitted was sent no more cycles ago than is remembered",
         Ended: "a message that withholds ends the permission in its cycle, whatever it answers",
         Ordered: "a message that answers no later cycle than the newest before it grants nothing that was not granted",
         Counts: "a message that grants and answers a later cycle, no longer ago than the life, counts in its cycle",
-        Oldest: "the age that the device prints is the life, and that is less than the turn time",
+        Start: "at the start nothing is permitted, and nothing has been heard",
     }
     covers {
         Kept: "a permission counts that came in an earlier cycle",
@@ -81,11 +61,7 @@ harness! {
         Renewed: "a message makes the permission younger",
     }
     {
-        let Some(line) = any_line(e) else { return };
-        let life = Ticks(e.word("life (cycles)", 1..=6));
-        let Some(device) = device(e, &line, None, (life, 1)) else { return };
-        let Some(state) = any_state(e, &device, life) else { return };
-        let before = state.consents[0];
+        let Some((life, before)) = any_consent(e) else { return };
         let granted = before.permission == Permission::Granted && before.age.0 <= life.0;
         // Ghost: cycles since the message was sent that says so.
         let sent = any_u32(e, "cycles since the newest message was sent", 0..=9);
@@ -93,21 +69,18 @@ harness! {
         let message = any_message(e);
         let comes = any_flag(e, "a message comes (odd: yes)");
         let its = any_u32(e, "cycles since this message was sent", 0..=9);
-        let now = Stamp { session: Session(device_session(&device, &state)), cycle: Epoch(state.device.cycle.0.wrapping_add(1)) };
+        let now = any_stamp(e);
         let (answers, since) = match message.echo {
             Some(echo) => (echo.session.0 == now.session.0, now.cycle.0.wrapping_sub(echo.cycle.0)),
             None => (false, 0),
         };
         e.suppose("echo-answers", !answers || its <= since);
-        let mut input = quiet();
-        input.messages = [if comes { Some(message) } else { None }];
-        let (after, reading) = device.read(state, input);
-        let counts = reading.input.consent.bits() & 1 == 1;
+        let consent = before.hear(life, now, if comes { Some(message) } else { None });
+        let counts = consent.counts(life);
         let grants = comes && message.permission == Permission::Granted;
         let withholds = comes && message.permission == Permission::Withheld;
         let older = granted && sent < u32::from(life.0);
         e.claim(Claim::Fresh as u32, !counts || older || grants && its <= u32::from(life.0));
-        let consent = after.consents[0];
         let kept = granted && sent < u32::from(consent.age.0) || grants && its <= u32::from(consent.age.0);
         let remembered = consent.permission == Permission::Granted && consent.age.0 <= life.0;
         e.claim(Claim::Kept as u32, (!remembered || kept) && consent.is_valid(life));
@@ -115,7 +88,8 @@ harness! {
         let newer = answers && since <= u32::from(before.age.0) && since <= u32::from(life.0);
         e.claim(Claim::Ordered as u32, !comes || newer || !counts || granted && before.age.0 < life.0);
         e.claim(Claim::Counts as u32, !grants || !newer || counts);
-        e.claim(Claim::Oldest as u32, device.oldest() == life && life < line.plan().turn && life.0 <= MAX_TICKS);
+        let start = Consent::none(life);
+        e.claim(Claim::Start as u32, start.is_valid(life) && !start.counts(life) && start.heard.is_none());
         e.cover(Cover::Kept as u32, counts && !comes);
         e.cover(Cover::Lapses as u32, granted && !comes && !counts);
         e.cover(Cover::Repeated as u32, grants && answers && its > u32::from(life.0));
@@ -124,55 +98,66 @@ harness! {
     }
 }
 
-/// The number of this start, as its messages have it.
-fn device_session(device: &Device, state: &State<0, 1, 1>) -> u16 {
-    device.messages(state, SegmentSet::EMPTY)[0].map_or(0, |message| message.sent.session.0)
-}
-
 harness! {
-    /// What a station tells its neighbour in a cycle is what it permits in that cycle, under the number of that cycle, and it echoes what it has heard
-    /// of last; so that the neighbour, if it is this device, uses no permission that was withdrawn the turn time ago.
+    /// What a station tells its neighbour is what it permits, under the stamp of the cycle, and it echoes what it has heard of last.
     t_way_5_told(e)
     theorem "T-WAY-5";
-    requirements ["WAY-20", "WAY-22"];
+    requirements ["WAY-22"];
     assumptions [];
-    bound "1 route, 1 segment";
+    bound "";
     cases 1;
-    unwind 65 = 1 + LONGEST;
+    unwind 2 = 2;
     claims {
-        Permits: "a message grants exactly what is permitted in its cycle",
-        Stamp: "it has the number of its cycle and the start of its device",
-        Echo: "it echoes the cycle of the last message that has come, of this cycle or before",
-        Known: "the life is at least one cycle, and a permission that was withdrawn for the turn time is older than it",
+        Told: "a message has the permission and the stamp of its cycle",
+        Echo: "it echoes the stamp of the last message that has come, of this cycle or before",
     }
     covers {
-        Grants: "a message grants",
         Echoes: "a message echoes what came in this cycle",
         Silent: "the neighbour was never heard",
     }
     {
-        let Some(line) = any_line(e) else { return };
-        let life = Ticks(e.word("life (cycles)", 1..=6));
-        let Some(device) = device(e, &line, None, (life, 1)) else { return };
-        let Some(state) = any_state(e, &device, life) else { return };
+        let Some((life, before)) = any_consent(e) else { return };
         let message = any_message(e);
         let comes = any_flag(e, "a message comes (odd: yes)");
-        let mut input = quiet();
-        input.messages = [if comes { Some(message) } else { None }];
-        let permits = SegmentSet::from_bits(e.word("permits (bits)", 0..=1).to_le_bytes()[0]);
-        let (mut after, _) = device.read(state, input);
-        let cycle = Epoch(state.device.cycle.0.wrapping_add(1));
-        after.device.cycle = cycle;
-        let [told] = device.messages(&after, permits);
-        let Some(told) = told else { return e.claim(Claim::Permits as u32, false) };
-        let granted = told.permission == Permission::Granted;
-        e.claim(Claim::Permits as u32, granted == (permits.bits() & 1 == 1));
-        e.claim(Claim::Stamp as u32, told.sent.cycle == cycle && told.sent.session.0 == device_session(&device, &state));
-        let heard = if comes { Some(message.sent) } else { state.consents[0].heard };
-        e.claim(Claim::Echo as u32, told.echo == heard);
-        e.claim(Claim::Known as u32, life.0 >= 1 && line.plan().turn.0 > life.0);
-        e.cover(Cover::Grants as u32, granted);
-        e.cover(Cover::Echoes as u32, comes && told.echo == Some(message.sent));
+        let now = any_stamp(e);
+        let permission = any_permission(e, "permitted (odd: yes)");
+        let told = before.hear(life, now, if comes { Some(message) } else { None }).tell(now, permission);
+        e.claim(Claim::Told as u32, told.permission == permission && told.sent == now);
+        e.claim(Claim::Echo as u32, told.echo == if comes { Some(message.sent) } else { before.heard });
+        e.cover(Cover::Echoes as u32, comes);
         e.cover(Cover::Silent as u32, told.echo.is_none());
+    }
+}
+
+harness! {
+    /// A life is accepted if and only if it is one cycle at least, 60 000 at most, and under the turn time: a permission that was withdrawn for the turn time
+    /// is older than the life.
+    way_life(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-20"];
+    assumptions [];
+    bound "";
+    cases 1;
+    unwind 2 = 2;
+    claims {
+        Exact: "accepted if and only if it is 1 to 60 000 cycles and under the turn time",
+        Told: "the error says which",
+    }
+    covers {
+        Accepted: "a life is accepted",
+        Long: "a life as long as the turn time",
+    }
+    {
+        let (life, turn) = (e.word("life (cycles)", 0..=3), e.word("turn time (cycles)", 0..=4));
+        let made = check_life(Ticks(life), Ticks(turn));
+        e.claim(Claim::Exact as u32, made.is_ok() == (life >= 1 && life < turn && life <= 60_000));
+        let told = match made {
+            Err(WaysideError::NoLife) => life == 0,
+            Err(error) => error == WaysideError::LifeOutlastsTurn && (life >= turn || life > 60_000),
+            Ok(()) => true,
+        };
+        e.claim(Claim::Told as u32, told);
+        e.cover(Cover::Accepted as u32, made.is_ok());
+        e.cover(Cover::Long as u32, life > 0 && life == turn);
     }
 }

@@ -1,17 +1,16 @@
 //! From sections to circuits (T-WAY-1, T-WAY-2), and what the constructor asks of the joint.
 
-use super::{LONGEST, device, plan, quiet};
+use super::{LONGEST, plan};
 use crate::Engine;
 use crate::block::{any_detection, any_hold, any_parts, suppose_count, suppose_no_phantom};
 use crate::engine::{any_byte, any_flag};
-use atc_kernel::Machine;
 use atc_kernel::block::{Block, Border, Direction, LineError, LineState, State as Kept, Status};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Element, Layout, Positions, Route, Segment, SegmentId, SegmentSet, Travel,
 };
 use atc_kernel::time::Ticks;
-use atc_kernel::wayside::{Counted, Join, State, Wayside, WaysideError};
+use atc_kernel::wayside::{Counted, Join, WaysideError};
 
 /// The circuits of the track in the direction of travel.
 const TRACK: usize = 7;
@@ -19,7 +18,6 @@ const TRACK: usize = 7;
 const PLACES: usize = 4;
 
 type Station = Layout<1, PLACES, 0, 1>;
-type Device<'a> = Wayside<'a, 2, 1, PLACES, 0, 1>;
 
 /// The direction of travel, whether the line's low end is its entry, the circuit of the track on which the first section is, and the sections of
 /// the first and of the second block from the low end.
@@ -160,13 +158,12 @@ fn any_line<E: Engine + ?Sized>(e: &mut E) -> Option<Line> {
 }
 
 /// Any valid state, as far as counting looks at it.
-fn any_state<E: Engine + ?Sized>(e: &mut E, line: &Line, device: &Device) -> Option<State<2, 1, 1>> {
+fn any_state<E: Engine + ?Sized>(e: &mut E, line: &Line, counted: &Counted<2>) -> Option<LineState<2>> {
     let blocks = [line.blocks[line.block_at(0)], line.blocks[line.block_at(1)]];
     let parts = [any_parts(e, blocks[0]), any_parts(e, blocks[1])];
     let border = any_byte(e, "border (trains)", 0..=2);
-    let mut state = device.initial();
-    state.line = LineState { blocks: parts.map(Kept::from_parts), borders: [Border(0), Border(border)] };
-    let valid = device.counted().is_some_and(|counted| state.line.is_valid(counted.line()));
+    let state = LineState { blocks: parts.map(Kept::from_parts), borders: [Border(0), Border(border)] };
+    let valid = state.is_valid(counted.line());
     e.assume(valid);
     if valid { Some(state) } else { None }
 }
@@ -209,8 +206,10 @@ harness! {
     {
         let Some(line) = any_line(e) else { return };
         let Some(station) = any_station(e, line.travel) else { return };
-        let Some(device) = device(e, &station, Some(line.join()), (Ticks(1), TRACK)) else { return };
-        let Some(state) = any_state(e, &line, &device) else { return };
+        let counted = Counted::new(&station, &line.join()).ok();
+        e.assume(counted.is_some());
+        let Some(counted) = counted else { return };
+        let Some(state) = any_state(e, &line, &counted) else { return };
         // The ghost: its front is in circuit `head` of the track, `into` metres beyond its beginning.
         let head = usize::from(e.word("the front's circuit", 0..=6));
         e.assume(head < TRACK && head >= line.entry);
@@ -238,9 +237,7 @@ harness! {
             reports &= !its_part || occupied.bits() & at(line.travel, place) != 0;
         }
         e.suppose("loss-of-shunt-within-clear", reports);
-        let mut input = quiet();
-        input.occupied = occupied;
-        input.blocks = [any_detection(e, line.blocks[0]), any_detection(e, line.blocks[1])];
+        let blocks = [any_detection(e, line.blocks[0]), any_detection(e, line.blocks[1])];
         let mut heads = [0_u16; 2];
         for (block, its) in heads.iter_mut().enumerate() {
             *its = e.word("other heads in a block (bits)", 0..=3) & 3;
@@ -250,19 +247,18 @@ harness! {
                 *its |= if there && line.place(block, section) == head { 1 << section } else { 0 };
             }
         }
-        let (_, reading) = device.read(state, input);
-        let Some(report) = reading.line else { return e.claim(Claim::Head as u32, false) };
+        let (_, report, told) = counted.count(state, blocks, occupied);
         let mut missed = false;
         for block in 0..2 {
             let all = if line.sizes[block] == 1 { 1 } else { 3 };
-            let present = input.blocks[block].present.bits() & all;
+            let present = blocks[block].present.bits() & all;
             missed |= present != heads[block];
             suppose_no_phantom(e, present, heads[block]);
             let counts = report.blocks[block].status == Status::Counting;
             let number = (heads[block] & 1) + (heads[block] >> 1);
             suppose_count(e, !counts || u16::from(report.blocks[block].count.0) >= number);
         }
-        let told = reading.input.occupied.bits();
+        let told = told.bits();
         e.claim(Claim::Head as u32, !on_line || told & at(line.travel, head) != 0);
         e.claim(Claim::Tail as u32, !on_line || told & at(line.travel, under) != 0);
         let tail_on_line = under >= line.entry && under < exit;
@@ -300,19 +296,20 @@ harness! {
     {
         let Some(line) = any_line(e) else { return };
         let Some(station) = any_station(e, line.travel) else { return };
-        let Some(device) = device(e, &station, Some(line.join()), (Ticks(1), TRACK)) else { return };
-        let Some(state) = any_state(e, &line, &device) else { return };
-        let mut input = quiet();
-        input.blocks = [any_detection(e, line.blocks[0]), any_detection(e, line.blocks[1])];
-        input.occupied = any_occupied(e, "reported (bits)");
-        let (after, reading) = device.read(state, input);
-        let told = reading.input.occupied.bits();
-        let more = input.occupied.or(any_occupied(e, "reported besides (bits)"));
-        let (_, other) = device.read(state, atc_kernel::wayside::Input { occupied: more, ..input });
-        e.claim(Claim::Unmasked as u32, input.occupied.bits() & !told == 0);
-        e.claim(Claim::Monotone as u32, told & !other.input.occupied.bits() == 0);
-        let Some(report) = reading.line else { return e.claim(Claim::Exact as u32, false) };
-        let mut expected = input.occupied.bits();
+        let counted = Counted::new(&station, &line.join()).ok();
+        e.assume(counted.is_some());
+        let Some(counted) = counted else { return };
+        let Some(state) = any_state(e, &line, &counted) else { return };
+        let blocks = [any_detection(e, line.blocks[0]), any_detection(e, line.blocks[1])];
+        let occupied = any_occupied(e, "reported (bits)");
+        let (after, report, told) = counted.count(state, blocks, occupied);
+        let told = told.bits();
+        let more = occupied.or(any_occupied(e, "reported besides (bits)"));
+        let (_, _, other) = counted.count(state, blocks, more);
+        let other = other.bits();
+        e.claim(Claim::Unmasked as u32, occupied.bits() & !told == 0);
+        e.claim(Claim::Monotone as u32, told & !other == 0);
+        let mut expected = occupied.bits();
         for block in 0..2 {
             for section in 0..2_u8 {
                 let its = usize::from(section);
@@ -327,11 +324,10 @@ harness! {
             }
         }
         e.claim(Claim::Exact as u32, told == expected);
-        let valid = device.counted().is_some_and(|counted| after.line.is_valid(counted.line()));
-        e.claim(Claim::Valid as u32, valid);
-        e.cover(Cover::More as u32, other.input.occupied.bits() & !(told | more.bits()) != 0);
+        e.claim(Claim::Valid as u32, after.is_valid(counted.line()));
+        e.cover(Cover::More as u32, other & !(told | more.bits()) != 0);
         let first = if line.entry > 0 { at(line.travel, line.entry - 1) } else { 0 };
-        e.cover(Cover::Before as u32, told & first & !input.occupied.bits() != 0);
+        e.cover(Cover::Before as u32, told & first & !occupied.bits() != 0);
     }
 }
 

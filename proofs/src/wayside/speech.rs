@@ -16,7 +16,7 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Frame, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{
-    Counters, Equipment, Facing, Feed, Fixed, Reading, Saying, Session, SignalPlan, Wayside, WaysideError,
+    Counters, Equipment, Facing, Feed, Fixed, Reading, Saying, Session, SignalPlan, Signals, Wayside, WaysideError,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -91,12 +91,11 @@ fn any_signals<E: Engine + ?Sized>(e: &mut E, circuits: usize) -> Option<SignalP
     Some(made)
 }
 
-/// A device with these signals.
-fn made<'a, E: Engine + ?Sized>(e: &mut E, station: &'a Station, signals: SignalPlan) -> Option<Device<'a>> {
-    let equipment = Equipment::<0> { counted: None, signals, life: Ticks(1), session: Session(0) };
-    let device = Wayside::new(station, &equipment).ok();
-    e.assume(device.is_some());
-    device
+/// The signals, checked.
+fn made<E: Engine + ?Sized>(e: &mut E, station: &Station, signals: &SignalPlan) -> Option<Signals> {
+    let made = Signals::new(station, signals).ok();
+    e.assume(made.is_some());
+    made
 }
 
 /// Any movement of a train in circuit 0, whatever the ATC may say.
@@ -147,7 +146,7 @@ fn its_facing(signals: &SignalPlan, heading: Heading) -> Option<Facing> {
 fn heard<E: Engine + ?Sized>(
     e: &mut E,
     station: &Station,
-    device: &Device,
+    signals: &Signals,
     movement: Movement,
     heading: Heading,
 ) -> Option<(Feed, Counters, SpeedLimits)> {
@@ -157,7 +156,7 @@ fn heard<E: Engine + ?Sized>(
     let here = CircuitSet::from_bits(u64::from(e.word("restricted circuits (bits)", 0..=15) & 15));
     let restrictions = SpeedLimits::NONE.and_at_most(limit, here);
     let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
-    let sent = device.signals().transmission(&station.plan().lengths, saying)?;
+    let sent = signals.transmission(&station.plan().lengths, saying)?;
     Some((if heading == Heading::Left { sent.left } else { sent.right }, counters, restrictions))
 }
 
@@ -189,10 +188,10 @@ harness! {
     {
         let Some(station) = any_station(e) else { return };
         let Some(signals) = any_signals(e, 1) else { return };
-        let Some(device) = made(e, &station, signals) else { return };
+        let Some(said) = made(e, &station, &signals) else { return };
         let movement = any_movement(e);
         let heading = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, counters, _)) = heard(e, &station, &device, movement, heading) else { return e.claim(Claim::Read as u32, false) };
+        let Some((feed, counters, _)) = heard(e, &station, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
         let Some(main) = main_of(feed.main) else { return e.claim(Claim::Read as u32, false) };
         let (Some(its), Some(other)) = (its_facing(&signals, heading), its_facing(&signals, heading.opposite())) else { return };
         let own = main.section == its.section && main.section != other.section;
@@ -248,7 +247,7 @@ harness! {
     {
         let Some(station) = any_station(e) else { return };
         let Some(signals) = any_signals(e, 1) else { return };
-        let Some(device) = made(e, &station, signals) else { return };
+        let Some(said) = made(e, &station, &signals) else { return };
         let ahead = any_heading(e, "direction in which the circuits lie (odd: right)");
         let granted = e.word("circuits granted", 0..=3);
         e.assume(granted <= 3);
@@ -257,7 +256,7 @@ harness! {
         let speed = SpeedCode(any_byte(e, "speed code", 0..=3));
         let movement = Movement { stop: CircuitId::ZERO, heading, speed, hold };
         let faces = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, _, _)) = heard(e, &station, &device, movement, faces) else { return e.claim(Claim::Within as u32, false) };
+        let Some((feed, _, _)) = heard(e, &station, &said, movement, faces) else { return e.claim(Claim::Within as u32, false) };
         let Some(main) = main_of(feed.main) else { return e.claim(Claim::Within as u32, false) };
         // Metres of the ghost's front beyond the exit; 0: in its own circuit. It is before the stopping point, or at it.
         let front = u32::from(e.word("front beyond the exit (m)", 0..=900));
@@ -305,10 +304,10 @@ harness! {
     {
         let Some(station) = any_station(e) else { return };
         let Some(signals) = any_signals(e, 1) else { return };
-        let Some(device) = made(e, &station, signals) else { return };
+        let Some(said) = made(e, &station, &signals) else { return };
         let heading = any_heading(e, "heading of the train (odd: right)");
         let movement = Movement::stop_in(CircuitId::ZERO);
-        let Some((feed, counters, restrictions)) = heard(e, &station, &device, movement, heading) else { return e.claim(Claim::Read as u32, false) };
+        let Some((feed, counters, restrictions)) = heard(e, &station, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
         let Some(sub) = sub_of(feed.sub) else { return e.claim(Claim::Read as u32, false) };
         let Some(its) = its_facing(&signals, heading) else { return };
         e.claim(Claim::Read as u32, sub.section == its.section && sub.counter == counters.sub);
@@ -348,7 +347,7 @@ harness! {
     {
         let Some(station) = any_station(e) else { return };
         let Some(signals) = any_signals(e, 1) else { return };
-        let Some(device) = made(e, &station, signals) else { return };
+        let Some(said) = made(e, &station, &signals) else { return };
         let here = CircuitSet::nth(0);
         let ahead = CircuitSet::nth(1);
         let (stale, occupied) = (any_flag(e, "the table is of another cycle (odd: yes)"), any_flag(e, "the circuit is occupied (odd: yes)"));
@@ -369,7 +368,7 @@ harness! {
         let begins = read.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(&station, contents));
         let movement = telegram(&station, read.as_ref(), begins, CircuitId::ZERO);
         let faces = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, _, _)) = heard(e, &station, &device, movement, faces) else { return e.claim(Claim::Closed as u32, false) };
+        let Some((feed, _, _)) = heard(e, &station, &said, movement, faces) else { return e.claim(Claim::Closed as u32, false) };
         let Some(main) = main_of(feed.main) else { return e.claim(Claim::Closed as u32, false) };
         e.claim(Claim::Closed as u32, main.route == Route::Closed);
         let codes = signals.codes.speed(Some(feed.codes.main), Some(feed.codes.sub));
@@ -410,7 +409,10 @@ harness! {
         e.assume(station.is_some());
         let Some(station) = station else { return };
         let Some(signals) = any_signals(e, 1) else { return };
-        let Some(device) = made(e, &station, signals) else { return };
+        let equipment = Equipment::<0> { counted: None, signals, life: Ticks(1), session: Session(0) };
+        let device: Option<Device> = Wayside::new(&station, &equipment).ok();
+        e.assume(device.is_some());
+        let Some(device) = device else { return };
         let movement = any_movement(e);
         let silent = any_flag(e, "the ATC is silent (odd: yes)");
         let mut telegrams = [None; MAX_CIRCUITS];
@@ -441,7 +443,7 @@ harness! {
             orders: Default::default(),
             consent: SegmentSet::EMPTY,
         };
-        let reading: Reading<0> = Reading { input: told, line: None, turns: false };
+        let reading: Reading<0> = Reading { input: told, line: None, refused: None };
         let (after, output) = device.send(state, &reading, &Commands { interlocking, telegrams });
         let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
         let expected = device.signals().transmission(&station.plan().lengths, saying);
@@ -468,7 +470,7 @@ harness! {
     /// names a rule that is broken.
     way_signals(e)
     theorem "T-WAY-8";
-    requirements ["WAY-16", "WAY-17", "WAY-18", "WAY-19", "WAY-20"];
+    requirements ["WAY-16", "WAY-17", "WAY-18", "WAY-19"];
     assumptions [];
     bound BOUND;
     cases 1;
@@ -482,20 +484,16 @@ harness! {
         Falls: "a speed that does not rise",
         Twice: "a section number stands twice",
         Missing: "a circuit of the segment is not described",
-        Life: "a life that is not under the turn time",
     }
     {
         let Some(mut plan) = any_station(e).map(|station| *station.plan()) else { return };
         let segment = CircuitSet::nth(usize::from(e.word("circuit of the segment (number)", 0..=2) & 3));
         plan.segments = [Segment { circuits: [segment], length: 1, ..Segment::NONE }];
-        plan.turn = Ticks(e.word("turn time (cycles)", 1..=3));
         let station = Layout::with_what_proofs_need(plan).ok();
         e.assume(station.is_some());
         let Some(station) = station else { return };
         let Some(signals) = any_signals(e, 2) else { return };
-        let life = Ticks(e.word("life (cycles)", 0..=3));
-        let equipment = Equipment::<0> { counted: None, signals, life, session: Session(0) };
-        let made: Result<Device, WaysideError> = Wayside::new(&station, &equipment);
+        let made = Signals::new(&station, &signals);
         let (mut rises, mut ranked, mut paired, mut every) = (true, true, true, true);
         let mut before: Option<KmhTenths> = None;
         for code in 0..SPEEDS {
@@ -527,13 +525,10 @@ harness! {
         let lengths = plan.lengths[0].0 > 0 && plan.lengths[1].0 > 0;
         let known = |rank: AspectId| usize::from(rank.rank()) < SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
-        let lives = life.0 >= 1 && life < plan.turn && life.0 <= 60_000;
-        let legal = stops && rises && ranked && paired && every && described && lengths && curves && !twice && lives;
+        let legal = stops && rises && ranked && paired && every && described && lengths && curves && !twice;
         e.claim(Claim::Exact as u32, made.is_ok() == legal);
         let told = match made.as_ref().err() {
             None => true,
-            Some(WaysideError::NoLife) => life.0 == 0,
-            Some(WaysideError::LifeOutlastsTurn) => !lives,
             Some(WaysideError::StopMoves) => !stops,
             Some(WaysideError::SpeedsFall(_)) => !rises,
             Some(WaysideError::NoRank(_)) => !ranked,
@@ -550,6 +545,5 @@ harness! {
         e.cover(Cover::Falls as u32, matches!(made, Err(WaysideError::SpeedsFall(_))));
         e.cover(Cover::Twice as u32, matches!(made, Err(WaysideError::SectionNumberTwice(_))));
         e.cover(Cover::Missing as u32, matches!(made, Err(WaysideError::CircuitWithoutSignals(_))));
-        e.cover(Cover::Life as u32, matches!(made, Err(WaysideError::LifeOutlastsTurn)));
     }
 }
