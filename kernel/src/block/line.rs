@@ -62,7 +62,7 @@ pub fn hold_for(lengths: &[Metres], train: Metres) -> Result<Hold, LineError> {
 }
 
 /// The first section of the first `hold` consecutive ones that are together shorter than `train`.
-pub(crate) fn short_window(lengths: &[Metres], hold: Hold, train: Metres) -> Option<usize> {
+fn short_window(lengths: &[Metres], hold: Hold, train: Metres) -> Option<usize> {
     let hold = usize::from(hold.sections());
     let mut first = 0;
     while first < lengths.len() && hold <= lengths.len() - first {

@@ -16,7 +16,6 @@ mod line;
 mod section;
 
 pub use count::{Block, BlockError, Fault, Input, Output, Parts, State, Status, step};
-pub(crate) use line::short_window;
 pub use line::{
     Beyond, Border, Detection, Direction, Line, LineError, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS,
     hold_for,

@@ -5,13 +5,12 @@
 //! is proven.
 
 use super::WaysideError;
+use crate::Machine;
 use crate::block::{
     Beyond, Block, Detection, Direction, Hold, Line, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS, MAX_SECTIONS,
-    short_window,
 };
 use crate::distance::Metres;
 use crate::interlocking::{CircuitId, CircuitSet, Layout, Refusal, Request, SegmentId, SegmentSet, Travel};
-use crate::Machine;
 
 /// The most sections of a block.
 const SECTIONS: usize = MAX_SECTIONS as usize;
@@ -61,7 +60,7 @@ impl<const B: usize> Counted<B> {
     ///
     /// # Errors
     /// The first rule of WAY-11 to WAY-15 that is broken.
-    #[inline(never)]
+    #[inline]
     pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
         join: &Join<B>,
@@ -100,6 +99,16 @@ impl<const B: usize> Counted<B> {
         }
         let Join { segment, travel, .. } = *join;
         Ok(Self { line, segment, travel, sections: walk.sections, before, beyond })
+    }
+
+    /// A joint as it is given, for proofs: nothing of it is checked.
+    pub const fn from_parts(
+        line: Line<B>,
+        (segment, travel): (SegmentId, Travel),
+        sections: [[CircuitSet; SECTIONS]; B],
+        (before, beyond): ([CircuitSet; SECTIONS], CircuitSet),
+    ) -> Self {
+        Self { line, segment, travel, sections, before, beyond }
     }
 
     /// The line.
@@ -359,24 +368,30 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Chain<'_, R
         //= spec/wayside.md#way-14-the-hold-at-the-entry
         //# The constructor MUST reject a counted line where k consecutive places, of sections and of the k circuits before the entry, are together shorter than the longest train.
         let hold = join.blocks.first().map_or(Hold::NONE, |block| block.hold());
-        let mut lengths = [Metres(0); SECTIONS + MAX_LINE_SECTIONS];
-        let mut count = 0;
-        for back in (0..SECTIONS).rev() {
-            if back < usize::from(hold.sections()) && !before[back].is_empty() {
-                lengths[count] = self.shortest(before[back]);
-                count += 1;
+        let k = usize::from(hold.sections());
+        // The metres of the places before the entry, and of the sections from there on, added up.
+        let (mut metres_before, mut metres_on) = ([0_u32; SECTIONS + 1], [0_u32; SECTIONS + 1]);
+        let mut known = 0;
+        for place in 0..SECTIONS {
+            let circuits = before[place];
+            let its = if circuits.is_empty() { 0 } else { u32::from(self.shortest(circuits).0) };
+            metres_before[place + 1] = metres_before[place].saturating_add(its);
+            known += usize::from(!circuits.is_empty());
+            let from_low = match join.direction {
+                Direction::Up => place,
+                Direction::Down => walk.count.wrapping_sub(place + 1),
+            };
+            let on = if place < walk.count { walk.lengths.get(from_low).map_or(0, |length| length.0) } else { 0 };
+            metres_on[place + 1] = metres_on[place].saturating_add(u32::from(on));
+        }
+        // A front that has just passed `passed` sections.
+        let mut short = false;
+        for (passed, on) in metres_on.iter().enumerate() {
+            for (back, before) in metres_before.iter().enumerate() {
+                let held = passed + back == k && passed <= walk.count && back <= known;
+                short |= held && on.saturating_add(*before) < u32::from(join.train.0);
             }
         }
-        for place in 0..MAX_LINE_SECTIONS {
-            if place < walk.count {
-                let from_entry = match join.direction {
-                    Direction::Up => place,
-                    Direction::Down => walk.count - 1 - place,
-                };
-                lengths[count] = walk.lengths.get(from_entry).copied().unwrap_or_default();
-                count += 1;
-            }
-        }
-        short_window(lengths.get(..count).unwrap_or(&lengths), hold, join.train).is_some()
+        short
     }
 }

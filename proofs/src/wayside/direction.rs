@@ -16,7 +16,7 @@ harness! {
     /// refused for its direction and not told to the interlocking; and no route needs the other direction.
     t_way_7(e)
     theorem "T-WAY-7";
-    requirements ["WAY-10", "WAY-15", "GEN-1"];
+    requirements ["WAY-10", "WAY-15"];
     assumptions [];
     bound "1 route of up to 2 circuits, 1 segment of up to 2, 16 circuits";
     cases 2;
