@@ -16,7 +16,7 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{
-    Counters, Equipment, Facing, Fixed, Framed, Input, Join, Message, Output, Permission, Session, SignalPlan, Stamp,
+    Equipment, Facing, Fixed, Framed, Input, Join, Message, Output, Permission, Session, SignalPlan, Stamp,
     State, Wayside, WaysideError,
 };
 use atc_tests::sketch::{self, Line as Segment, Need, Sketch, Way};
@@ -41,7 +41,7 @@ fn station() -> Station {
             from: Some(0),
             to: Some(1),
             drive: 4,
-            release: 4,
+            release: 40,
             stay: 4,
             speed: 3,
             ..Way::default()
@@ -147,14 +147,14 @@ impl Draw {
 
 /// What the neighbour may say: mostly an answer to one of the last cycles.
 fn message(draw: &mut Draw, cycle: u32) -> Option<Message> {
-    if draw.one_in(3) {
+    if draw.one_in(6) {
         return None;
     }
-    let session = Session(if draw.one_in(8) { 6 } else { 7 });
-    let back = u32::try_from(draw.below(8)).expect("small");
+    let session = Session(if draw.one_in(16) { 6 } else { 7 });
+    let back = u32::try_from(if draw.one_in(4) { draw.below(8) } else { 1 }).expect("small");
     let echo = Stamp { session, cycle: Epoch(cycle.wrapping_sub(back)) };
     Some(Message {
-        permission: if draw.one_in(5) { Permission::Withheld } else { Permission::Granted },
+        permission: if draw.one_in(12) { Permission::Withheld } else { Permission::Granted },
         sent: Stamp { session: Session(1), cycle: Epoch(cycle) },
         echo: if draw.one_in(8) { None } else { Some(echo) },
     })
@@ -180,17 +180,18 @@ fn input(draw: &mut Draw, cycle: u32) -> Input<2, 2> {
         7 if draw.one_in(4) => Some(Request::Withdraw(RouteId::ZERO)),
         _ => None,
     };
+    // Mostly the line is verified and empty.
     let mut detection = || {
-        let trains = draw.below(2);
+        let train = draw.one_in(12);
         Detection {
-            low_check: draw.one_in(12),
-            high_check: draw.one_in(12),
-            present: SectionSet::from_bits(u16::from(trains == 1)),
-            reset: draw.one_in(3).then_some(TrainCount(u8::from(trains == 1))),
+            low_check: draw.one_in(40),
+            high_check: draw.one_in(40),
+            present: SectionSet::from_bits(u16::from(train)),
+            reset: draw.one_in(2).then_some(TrainCount(u8::from(train))),
         }
     };
     let blocks = [detection(), detection()];
-    let occupied = CircuitSet::from_bits(if draw.one_in(3) { draw.below(64) } else { 0 });
+    let occupied = CircuitSet::from_bits(if draw.one_in(12) { draw.below(64) } else { 0 });
     Input {
         blocks,
         occupied,
@@ -534,5 +535,4 @@ fn a_list_in_the_wrong_order_is_refused() {
         it.signals.circuits[5] = fixed;
     });
     assert!(matches!(twice, WaysideError::SectionNumberTwice(_)), "{twice:?}");
-    let _ = Counters::START;
 }
