@@ -16,8 +16,8 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{
-    Equipment, Facing, Fixed, Framed, Input, Join, Message, Output, Permission, Session, SignalPlan, Stamp,
-    State, Wayside, WaysideError,
+    Equipment, Facing, Fixed, Framed, Input, Join, Message, Output, Permission, Session, SignalPlan, Stamp, State,
+    Wayside, WaysideError,
 };
 use atc_tests::sketch::{self, Line as Segment, Need, Sketch, Way};
 

@@ -257,8 +257,8 @@ harness! {
         // Metres from the end of that circuit to the front.
         let mut between = u32::from(into);
         let mut own = 0;
-        for place in 0..TRACK {
-            let its = u32::from(lengths[place]);
+        for (place, length) in lengths.iter().enumerate() {
+            let its = u32::from(*length);
             between += if place > under && place < head { its } else { 0 };
             own = if place == head { its } else { own };
         }
@@ -372,6 +372,54 @@ fn any_circuit<E: Engine + ?Sized>(e: &mut E, right: Option<CircuitId>) -> Optio
     if e.word("another circuit for the section (1 mod 8: yes)", 0..=7) & 7 == 1 { other } else { right }
 }
 
+/// The lengths of the places before the entry, the nearest first, and how many there are; `entry` is a place from the throat outwards.
+fn metres_before(station: &Station, travel: Travel, entry: u8, has_route: bool) -> ([u32; 3], usize) {
+    let length_of = |rank: u8| station.plan().lengths[if rank == 0 { 4 } else { usize::from(rank) - 1 }].0;
+    let mut track = [0_u32; 3];
+    let mut known = 0;
+    for back in 1..=3_u8 {
+        let place = match travel {
+            Travel::Toward => Some(entry + back).filter(|place| *place <= 4).map(length_of),
+            Travel::Away if back <= entry => Some(length_of(entry - back)),
+            // The route out, if there is one: circuit 5, then its entry 6.
+            Travel::Away => match (has_route, back - entry) {
+                (true, 1) => Some(station.plan().lengths[5].0),
+                (true, 2) => Some(station.plan().lengths[6].0),
+                _ => None,
+            },
+        };
+        if let (Some(place), true) = (place, known + 1 == usize::from(back)) {
+            track[known] = u32::from(place);
+            known += 1;
+        }
+    }
+    (track, known)
+}
+
+/// Whether somewhere the k places behind a front are shorter than the train, and whether that is so on the line itself.
+fn is_short(line: &Case, (lengths, count): ([u32; 4], usize), (before, known): ([u32; 3], usize)) -> (bool, bool) {
+    let hold = usize::from(line.hold);
+    let up = line.direction == Direction::Up;
+    let (mut short, mut short_on_line) = (false, false);
+    for front in 0..=4 {
+        if front <= count && hold <= front + known {
+            let mut behind = 0;
+            for back in 1..=3 {
+                if back <= hold {
+                    behind += match front.checked_sub(back) {
+                        Some(place) if up => lengths[place],
+                        Some(place) => lengths[count - 1 - place],
+                        None => before[back - front - 1],
+                    };
+                }
+            }
+            short |= behind < u32::from(line.train);
+            short_on_line |= hold <= front && behind < u32::from(line.train);
+        }
+    }
+    (short, short_on_line)
+}
+
 harness! {
     /// A counted line is accepted if and only if each of its sections, and nothing else, has a circuit; these are of the segment or its throat and follow each
     /// other as the sections do; a circuit is beyond the exit; what is held is long enough at the entry and on the line; and no
@@ -425,11 +473,11 @@ harness! {
         let mut first: Option<u8> = None;
         let mut lengths = [0_u32; 4];
         let mut count = 0;
-        for block in 0..2 {
-            for section in 0..2 {
+        for (block, row) in given.iter().enumerate() {
+            for (section, circuit) in row.iter().enumerate() {
                 let needed = section < line.sizes[block];
-                complete &= given[block][section].is_some() == needed;
-                let Some(circuit) = given[block][section] else { continue };
+                complete &= circuit.is_some() == needed;
+                let Some(circuit) = *circuit else { continue };
                 let Some(place) = rank(circuit) else {
                     there = false;
                     continue;
@@ -447,49 +495,13 @@ harness! {
         let up = join.direction == Direction::Up;
         let (entry, exit) = if up { (first, before) } else { (before, first) };
         let (entry, exit) = (entry.unwrap_or(0), exit.unwrap_or(0));
-        let length_of = |rank: u8| station.plan().lengths[if rank == 0 { 4 } else { usize::from(rank) - 1 }].0;
         // What is beyond the exit by the layout: circuits outwards, or the throat and what is behind it.
         let ends = join.travel == Travel::Away && exit == 4;
         // Travelling towards the station from the throat, nothing is known beyond: the route begins before it.
         let ends = ends || join.travel == Travel::Toward && exit == 0;
-        // Places before the entry, the nearest first.
-        let mut track = [0_u32; 8];
-        let mut known = 0;
-        let hold = usize::from(line.hold);
-        for back in 1..=3_u8 {
-            let place = match join.travel {
-                Travel::Toward => Some(entry + back).filter(|place| *place <= 4).map(length_of),
-                Travel::Away if back <= entry => Some(length_of(entry - back)),
-                // The route out, if there is one: circuit 5, then its entry 6.
-                Travel::Away => match (turned, back - entry) {
-                    (false, 1) => Some(station.plan().lengths[5].0),
-                    (false, 2) => Some(station.plan().lengths[6].0),
-                    _ => None,
-                },
-            };
-            if let (Some(place), true) = (place, known + 1 == usize::from(back)) {
-                track[known] = u32::from(place);
-                known += 1;
-            }
-        }
-        let near = if known < hold { known } else { hold };
-        // The k places behind a front that has just entered section `front`, the entry first; one past the last: beyond the exit.
-        let (mut short, mut short_on_line) = (false, false);
-        for front in 0..=4 {
-            if front <= count && hold <= front + near {
-                let mut behind = 0;
-                for back in 1..=3 {
-                    if back <= hold {
-                        behind += match front.checked_sub(back) {
-                            Some(place) => if up { lengths[place] } else { lengths[count - 1 - place] },
-                            None => track[back - front - 1],
-                        };
-                    }
-                }
-                short |= behind < u32::from(line.train);
-                short_on_line |= hold <= front && behind < u32::from(line.train);
-            }
-        }
+        let travel = join.travel;
+        let before = metres_before(&station, travel, entry, !turned);
+        let (short, short_on_line) = is_short(&line, (lengths, count), before);
         let mut no_length = false;
         for (place, length) in lengths.iter().enumerate() {
             no_length |= place < count && *length == 0;

@@ -10,7 +10,8 @@ use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES as PLACES, Milliher
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Commands, Contents, Epoch, Grant, Heading, Layout, MAX_CIRCUITS, MAX_CODES, Memory,
-    Movement, Positions, RouteSet, Segment, SegmentSet, SpeedCode, SpeedLimits, Standing, Table, begins, telegram,
+    Movement, Orders, Positions, RouteSet, Segment, SegmentSet, SpeedCode, SpeedLimits, Standing, Table, begins,
+    telegram,
 };
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Frame, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
@@ -440,7 +441,7 @@ harness! {
             occupied: CircuitSet::EMPTY,
             detected: Positions::NONE,
             request: None,
-            orders: Default::default(),
+            orders: Orders::default(),
             consent: SegmentSet::EMPTY,
         };
         let reading: Reading<0> = Reading { input: told, line: None, refused: None };
