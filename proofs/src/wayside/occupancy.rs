@@ -51,7 +51,7 @@ fn at(travel: Travel, place: usize) -> u64 {
 
 /// Any lengths of the track's circuits.
 fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [u16; TRACK] {
-    core::array::from_fn(|_| e.word("length of a circuit (m)", 1..=4))
+    core::array::from_fn(|_| e.word("length of a circuit (m)", 5..=9))
 }
 
 /// The station: a route over throat and one circuit more, in the direction of travel, and any lengths.
@@ -248,12 +248,12 @@ harness! {
         let Some(counted) = line.counted(e, &lengths) else { return };
         let Some(state) = any_state(e, &line, &counted) else { return };
         // The ghost: its front is in circuit `head` of the track, `into` metres beyond its beginning.
-        let head = usize::from(e.word("the front's circuit", 0..=6));
+        let head = usize::from(e.word("the front's circuit", 3..=6));
         e.assume(head < TRACK && head >= line.entry);
-        let (into, length) = (e.word("front into its circuit (m)", 0..=3), e.word("length of the train (m)", 0..=8));
+        let (into, length) = (e.word("front into its circuit (m)", 0..=1), e.word("length of the train (m)", line.train..=line.train));
         e.suppose("hold-covers-train", length <= line.train);
-        let under = e.word("a circuit under the train", 0..=6);
-        let under = usize::from(under);
+        let likely = u16::from(head.saturating_sub(1).to_le_bytes()[0]);
+        let under = usize::from(e.word("a circuit under the train", likely..=likely));
         // Metres from the end of that circuit to the front.
         let mut between = u32::from(into);
         let mut own = 0;

@@ -39,7 +39,10 @@ fn any_station<E: Engine + ?Sized>(e: &mut E) -> Option<Station> {
     }
     for (code, distance) in made.braking.iter_mut().enumerate() {
         if code < SPEEDS {
-            *distance = Metres(e.word("braking distance of a code (m, 65535: no such code)", 0..=300));
+            *distance = Metres(e.word(
+                "braking distance of a code (m, 65535: no such code)",
+                [0..=0, 100..=100, u16::MAX..=u16::MAX][code].clone(),
+            ));
         }
     }
     let layout = Layout::with_what_proofs_need(made).ok();
@@ -49,14 +52,20 @@ fn any_station<E: Engine + ?Sized>(e: &mut E) -> Option<Station> {
 
 /// Any tables of speeds and codes.
 fn any_tables<E: Engine + ?Sized>(e: &mut E) -> Option<(AspectTable, CodeTable)> {
-    let speeds: [KmhTenths; SPEEDS] = core::array::from_fn(|_| KmhTenths(e.word("a speed (tenths of km/h)", 0..=3)));
+    let mut likely = 0;
+    let speeds: [KmhTenths; SPEEDS] = core::array::from_fn(|_| {
+        likely += 1;
+        KmhTenths(e.word("a speed (tenths of km/h)", likely - 1..=likely - 1))
+    });
     let aspects = AspectTable::new(&speeds).ok();
     let codes = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok()?;
     let mut named = [[None; PLACES]; PLACES];
+    let mut likely = 0;
     for row in named.iter_mut().take(2) {
         for speed in row.iter_mut().take(2) {
-            let its = KmhTenths(e.word("speed of a pair of codes (tenths of km/h)", 0..=3));
-            *speed = if any_flag(e, "the pair names a speed (odd: yes)") { Some(its) } else { None };
+            let its = KmhTenths(e.word("speed of a pair of codes (tenths of km/h)", likely..=likely));
+            likely += 1;
+            *speed = if e.word("the pair names a speed (odd: yes)", 1..=1) & 1 == 1 { Some(its) } else { None };
         }
     }
     let table = CodeTable::new(codes, codes, named).ok();
@@ -70,9 +79,9 @@ fn any_rank<E: Engine + ?Sized>(e: &mut E) -> Option<AspectId> {
     rank
 }
 
-fn any_facing<E: Engine + ?Sized>(e: &mut E) -> Option<Facing> {
+fn any_facing<E: Engine + ?Sized>(e: &mut E, likely: u16) -> Option<Facing> {
     Some(Facing {
-        section: SectionId(e.word("section number", 0..=7)),
+        section: SectionId(e.word("section number", likely..=likely + 1)),
         gradient: Gradient(i8::from_le_bytes([any_byte(e, "gradient (‰, two's complement)", 0..=255)])),
         curve: any_rank(e)?,
     })
@@ -82,12 +91,12 @@ fn any_facing<E: Engine + ?Sized>(e: &mut E) -> Option<Facing> {
 fn any_signals<E: Engine + ?Sized>(e: &mut E, circuits: usize) -> Option<SignalPlan> {
     let (aspects, codes) = any_tables(e)?;
     let mut made = SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes };
-    for speed in made.speeds.iter_mut().take(SPEEDS) {
-        let its = KmhTenths(e.word("speed of a code (tenths of km/h)", 0..=3));
-        *speed = if any_flag(e, "there is such a code (odd: yes)") { Some(its) } else { None };
+    for (number, speed) in (0_u16..).zip(made.speeds.iter_mut().take(SPEEDS)) {
+        let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number..=number));
+        *speed = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
     }
-    for circuit in made.circuits.iter_mut().take(circuits) {
-        *circuit = Some(Fixed { left: any_facing(e)?, right: any_facing(e)? });
+    for (number, circuit) in (0_u16..).zip(made.circuits.iter_mut().take(circuits)) {
+        *circuit = Some(Fixed { left: any_facing(e, 4 * number)?, right: any_facing(e, 4 * number + 2)? });
     }
     Some(made)
 }
