@@ -17,8 +17,8 @@ mod speech;
 pub use consent::{Consent, Message, Permission, Session, Stamp, check_life};
 pub use counters::{Counters, Framed};
 pub use join::{Counted, Join, Spot};
-pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word};
-pub use speech::{Feed, Saying, Transmission};
+pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word, words};
+pub use speech::{Feed, Saying, Speech, Transmission};
 
 use crate::Machine;
 use crate::block::{Detection, LineError, LineOutput, LineState};
@@ -255,6 +255,27 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         (state, Reading { input, line, refused: request.err() })
     }
 
+    /// What is to be said in each circuit: what its train is told, with what the device remembers.
+    #[inline]
+    #[must_use]
+    pub fn sayings(
+        state: &State<B, R, S>,
+        telegrams: &[Option<interlocking::Movement>; MAX_CIRCUITS],
+    ) -> [Option<Saying>; MAX_CIRCUITS] {
+        let restrictions = state.device.interlocking.works.restrictions;
+        let mut sayings = [None; MAX_CIRCUITS];
+        let known = telegrams.iter().zip(&state.counters);
+        for (number, (saying, (movement, counters))) in sayings.iter_mut().zip(known).enumerate() {
+            let it = CircuitSet::nth(number);
+            //= spec/wayside.md#way-21-silence
+            //# A device MUST send nothing in a circuit in which its ATC is silent.
+            if let (Some(movement), Some(circuit)) = (*movement, it.first()) {
+                *saying = Some(Saying { circuit, movement, restrictions, counters: *counters });
+            }
+        }
+        sayings
+    }
+
     /// The last part of a cycle: what leaves the device. `state` has the memory that interlocking and ATC have after `commands`.
     #[inline]
     #[must_use]
@@ -265,18 +286,13 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         commands: &Commands<R>,
     ) -> (State<B, R, S>, Output<B, S>) {
         let Commands { interlocking, telegrams } = commands;
-        let restrictions = state.device.interlocking.works.restrictions;
         let mut transmissions = [None; MAX_CIRCUITS];
         state.sent = CircuitSet::EMPTY;
-        for (number, (transmission, movement)) in transmissions.iter_mut().zip(telegrams).enumerate() {
-            let it = CircuitSet::nth(number);
-            //= spec/wayside.md#way-21-silence
-            //# A device MUST send nothing in a circuit in which its ATC is silent.
-            if let (Some(movement), Some(circuit)) = (*movement, it.first()) {
-                let counters = state.counters[number];
-                let saying = Saying { circuit, movement, restrictions, counters };
+        let sayings = Self::sayings(&state, telegrams);
+        for (number, (transmission, saying)) in transmissions.iter_mut().zip(&sayings).enumerate() {
+            if let Some(saying) = *saying {
                 *transmission = self.signals.transmission(&self.layout.plan().lengths, saying);
-                state.sent = state.sent.or(it.only_if(transmission.is_some()));
+                state.sent = state.sent.or(CircuitSet::nth(number).only_if(transmission.is_some()));
             }
         }
         let answer = reading.refused.map(Err).or(interlocking.answer);

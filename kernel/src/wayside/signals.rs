@@ -100,6 +100,15 @@ impl Signals {
         Ok(Self { circuits: circuits(layout, plan)?, words, stop })
     }
 
+    /// Signals as they are given, for proofs: nothing of them is checked.
+    pub const fn from_parts(
+        circuits: [Option<(Fixed, Length)>; MAX_CIRCUITS],
+        words: [Option<Word>; MAX_CODES],
+        stop: Word,
+    ) -> Self {
+        Self { circuits, words, stop }
+    }
+
     /// What is said of a circuit, and its length; none if nothing is sent there.
     #[inline]
     pub fn circuit(&self, circuit: CircuitId) -> Option<(Fixed, Length)> {
@@ -130,9 +139,12 @@ impl Signals {
     }
 }
 
-/// The speed codes as trains hear them.
+/// The speed codes as trains hear them, each with the rank and the pair of its speed.
+///
+/// # Errors
+/// The first rule of WAY-16 that is broken.
 #[inline(never)]
-fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
+pub fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
     //= spec/wayside.md#way-16-the-codes
     //# The constructor MUST reject signals whose code 0 is not of speed 0, whose speeds do not rise with the codes, or with a speed that is not in the trains' table of speeds or has no pair of codes.
     if plan.speeds.first().copied().flatten() != Some(KmhTenths(0)) {

@@ -6,6 +6,27 @@ use crate::distance::Metres;
 use crate::interlocking::{CircuitId, CircuitSet, Heading, MAX_CIRCUITS, Movement, SpeedLimits};
 use crate::telegram::{Frame, Main, Route, Sub, Telegram, encode};
 
+/// What is told to trains of one direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Speech {
+    /// The main telegram.
+    pub main: Main,
+    /// The sub telegram.
+    pub sub: Sub,
+    /// The codes on both carriers.
+    pub codes: Codes,
+}
+
+impl Speech {
+    /// The same as it is sent. What trains decode of its frames are these telegrams (T-TEL-1).
+    #[inline]
+    #[must_use]
+    pub fn feed(self) -> Feed {
+        let Self { main, sub, codes } = self;
+        Feed { main: encode(Telegram::Main(main)), sub: encode(Telegram::Sub(sub)), codes }
+    }
+}
+
 /// What is sent to trains of one direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Feed {
@@ -56,14 +77,15 @@ impl Signals {
     #[must_use]
     pub fn transmission(&self, lengths: &[Metres; MAX_CIRCUITS], saying: Saying) -> Option<Transmission> {
         Some(Transmission {
-            left: self.feed(lengths, saying, Heading::Left)?,
-            right: self.feed(lengths, saying, Heading::Right)?,
+            left: self.speech(lengths, saying, Heading::Left)?.feed(),
+            right: self.speech(lengths, saying, Heading::Right)?.feed(),
         })
     }
 
-    /// What trains of one direction of travel hear.
+    /// What is told to trains of one direction of travel; none if there is nothing to be said of the circuit. `lengths` are those of the layout.
     #[inline]
-    fn feed(&self, lengths: &[Metres; MAX_CIRCUITS], saying: Saying, heading: Heading) -> Option<Feed> {
+    #[must_use]
+    pub fn speech(&self, lengths: &[Metres; MAX_CIRCUITS], saying: Saying, heading: Heading) -> Option<Speech> {
         let (fixed, length) = self.circuit(saying.circuit)?;
         let facing = fixed.facing(heading);
         let Saying { movement, counters, .. } = saying;
@@ -88,7 +110,7 @@ impl Signals {
             curve: facing.curve,
             restriction,
         };
-        Some(Feed { main: encode(Telegram::Main(main)), sub: encode(Telegram::Sub(sub)), codes: word.codes })
+        Some(Speech { main, sub, codes: word.codes })
     }
 }
 

@@ -28,8 +28,11 @@ pub const ALL: &[Harness] = &[
     consent::way_life::HARNESS,
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
+    speech::t_way_8_said::HARNESS,
     speech::t_way_8_sent::HARNESS,
     occupancy::way_join::HARNESS,
+    occupancy::way_join_hold::HARNESS,
+    speech::way_words::HARNESS,
     speech::way_signals::HARNESS,
 ];
 

@@ -6,18 +6,20 @@ use crate::engine::{any_byte, any_flag};
 use crate::interlocking::any_heading;
 use atc_kernel::Machine;
 use atc_kernel::aspect::{AspectId, AspectTable};
-use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};
+use atc_kernel::block::LineState;
+use atc_kernel::code::{Code, CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Commands, Contents, Epoch, Grant, Heading, Layout, MAX_CIRCUITS, MAX_CODES, Memory,
-    Movement, Orders, Positions, RouteSet, Segment, SegmentSet, SpeedCode, SpeedLimits, Standing, Table, begins,
-    telegram,
+    CircuitId, CircuitSet, Commands, Contents, Grant, Heading, Input, Layout, MAX_CIRCUITS, MAX_CODES, Memory,
+    Movement, Orders, Output, Positions, RouteSet, Segment, SegmentSet, SpeedCode, SpeedLimits, Standing, Table,
+    begins, telegram,
 };
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::telegram::{Counter, Frame, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
+use atc_kernel::telegram::{Counter, Frame, Gradient, Length, Main, Route, SectionId, Sub, Telegram, decode};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{
-    Counters, Equipment, Facing, Feed, Fixed, Reading, Saying, Session, SignalPlan, Signals, Wayside, WaysideError,
+    Codes, Consent, Counters, Equipment, Facing, Fixed, Permission, Reading, Saying, Session, SignalPlan, Signals,
+    Speech, State, Wayside, WaysideError, Word, words,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -25,26 +27,33 @@ const CIRCUITS: usize = 4;
 /// The speeds of the trains' table.
 const SPEEDS: usize = 3;
 
-const BOUND: &str = "1 route, 4 circuits, tables of 3 speeds, 2 code frequencies of each carrier";
+const BOUND: &str = "4 circuits, 3 speed codes";
+const BOUND_TABLES: &str = "tables of 3 speeds, 2 code frequencies of each carrier";
+const BOUND_SIGNALS: &str = "2 circuits described, 4 with a length, 1 segment of 1 circuit, 3 speed codes";
+const BOUND_SENT: &str = "1 circuit, three telegrams: none, stop, open";
 
 type Station = Layout<1, 1, 0, 1>;
 type Device<'a> = Wayside<'a, 0, 1, 1, 0, 1>;
 
-/// A station whose circuits have any lengths.
-fn any_station<E: Engine + ?Sized>(e: &mut E) -> Option<Station> {
+/// Any lengths of the circuits.
+fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
+    let mut lengths = [Metres(0); MAX_CIRCUITS];
+    for length in lengths.iter_mut().take(CIRCUITS) {
+        *length = Metres(e.word("length of a circuit (m)", 1..=300));
+    }
+    lengths
+}
+
+/// A station with a segment of one circuit.
+fn station<E: Engine + ?Sized>(e: &mut E, segment: CircuitSet, lengths: [Metres; MAX_CIRCUITS]) -> Option<Station> {
     let mut made = plan::<1, 1, 1>();
     made.turn = Ticks(2);
-    for (number, length) in made.lengths.iter_mut().enumerate() {
-        *length = if number < CIRCUITS { Metres(e.word("length of a circuit (m)", 1..=300)) } else { Metres(0) };
+    made.lengths = lengths;
+    for (code, distance) in made.braking.iter_mut().take(SPEEDS).enumerate() {
+        let there = code == 0 || any_flag(e, "there is a braking distance for a code (odd: yes)");
+        *distance = Metres(if there { 0 } else { u16::MAX });
     }
-    for (code, distance) in made.braking.iter_mut().enumerate() {
-        if code < SPEEDS {
-            *distance = Metres(e.word(
-                "braking distance of a code (m, 65535: no such code)",
-                [0..=0, 100..=100, u16::MAX..=u16::MAX][code].clone(),
-            ));
-        }
-    }
+    made.segments = [Segment { circuits: [segment], length: 1, ..Segment::NONE }];
     let layout = Layout::with_what_proofs_need(made).ok();
     e.assume(layout.is_some());
     layout
@@ -87,25 +96,68 @@ fn any_facing<E: Engine + ?Sized>(e: &mut E, likely: u16) -> Option<Facing> {
     })
 }
 
-/// Any signals of the own circuit, and of the next if there are two.
-fn any_signals<E: Engine + ?Sized>(e: &mut E, circuits: usize) -> Option<SignalPlan> {
-    let (aspects, codes) = any_tables(e)?;
-    let mut made = SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes };
-    for (number, speed) in (0_u16..).zip(made.speeds.iter_mut().take(SPEEDS)) {
-        let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number..=number));
-        *speed = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
-    }
-    for (number, circuit) in (0_u16..).zip(made.circuits.iter_mut().take(circuits)) {
-        *circuit = Some(Fixed { left: any_facing(e, 4 * number)?, right: any_facing(e, 4 * number + 2)? });
-    }
-    Some(made)
+/// What a speed code is heard as, whatever the tables have.
+fn any_word<E: Engine + ?Sized>(e: &mut E, likely: u16) -> Option<Word> {
+    let rank = AspectId::new(any_byte(e, "rank of a code", likely..=likely));
+    let main = Code::new(any_byte(e, "main code", likely..=likely));
+    let sub = Code::new(any_byte(e, "sub code", 0..=0));
+    e.assume(rank.is_some() && main.is_some() && sub.is_some());
+    Some(Word { rank: rank?, codes: Codes { main: main?, sub: sub? } })
 }
 
-/// The signals, checked.
-fn made<E: Engine + ?Sized>(e: &mut E, station: &Station, signals: &SignalPlan) -> Option<Signals> {
-    let made = Signals::new(station, signals).ok();
-    e.assume(made.is_some());
-    made
+/// Signals of circuit 0, and what they are made of.
+struct Said {
+    signals: Signals,
+    fixed: Fixed,
+    words: [Option<Word>; MAX_CODES],
+    stop: Word,
+}
+
+impl Said {
+    /// How the highest known code up to `code` is heard.
+    fn word(&self, code: SpeedCode) -> Word {
+        let mut said = self.stop;
+        for number in 1..SPEEDS {
+            if let (Some(word), true) = (self.words[number], number <= usize::from(code.0)) {
+                said = word;
+            }
+        }
+        said
+    }
+
+    /// What trains of a direction of travel know of circuit 0.
+    fn its(&self, heading: Heading) -> Facing {
+        if heading == Heading::Left { self.fixed.left } else { self.fixed.right }
+    }
+}
+
+/// Any signals as the constructor makes them (`way_signals`, `way_words`): code 0 is there and stops, and a circuit has two numbers.
+fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIRCUITS]) -> Option<Said> {
+    let stop = any_word(e, 0)?;
+    let mut words = [None; MAX_CODES];
+    words[0] = Some(stop);
+    for (number, word) in (0_u16..).zip(words.iter_mut()).take(SPEEDS).skip(1) {
+        let its = any_word(e, number)?;
+        *word = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
+    }
+    let fixed = Fixed { left: any_facing(e, 0)?, right: any_facing(e, 2)? };
+    let length = Length::new(lengths[0]);
+    e.assume(length.is_some() && fixed.left.section != fixed.right.section);
+    let length = length?;
+    let mut circuits = [None; MAX_CIRCUITS];
+    circuits[0] = Some((fixed, length));
+    Some(Said { signals: Signals::from_parts(circuits, words, stop), fixed, words, stop })
+}
+
+/// Tables of three speeds, 0, 15 and 30 km/h, and signals with nothing else.
+fn fixed_tables() -> Option<SignalPlan> {
+    let speeds = [KmhTenths(0), KmhTenths(150), KmhTenths(300)];
+    let aspects = AspectTable::new(&speeds).ok()?;
+    let frequencies = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok()?;
+    let mut named = [[None; PLACES]; PLACES];
+    (named[0][0], named[0][1], named[1][0]) = (Some(speeds[0]), Some(speeds[1]), Some(speeds[2]));
+    let codes = CodeTable::new(frequencies, frequencies, named).ok()?;
+    Some(SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes })
 }
 
 /// Any movement of a train in circuit 0, whatever the ATC may say.
@@ -135,45 +187,27 @@ fn sub_of(frame: Frame) -> Option<Sub> {
     }
 }
 
-/// The speed that the highest known code up to `code` stands for.
-fn speed_of(signals: &SignalPlan, code: SpeedCode) -> KmhTenths {
-    let mut speed = KmhTenths(0);
-    for number in 0..SPEEDS {
-        if let (Some(its), true) = (signals.speeds[number], number <= usize::from(code.0)) {
-            speed = its;
-        }
-    }
-    speed
-}
-
-/// What trains of a direction of travel know of circuit 0.
-fn its_facing(signals: &SignalPlan, heading: Heading) -> Option<Facing> {
-    let fixed = signals.circuits[0]?;
-    Some(if heading == Heading::Left { fixed.left } else { fixed.right })
-}
-
-/// What they hear there.
+/// What trains of a direction of travel are told in circuit 0.
 fn heard<E: Engine + ?Sized>(
     e: &mut E,
-    station: &Station,
-    signals: &Signals,
+    lengths: &[Metres; MAX_CIRCUITS],
+    said: &Said,
     movement: Movement,
     heading: Heading,
-) -> Option<(Feed, Counters, SpeedLimits)> {
+) -> Option<(Speech, Counters, SpeedLimits)> {
     let mut any = |what| Counter(any_byte(e, what, 0..=255));
     let counters = Counters { main: any("number of the main telegram"), sub: any("number of the sub telegram") };
     let limit = SpeedCode(any_byte(e, "temporary restriction (code)", 0..=3));
     let here = CircuitSet::from_bits(u64::from(e.word("restricted circuits (bits)", 0..=15) & 15));
     let restrictions = SpeedLimits::NONE.and_at_most(limit, here);
     let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
-    let sent = signals.transmission(&station.plan().lengths, saying)?;
-    Some((if heading == Heading::Left { sent.left } else { sent.right }, counters, restrictions))
+    Some((said.signals.speech(lengths, saying, heading)?, counters, restrictions))
 }
 
 harness! {
-    /// What trains decode of a main frame never permits more than the movement: it is open only under the number of the movement's direction of travel, no
-    /// farther than the granted circuits are long together, and rank and codes, by the trains' tables, name a speed that is not above that of the
-    /// movement's code.
+    /// What trains are told by a main telegram never permits more than the movement: it is open only under the number of the movement's direction of travel, no
+    /// farther than the granted circuits are long together, and rank and codes are those of the movement's code, or of the
+    /// highest known one below it.
     t_way_3(e)
     theorem "T-WAY-3";
     requirements ["WAY-3", "WAY-4", "WAY-5"];
@@ -182,11 +216,11 @@ harness! {
     cases 1;
     unwind 65 = 1 + LONGEST;
     claims {
-        Read: "the frame is read as a main telegram of this number and of the section number of the direction of travel, which trains of the other do not have",
+        Read: "the main telegram has this number and the section number of the direction of travel, which trains of the other do not have",
         Open: "it is open only for the movement's direction of travel, and then the distance is that of the granted circuits, or the longest there is",
-        Rank: "its rank is of the speed of the movement's code, or of the highest known code below it",
-        Codes: "the codes name the same speed as the rank",
-        Stop: "for the other direction of travel it is closed, and rank and codes are of speed 0",
+        Rank: "its rank is that of the movement's code, or of the highest known code below it",
+        Codes: "the codes are those of the same code",
+        Stop: "for the other direction of travel it is closed, and rank and codes are those of code 0",
     }
     covers {
         Open: "an open telegram",
@@ -196,20 +230,18 @@ harness! {
         Lower: "the movement's code is not known",
     }
     {
-        let Some(station) = any_station(e) else { return };
-        let Some(signals) = any_signals(e, 1) else { return };
-        let Some(said) = made(e, &station, &signals) else { return };
+        let lengths = any_lengths(e);
+        let Some(said) = any_said(e, &lengths) else { return };
         let movement = any_movement(e);
         let heading = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, counters, _)) = heard(e, &station, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
-        let Some(main) = main_of(feed.main) else { return e.claim(Claim::Read as u32, false) };
-        let (Some(its), Some(other)) = (its_facing(&signals, heading), its_facing(&signals, heading.opposite())) else { return };
-        let own = main.section == its.section && main.section != other.section;
+        let Some((told, counters, _)) = heard(e, &lengths, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
+        let main = told.main;
+        let own = main.section == said.its(heading).section && main.section != said.its(heading.opposite()).section;
         e.claim(Claim::Read as u32, own && main.counter == counters.main);
         let mut together = 0_u32;
         for number in 0..CIRCUITS {
             let granted = movement.hold.bits() >> number & 1 == 1;
-            together += if granted { u32::from(station.plan().lengths[number].0) } else { 0 };
+            together += if granted { u32::from(lengths[number].0) } else { 0 };
         }
         let most = if together < 0xFFFF { together } else { 0xFFFF };
         let meant = movement.heading == Some(heading);
@@ -218,20 +250,20 @@ harness! {
             Route::Closed => !meant,
         };
         e.claim(Claim::Open as u32, distance);
-        let speed = signals.aspects.speed(main.speed);
-        e.claim(Claim::Rank as u32, !meant || speed == Some(speed_of(&signals, movement.speed)));
-        e.claim(Claim::Codes as u32, signals.codes.speed(Some(feed.codes.main), Some(feed.codes.sub)) == speed && speed.is_some());
-        e.claim(Claim::Stop as u32, meant || speed == Some(KmhTenths(0)));
-        e.cover(Cover::Open as u32, meant && speed != Some(KmhTenths(0)));
+        let word = said.word(movement.speed);
+        e.claim(Claim::Rank as u32, !meant || main.speed == word.rank);
+        e.claim(Claim::Codes as u32, !meant || told.codes == word.codes);
+        e.claim(Claim::Stop as u32, meant || main.speed == said.stop.rank && told.codes == said.stop.codes);
+        e.cover(Cover::Open as u32, meant && main.speed != said.stop.rank);
         e.cover(Cover::Two as u32, meant && movement.hold.bits() == 6);
         e.cover(Cover::Saturated as u32, meant && together > 0xFFFF);
         e.cover(Cover::Other as u32, movement.heading.is_some() && !meant);
-        e.cover(Cover::Lower as u32, meant && movement.speed.0 == 2 && signals.speeds[2].is_none());
+        e.cover(Cover::Lower as u32, meant && movement.speed.0 == 2 && said.words[2].is_none());
     }
 }
 
 harness! {
-    /// A ghost train on metres that stops before the end of what it decodes, whatever it knows besides, has its front within its own circuit or in one that was
+    /// A ghost train on metres that stops before the end of what it is told, whatever it knows besides, has its front within its own circuit or in one that was
     /// granted: the circuits ahead of it are as long as the layout says, and those that are granted follow its own without a gap.
     t_way_3_train(e)
     theorem "T-WAY-3";
@@ -239,7 +271,7 @@ harness! {
     assumptions ["path-complete", "trains-know-facing", "held-routes-compatible"];
     built_in &[
         ("path-complete", "the circuits ahead of the ghost are 1, 2 and 3, with the layout's lengths"),
-        ("trains-know-facing", "the ghost uses the frame of the direction of travel that it faces"),
+        ("trains-know-facing", "the ghost uses the telegram of the direction of travel that it faces"),
         ("held-routes-compatible", "what is granted are the first circuits ahead, for the direction in which they lie"),
     ];
     bound BOUND;
@@ -255,9 +287,8 @@ harness! {
         Faces: "a train faces the other way",
     }
     {
-        let Some(station) = any_station(e) else { return };
-        let Some(signals) = any_signals(e, 1) else { return };
-        let Some(said) = made(e, &station, &signals) else { return };
+        let lengths = any_lengths(e);
+        let Some(said) = any_said(e, &lengths) else { return };
         let ahead = any_heading(e, "direction in which the circuits lie (odd: right)");
         let granted = e.word("circuits granted", 0..=3);
         e.assume(granted <= 3);
@@ -266,11 +297,10 @@ harness! {
         let speed = SpeedCode(any_byte(e, "speed code", 0..=3));
         let movement = Movement { stop: CircuitId::ZERO, heading, speed, hold };
         let faces = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, _, _)) = heard(e, &station, &said, movement, faces) else { return e.claim(Claim::Within as u32, false) };
-        let Some(main) = main_of(feed.main) else { return e.claim(Claim::Within as u32, false) };
+        let Some((told, _, _)) = heard(e, &lengths, &said, movement, faces) else { return e.claim(Claim::Within as u32, false) };
         // Metres of the ghost's front beyond the exit; 0: in its own circuit. It is before the stopping point, or at it.
         let front = u32::from(e.word("front beyond the exit (m)", 0..=900));
-        let may = match main.route {
+        let may = match told.main.route {
             Route::OpenFor(distance) => front <= u32::from(distance.0),
             Route::Closed => front == 0,
         };
@@ -278,7 +308,7 @@ harness! {
         let (mut begins, mut within) = (0_u32, front == 0);
         let mut circuit = 0;
         for number in 1..CIRCUITS {
-            let ends = begins + u32::from(station.plan().lengths[number].0);
+            let ends = begins + u32::from(lengths[number].0);
             let there = front > begins && front <= ends;
             within |= there && hold.bits() >> number & 1 == 1;
             circuit = if there { number } else { circuit };
@@ -293,8 +323,8 @@ harness! {
 }
 
 harness! {
-    /// What trains decode of a sub frame is the fixed data of the circuit for their direction of travel, with the layout's length, and a restriction that is not
-    /// above the temporary restriction of the circuit.
+    /// What trains are told by a sub telegram is the fixed data of the circuit for their direction of travel, with the layout's length, and a restriction that is not
+    /// of a higher code than the temporary restriction of the circuit.
     t_way_3_sub(e)
     theorem "T-WAY-3";
     requirements ["WAY-6"];
@@ -303,41 +333,39 @@ harness! {
     cases 1;
     unwind 65 = 1 + LONGEST;
     claims {
-        Read: "the frame is read as a sub telegram of this number and of the section number of the direction of travel",
+        Read: "the sub telegram has this number and the section number of the direction of travel",
         Fixed: "it has the layout's length, and gradient and curve of the direction of travel",
-        Limit: "its restriction is of a speed that is not above that of the temporary restriction",
+        Limit: "its restriction is the rank of the temporary restriction, or of the highest known code below it",
     }
     covers {
-        Restricted: "the circuit is restricted to speed 0",
+        Restricted: "the circuit is restricted to code 0",
         Free: "the circuit is not restricted",
     }
     {
-        let Some(station) = any_station(e) else { return };
-        let Some(signals) = any_signals(e, 1) else { return };
-        let Some(said) = made(e, &station, &signals) else { return };
+        let lengths = any_lengths(e);
+        let Some(said) = any_said(e, &lengths) else { return };
         let heading = any_heading(e, "heading of the train (odd: right)");
         let movement = Movement::stop_in(CircuitId::ZERO);
-        let Some((feed, counters, restrictions)) = heard(e, &station, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
-        let Some(sub) = sub_of(feed.sub) else { return e.claim(Claim::Read as u32, false) };
-        let Some(its) = its_facing(&signals, heading) else { return };
+        let Some((told, counters, restrictions)) = heard(e, &lengths, &said, movement, heading) else { return e.claim(Claim::Read as u32, false) };
+        let (sub, its) = (told.sub, said.its(heading));
         e.claim(Claim::Read as u32, sub.section == its.section && sub.counter == counters.sub);
-        let length = sub.length.metres() == station.plan().lengths[0];
-        e.claim(Claim::Fixed as u32, length && sub.gradient == its.gradient && sub.curve == its.curve);
+        let fixed = sub.length.metres() == lengths[0] && sub.gradient == its.gradient && sub.curve == its.curve;
+        e.claim(Claim::Fixed as u32, fixed);
         let mut limit = SpeedCode::MOST;
         for (code, circuits) in (0_u8..).zip(restrictions.parts()) {
             if circuits.bits() & 1 == 1 && code < limit.0 {
                 limit = SpeedCode(code);
             }
         }
-        e.claim(Claim::Limit as u32, signals.aspects.speed(sub.restriction) == Some(speed_of(&signals, limit)));
-        e.cover(Cover::Restricted as u32, limit.0 == 0 && signals.aspects.speed(sub.restriction) == Some(KmhTenths(0)));
+        e.claim(Claim::Limit as u32, sub.restriction == said.word(limit).rank);
+        e.cover(Cover::Restricted as u32, limit.0 == 0 && sub.restriction == said.stop.rank);
         e.cover(Cover::Free as u32, limit == SpeedCode::MOST);
     }
 }
 
 harness! {
-    /// Where the table cannot be read, the circuit is not occupied, or nothing is granted to the train there, trains of both directions of travel decode a closed
-    /// telegram with the rank of speed 0, and hear its codes.
+    /// Where the table cannot be read, the circuit is not occupied, or nothing is granted to the train there, trains of both directions of travel are told a closed
+    /// telegram with the rank of code 0, and its codes. That a table of another cycle or a damaged one cannot be read is T-ATC-3.
     t_way_4(e)
     theorem "T-WAY-4";
     requirements ["WAY-5"];
@@ -347,20 +375,20 @@ harness! {
     unwind 65 = 1 + LONGEST;
     claims {
         Closed: "the telegram is closed",
-        Speed: "its rank and the codes are of speed 0",
+        Speed: "its rank and the codes are those of code 0",
     }
     covers {
-        Stale: "the table is of another cycle, and grants",
-        Empty: "the table is of this cycle and grants, and the circuit is not occupied",
+        Stale: "the table cannot be read, and granted",
+        Empty: "the table grants, and the circuit is not occupied",
         Nothing: "the circuit is occupied, and nothing is granted",
     }
     {
-        let Some(station) = any_station(e) else { return };
-        let Some(signals) = any_signals(e, 1) else { return };
-        let Some(said) = made(e, &station, &signals) else { return };
+        let lengths = any_lengths(e);
+        let Some(said) = any_said(e, &lengths) else { return };
+        let Some(station) = Layout::with_what_proofs_need(plan::<1, 1, 1>()).ok() else { return e.claim(Claim::Closed as u32, false) };
         let here = CircuitSet::nth(0);
         let ahead = CircuitSet::nth(1);
-        let (stale, occupied) = (any_flag(e, "the table is of another cycle (odd: yes)"), any_flag(e, "the circuit is occupied (odd: yes)"));
+        let (stale, occupied) = (any_flag(e, "the table cannot be read (odd: yes)"), any_flag(e, "the circuit is occupied (odd: yes)"));
         let grants = any_flag(e, "a circuit is granted (odd: yes)");
         let heading = any_heading(e, "heading of the grant (odd: right)");
         let grant = Grant { train: here, circuits: ahead, last: ahead, complete: true, heading, speed: SpeedCode::MOST };
@@ -373,17 +401,13 @@ harness! {
             standing: Standing { bodies: [CircuitSet::EMPTY], loose: CircuitSet::EMPTY, limits: SpeedLimits::NONE },
         };
         e.assume(stale || !occupied || !grants);
-        let table = Table::write(Epoch(7), contents);
-        let read = table.read(Epoch(if stale { 8 } else { 7 }));
+        let read = if stale { None } else { Some(contents) };
         let begins = read.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(&station, contents));
         let movement = telegram(&station, read.as_ref(), begins, CircuitId::ZERO);
         let faces = any_heading(e, "heading of the train (odd: right)");
-        let Some((feed, _, _)) = heard(e, &station, &said, movement, faces) else { return e.claim(Claim::Closed as u32, false) };
-        let Some(main) = main_of(feed.main) else { return e.claim(Claim::Closed as u32, false) };
-        e.claim(Claim::Closed as u32, main.route == Route::Closed);
-        let codes = signals.codes.speed(Some(feed.codes.main), Some(feed.codes.sub));
-        let stop = Some(KmhTenths(0));
-        e.claim(Claim::Speed as u32, signals.aspects.speed(main.speed) == stop && codes == stop);
+        let Some((told, _, _)) = heard(e, &lengths, &said, movement, faces) else { return e.claim(Claim::Closed as u32, false) };
+        e.claim(Claim::Closed as u32, told.main.route == Route::Closed);
+        e.claim(Claim::Speed as u32, told.main.speed == said.stop.rank && told.codes == said.stop.codes);
         e.cover(Cover::Stale as u32, stale && occupied && grants);
         e.cover(Cover::Empty as u32, !stale && !occupied && grants);
         e.cover(Cover::Nothing as u32, !stale && occupied && !grants);
@@ -391,19 +415,84 @@ harness! {
 }
 
 harness! {
-    /// What leaves the device in a cycle: nothing in a circuit where the ATC is silent, or of which nothing is said; in every other what is made of
-    /// the ATC's movement there, the restrictions and the numbers; and signals, drives and confirmed blocks as the interlocking commands. The safe output
+    /// What is to be said in a circuit: nothing where the ATC is silent, and elsewhere what it tells the train of this circuit, with the restrictions of the cycle and
+    /// this circuit's numbers.
+    t_way_8_said(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-21"];
+    assumptions [];
+    bound "2 circuits of 64 have a train";
+    cases 2;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Silent: "nothing is to be said where the ATC is silent",
+        Said: "where it is not, its movement, the restrictions and the numbers of this circuit",
+    }
+    covers {
+        Silent: "the ATC is silent in the first circuit, and not in the second",
+        Both: "open telegrams in both",
+    }
+    {
+        let [one, other] = if e.choose("circuits", 2) == 0 { [0_u8, 1] } else { [5, 63] };
+        let mut telegrams = [None; MAX_CIRCUITS];
+        let mut state = State::<0, 1, 1> {
+            line: LineState::INITIAL,
+            device: Memory::INITIAL,
+            consents: [Consent::none(Ticks(1))],
+            counters: [Counters::START; MAX_CIRCUITS],
+            sent: CircuitSet::EMPTY,
+        };
+        let (mut silent, mut opens) = ([false; 2], [false; 2]);
+        for (place, number) in [one, other].into_iter().enumerate() {
+            let movement = any_movement(e);
+            silent[place] = any_flag(e, "the ATC is silent (odd: yes)");
+            opens[place] = movement.is_open();
+            telegrams[usize::from(number)] = if silent[place] { None } else { Some(movement) };
+            let mut any = |what| Counter(any_byte(e, what, 0..=255));
+            let counters = Counters { main: any("number of the main telegram"), sub: any("number of the sub telegram") };
+            state.counters[usize::from(number)] = counters;
+        }
+        let limit = SpeedCode(any_byte(e, "temporary restriction (code)", 0..=3));
+        let restrictions = SpeedLimits::NONE.and_at_most(limit, CircuitSet::nth(0));
+        state.device.interlocking.works.restrictions = restrictions;
+        let sayings = Device::sayings(&state, &telegrams);
+        let (mut nothing, mut said) = (true, true);
+        for (number, saying) in (0_u8..).zip(&sayings) {
+            let index = usize::from(number);
+            nothing &= telegrams[index].is_some() || saying.is_none();
+            if number == one || number == other {
+                said &= match (telegrams[index], *saying) {
+                    (Some(movement), Some(saying)) => {
+                        saying.circuit.number() == number
+                            && saying.movement == movement
+                            && saying.restrictions == restrictions
+                            && saying.counters == state.counters[index]
+                    }
+                    (movement, _) => movement.is_none(),
+                };
+            }
+        }
+        e.claim(Claim::Silent as u32, nothing);
+        e.claim(Claim::Said as u32, said);
+        e.cover(Cover::Silent as u32, silent[0] && !silent[1]);
+        e.cover(Cover::Both as u32, !silent[0] && !silent[1] && opens[0] && opens[1]);
+    }
+}
+
+harness! {
+    /// What leaves the device in a cycle, for three telegrams: nothing in a circuit where the ATC is silent, or of which nothing is said; in every other frames that
+    /// trains decode as what is told to each direction of travel; and signals, drives and confirmed blocks as the interlocking commands. The safe output
     /// is silence; and what is remembered to be sent is what was sent.
     t_way_8_sent(e)
     theorem "T-WAY-8";
     requirements ["WAY-21", "WAY-23"];
     assumptions [];
-    bound BOUND;
-    cases 1;
+    bound BOUND_SENT;
+    cases 3;
     unwind 65 = 1 + LONGEST;
     claims {
         Silent: "where the ATC is silent nothing is sent",
-        Said: "where it is not, what is sent is made of its movement, the restrictions and the numbers of this circuit",
+        Said: "where it is not, the frames for each direction of travel are decoded as what is told to it, and the codes are those",
         Sent: "the circuits for which there are frames are remembered, and no others",
         Commands: "signals, drives and confirmed blocks are as the interlocking commands, and permissions go to the neighbour",
         Safe: "the safe output is stop, no drive, no confirmed block, silence in every circuit and to the neighbour",
@@ -413,32 +502,33 @@ harness! {
         Said: "an open telegram is sent",
     }
     {
-        let Some(mut plan) = any_station(e).map(|station| *station.plan()) else { return };
-        plan.segments = [Segment { circuits: [CircuitSet::nth(0)], length: 1, ..Segment::NONE }];
-        let station = Layout::with_what_proofs_need(plan).ok();
-        e.assume(station.is_some());
-        let Some(station) = station else { return };
-        let Some(signals) = any_signals(e, 1) else { return };
+        let case = e.choose("telegram: none, stop, open", 3);
+        let mut made = plan::<1, 1, 1>();
+        made.turn = Ticks(2);
+        made.segments = [Segment { circuits: [CircuitSet::nth(0)], length: 1, ..Segment::NONE }];
+        let layout = Layout::with_what_proofs_need(made).ok();
+        let Some(station) = layout else { return e.claim(Claim::Said as u32, false) };
+        let Some(mut signals) = fixed_tables() else { return e.claim(Claim::Said as u32, false) };
+        let Some(curve) = AspectId::new(1) else { return };
+        let facing = |section, gradient| Facing { section: SectionId(section), gradient: Gradient(gradient), curve };
+        signals.circuits[0] = Some(Fixed { left: facing(0x1234, -7), right: facing(0x5678, 9) });
+        signals.speeds = [Some(KmhTenths(0)), Some(KmhTenths(150)), Some(KmhTenths(300)), None, None, None, None, None];
         let equipment = Equipment::<0> { counted: None, signals, life: Ticks(1), session: Session(0) };
         let device: Option<Device> = Wayside::new(&station, &equipment).ok();
-        e.assume(device.is_some());
-        let Some(device) = device else { return };
-        let movement = any_movement(e);
-        let silent = any_flag(e, "the ATC is silent (odd: yes)");
+        let Some(device) = device else { return e.claim(Claim::Said as u32, false) };
+        let open = Movement { stop: CircuitId::ZERO, heading: Some(Heading::Right), speed: SpeedCode(2), hold: CircuitSet::from_bits(6) };
+        let movement = if case == 2 { open } else { Movement::stop_in(CircuitId::ZERO) };
+        let silent = case == 0;
         let mut telegrams = [None; MAX_CIRCUITS];
         telegrams[0] = if silent { None } else { Some(movement) };
         // Of circuit 1 nothing is said.
         telegrams[1] = Some(movement);
         let mut state = device.initial();
-        let counters = Counters { main: Counter(any_byte(e, "number of the main telegram", 0..=255)), sub: Counter(0) };
+        let counters = Counters { main: Counter(41), sub: Counter(200) };
         state.counters[0] = counters;
-        let limit = SpeedCode(any_byte(e, "temporary restriction (code)", 0..=3));
-        let restrictions = SpeedLimits::NONE.and_at_most(limit, CircuitSet::nth(0));
-        state.device = Memory::INITIAL;
-        state.device.interlocking.works.restrictions = restrictions;
         let bits = e.word("commanded (bits)", 0..=1);
         let one = u64::from(bits & 1);
-        let interlocking = atc_kernel::interlocking::Output {
+        let interlocking = Output {
             proceed: RouteSet::from_bits(one),
             drives: Positions::NONE,
             permits: SegmentSet::from_bits(one.to_le_bytes()[0]),
@@ -446,7 +536,7 @@ harness! {
             answer: None,
             table: Table::UNREADABLE,
         };
-        let told = atc_kernel::interlocking::Input {
+        let told = Input {
             occupied: CircuitSet::EMPTY,
             detected: Positions::NONE,
             request: None,
@@ -455,12 +545,21 @@ harness! {
         };
         let reading: Reading<0> = Reading { input: told, line: None, refused: None };
         let (after, output) = device.send(state, &reading, &Commands { interlocking, telegrams });
-        let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
-        let expected = device.signals().transmission(&station.plan().lengths, saying);
+        let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions: SpeedLimits::NONE, counters };
         e.claim(Claim::Silent as u32, (!silent || output.transmissions[0].is_none()) && output.transmissions[1].is_none());
-        e.claim(Claim::Said as u32, silent || expected.is_some() && output.transmissions[0] == expected);
+        let mut said = silent;
+        if let Some(sent) = output.transmissions[0] {
+            said = true;
+            for (heading, feed) in [(Heading::Left, sent.left), (Heading::Right, sent.right)] {
+                let speech = device.signals().speech(&station.plan().lengths, saying, heading);
+                said &= speech.is_some_and(|speech| {
+                    main_of(feed.main) == Some(speech.main) && sub_of(feed.sub) == Some(speech.sub) && feed.codes == speech.codes
+                });
+            }
+        }
+        e.claim(Claim::Said as u32, said);
         e.claim(Claim::Sent as u32, after.sent.bits() == u64::from(!silent));
-        let permitted = output.messages[0].is_some_and(|message| (message.permission == atc_kernel::wayside::Permission::Granted) == (one == 1));
+        let permitted = output.messages[0].is_some_and(|message| (message.permission == Permission::Granted) == (one == 1));
         let commands = output.proceed == interlocking.proceed && output.drives == interlocking.drives && output.confirmed == interlocking.confirmed;
         e.claim(Claim::Commands as u32, commands && permitted && output.answer.is_none());
         let safe = <Device as Machine>::SAFE;
@@ -475,40 +574,37 @@ harness! {
 }
 
 harness! {
-    /// Signals are accepted if and only if code 0 is of speed 0 and speeds rise with the codes, each speed is in both of the trains' tables, every code with a
-    /// braking distance has one, every circuit of the segment is described and has a length, curves are in the table, and no section number stands twice. The error
-    /// names a rule that is broken.
-    way_signals(e)
+    /// Speeds of codes are accepted if and only if code 0 is of speed 0, they rise with the codes, and each is in both of the trains' tables. The error names a rule that is
+    /// broken. By those tables rank and pair of a code then name its speed: no code is one step off.
+    way_words(e)
     theorem "T-WAY-8";
-    requirements ["WAY-16", "WAY-17", "WAY-18", "WAY-19"];
+    requirements ["WAY-4", "WAY-16"];
     assumptions [];
-    bound BOUND;
+    bound BOUND_TABLES;
     cases 1;
     unwind 65 = 1 + LONGEST;
     claims {
         Exact: "accepted if and only if every rule is kept",
         Told: "the error names a rule that is broken",
+        Speeds: "there is a word exactly for the codes with a speed, and by the trains' tables its rank and its codes name that speed",
     }
     covers {
-        Accepted: "signals of two circuits are accepted",
+        Accepted: "three speeds are accepted",
         Falls: "a speed that does not rise",
-        Twice: "a section number stands twice",
-        Missing: "a circuit of the segment is not described",
+        NoRank: "a speed that is not in the table of speeds",
+        NoPair: "a speed without a pair of codes",
     }
     {
-        let Some(mut plan) = any_station(e).map(|station| *station.plan()) else { return };
-        let segment = CircuitSet::nth(usize::from(e.word("circuit of the segment (number)", 0..=2) & 3));
-        plan.segments = [Segment { circuits: [segment], length: 1, ..Segment::NONE }];
-        let station = Layout::with_what_proofs_need(plan).ok();
-        e.assume(station.is_some());
-        let Some(station) = station else { return };
-        let Some(signals) = any_signals(e, 2) else { return };
-        let made = Signals::new(&station, &signals);
-        let (mut rises, mut ranked, mut paired, mut every) = (true, true, true, true);
+        let Some((aspects, codes)) = any_tables(e) else { return };
+        let mut signals = SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes };
+        for (number, speed) in (0_u16..).zip(signals.speeds.iter_mut().take(SPEEDS)) {
+            let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number..=number));
+            *speed = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
+        }
+        let made = words(&signals);
+        let (mut rises, mut ranked, mut paired) = (true, true, true);
         let mut before: Option<KmhTenths> = None;
         for code in 0..SPEEDS {
-            let braking = plan.braking[code].0 < u16::MAX;
-            every &= signals.speeds[code].is_some() || !braking;
             let Some(speed) = signals.speeds[code] else { continue };
             rises &= before.is_none_or(|before| before < speed);
             before = Some(speed);
@@ -517,42 +613,122 @@ harness! {
                 rank |= AspectId::new(known).is_some_and(|rank| signals.aspects.speed(rank) == Some(speed));
             }
             for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let pair_of = (atc_kernel::code::Code::new(row), atc_kernel::code::Code::new(column));
+                let pair_of = (Code::new(row), Code::new(column));
                 pair |= signals.codes.speed(pair_of.0, pair_of.1) == Some(speed);
             }
             (ranked, paired) = (ranked & rank, paired & pair);
         }
         let stops = signals.speeds[0] == Some(KmhTenths(0));
-        let (Some(one), Some(other)) = (signals.circuits[0], signals.circuits[1]) else { return };
+        e.claim(Claim::Exact as u32, made.is_ok() == (stops && rises && ranked && paired));
+        let told = match made {
+            Ok(_) => true,
+            Err(WaysideError::StopMoves) => !stops,
+            Err(WaysideError::SpeedsFall(_)) => !rises,
+            Err(WaysideError::NoRank(_)) => !ranked,
+            Err(WaysideError::NoPair(_)) => !paired,
+            Err(_) => false,
+        };
+        e.claim(Claim::Told as u32, told);
+        let mut named = true;
+        for code in 0..MAX_CODES {
+            named &= match (made, signals.speeds[code]) {
+                (Ok(words), Some(speed)) => words[code].is_some_and(|word| {
+                    let Codes { main, sub } = word.codes;
+                    signals.aspects.speed(word.rank) == Some(speed) && signals.codes.speed(Some(main), Some(sub)) == Some(speed)
+                }),
+                (Ok(words), None) => words[code].is_none(),
+                (Err(_), _) => true,
+            };
+        }
+        e.claim(Claim::Speeds as u32, named);
+        e.cover(Cover::Accepted as u32, made.is_ok_and(|words| words[1].is_some() && words[2].is_some()));
+        e.cover(Cover::Falls as u32, matches!(made, Err(WaysideError::SpeedsFall(_))));
+        e.cover(Cover::NoRank as u32, matches!(made, Err(WaysideError::NoRank(_))));
+        e.cover(Cover::NoPair as u32, matches!(made, Err(WaysideError::NoPair(_))));
+    }
+}
+
+harness! {
+    /// Signals whose codes are sound (`way_words`) are accepted if and only if every code with a braking distance has a speed, every circuit of the segment is described and
+    /// has a length, curves are in the table, and no section number stands twice. The error names a rule that is broken. What is kept is what was given, with the
+    /// layout's lengths, and stop is code 0.
+    way_signals(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-17", "WAY-18", "WAY-19"];
+    assumptions [];
+    bound BOUND_SIGNALS;
+    cases 3;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Exact: "accepted if and only if every rule is kept",
+        Told: "the error names a rule that is broken",
+        Kept: "the circuits' data are those of the plan with the layout's lengths, and a code is heard as its rank and pair",
+    }
+    covers {
+        Accepted: "signals of two circuits are accepted",
+        Unsaid: "a code with a braking distance has no speed",
+        Twice: "a section number stands twice",
+        Missing: "a circuit of the segment is not described",
+    }
+    {
+        let number = e.choose("circuit of the segment (number)", 3);
+        let segment = CircuitSet::nth(number);
+        let lengths = any_lengths(e);
+        let Some(station) = station(e, segment, lengths) else { return };
+        let Some(mut signals) = fixed_tables() else { return };
+        signals.speeds[0] = Some(KmhTenths(0));
+        for (code, speed) in [(1, 150), (2, 300)] {
+            signals.speeds[code] = if any_flag(e, "there is such a code (odd: yes)") { Some(KmhTenths(speed)) } else { None };
+        }
+        let mut any = |likely| any_facing(e, likely);
+        let (Some(left), Some(right), Some(next_left), Some(next_right)) = (any(0), any(2), any(3), any(6)) else { return };
+        let (one, other) = (Fixed { left, right }, Fixed { left: next_left, right: next_right });
+        signals.circuits[0] = Some(one);
+        signals.circuits[1] = Some(other);
+        let made = Signals::new(&station, &signals);
+        let mut every = true;
+        for code in 0..SPEEDS {
+            every &= signals.speeds[code].is_some() || station.plan().braking[code].0 == u16::MAX;
+        }
         let ids = [one.left.section.0, one.right.section.0, other.left.section.0, other.right.section.0];
         let mut twice = false;
-        for (place, id) in ids.iter().enumerate() {
-            for (earlier, its) in ids.iter().enumerate() {
-                twice |= earlier < place && id == its;
+        for place in 1..4 {
+            for earlier in 0..3 {
+                twice |= earlier < place && ids[place] == ids[earlier];
             }
         }
-        let described = segment.bits() & 0b1100 == 0;
-        let lengths = plan.lengths[0].0 > 0 && plan.lengths[1].0 > 0;
+        let described = number < 2;
+        let long = lengths[0].0 > 0 && lengths[1].0 > 0;
         let known = |rank: AspectId| usize::from(rank.rank()) < SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
-        let legal = stops && rises && ranked && paired && every && described && lengths && curves && !twice;
-        e.claim(Claim::Exact as u32, made.is_ok() == legal);
+        e.claim(Claim::Exact as u32, made.is_ok() == (every && described && long && curves && !twice));
         let told = match made.as_ref().err() {
             None => true,
-            Some(WaysideError::StopMoves) => !stops,
-            Some(WaysideError::SpeedsFall(_)) => !rises,
-            Some(WaysideError::NoRank(_)) => !ranked,
-            Some(WaysideError::NoPair(_)) => !paired,
             Some(WaysideError::CodeWithoutSpeed(_)) => !every,
             Some(WaysideError::CircuitWithoutSignals(_)) => !described,
-            Some(WaysideError::NoLength(_)) => !lengths,
+            Some(WaysideError::NoLength(_)) => !long,
             Some(WaysideError::UnknownCurve(_)) => !curves,
             Some(WaysideError::SectionNumberTwice(_)) => twice,
             Some(_) => false,
         };
         e.claim(Claim::Told as u32, told);
+        let mut kept = true;
+        if let Ok(made) = &made {
+            for (circuit, fixed) in [(0, one), (1, other)] {
+                let its = CircuitId::new(circuit).and_then(|circuit| made.circuit(circuit));
+                kept &= its.is_some_and(|(its, length)| its == fixed && length.metres() == lengths[usize::from(circuit)]);
+            }
+            kept &= CircuitId::new(2).is_some_and(|circuit| made.circuit(circuit).is_none());
+            // The rank is the place of the speed, and the pair the one that names it.
+            let pair = |rank: u8| (rank, [(0, 0), (0, 1), (1, 0)][usize::from(rank)]);
+            let said = |word: Word| (word.rank.rank(), (word.codes.main.place(), word.codes.sub.place()));
+            kept &= said(made.stop()) == pair(0) && said(made.word(SpeedCode(0))) == pair(0);
+            kept &= signals.speeds[1].is_none() || said(made.word(SpeedCode(1))) == pair(1);
+            kept &= signals.speeds[2].is_none() || said(made.word(SpeedCode(2))) == pair(2);
+        }
+        e.claim(Claim::Kept as u32, kept);
         e.cover(Cover::Accepted as u32, made.is_ok());
-        e.cover(Cover::Falls as u32, matches!(made, Err(WaysideError::SpeedsFall(_))));
+        e.cover(Cover::Unsaid as u32, matches!(made, Err(WaysideError::CodeWithoutSpeed(_))));
         e.cover(Cover::Twice as u32, matches!(made, Err(WaysideError::SectionNumberTwice(_))));
         e.cover(Cover::Missing as u32, matches!(made, Err(WaysideError::CircuitWithoutSignals(_))));
     }
