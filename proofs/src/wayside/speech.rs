@@ -49,9 +49,9 @@ fn station<E: Engine + ?Sized>(e: &mut E, segment: CircuitSet, lengths: [Metres;
     let mut made = plan::<1, 1, 1>();
     made.turn = Ticks(2);
     made.lengths = lengths;
-    for (code, distance) in made.braking.iter_mut().take(SPEEDS).enumerate() {
-        let there = code == 0 || any_flag(e, "there is a braking distance for a code (odd: yes)");
-        *distance = Metres(if there { 0 } else { u16::MAX });
+    for (its, distance) in [0, 100, 200].into_iter().zip(&mut made.braking) {
+        let there = its == 0 || any_flag(e, "there is a braking distance for a code (odd: yes)");
+        *distance = Metres(if there { its } else { u16::MAX });
     }
     made.segments = [Segment { circuits: [segment], length: 1, ..Segment::NONE }];
     let layout = Layout::with_what_proofs_need(made).ok();
@@ -526,6 +526,8 @@ harness! {
         let mut state = device.initial();
         let counters = Counters { main: Counter(41), sub: Counter(200) };
         state.counters[0] = counters;
+        let restrictions = SpeedLimits::NONE.and_at_most(SpeedCode(1), CircuitSet::nth(0));
+        state.device.interlocking.works.restrictions = restrictions;
         let bits = e.word("commanded (bits)", 0..=1);
         let one = u64::from(bits & 1);
         let interlocking = Output {
@@ -545,7 +547,7 @@ harness! {
         };
         let reading: Reading<0> = Reading { input: told, line: None, refused: None };
         let (after, output) = device.send(state, &reading, &Commands { interlocking, telegrams });
-        let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions: SpeedLimits::NONE, counters };
+        let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
         e.claim(Claim::Silent as u32, (!silent || output.transmissions[0].is_none()) && output.transmissions[1].is_none());
         let mut said = silent;
         if let Some(sent) = output.transmissions[0] {
@@ -598,7 +600,7 @@ harness! {
         let Some((aspects, codes)) = any_tables(e) else { return };
         let mut signals = SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes };
         for (number, speed) in (0_u16..).zip(signals.speeds.iter_mut().take(SPEEDS)) {
-            let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number..=number));
+            let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number.saturating_sub(1)..=number));
             *speed = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
         }
         let made = words(&signals);
