@@ -17,7 +17,7 @@ mod speech;
 pub use consent::{Consent, Message, Permission, Session, Stamp, check_life};
 pub use counters::{Counters, Framed};
 pub use join::{Counted, Join, Spot};
-pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word, words};
+pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word, check_codes, circuits, words};
 pub use speech::{Feed, Saying, Speech, Transmission};
 
 use crate::Machine;

@@ -89,15 +89,9 @@ impl Signals {
         plan: &SignalPlan,
     ) -> Result<Self, WaysideError> {
         let words = words(plan)?;
-        for (word, (code, braking)) in words.iter().zip((0_u8..).zip(&layout.plan().braking)) {
-            //= spec/wayside.md#way-17-every-code
-            //# The constructor MUST reject signals without a speed for a code for which the layout has a braking distance.
-            if word.is_none() && *braking < Metres(u16::MAX) {
-                return Err(WaysideError::CodeWithoutSpeed(SpeedCode(code)));
-            }
-        }
+        check_codes(&words, &layout.plan().braking)?;
         let [Some(stop), ..] = words else { return Err(WaysideError::StopMoves) };
-        Ok(Self { circuits: circuits(layout, plan)?, words, stop })
+        Ok(Self { circuits: circuits(used(layout), &layout.plan().lengths, plan)?, words, stop })
     }
 
     /// Signals as they are given, for proofs: nothing of them is checked.
@@ -181,13 +175,32 @@ fn pair(codes: &CodeTable, speed: KmhTenths) -> Option<Codes> {
     found
 }
 
-/// The circuits with their lengths.
+/// Checks that there is a word for each code that can be told.
+///
+/// # Errors
+/// [`WaysideError::CodeWithoutSpeed`] for the first code without one.
+#[inline]
+pub fn check_codes(words: &[Option<Word>; MAX_CODES], braking: &[Metres; MAX_CODES]) -> Result<(), WaysideError> {
+    for (word, (code, braking)) in words.iter().zip((0_u8..).zip(braking)) {
+        //= spec/wayside.md#way-17-every-code
+        //# The constructor MUST reject signals without a speed for a code for which the layout has a braking distance.
+        if word.is_none() && *braking < Metres(u16::MAX) {
+            return Err(WaysideError::CodeWithoutSpeed(SpeedCode(code)));
+        }
+    }
+    Ok(())
+}
+
+/// The circuits with their `lengths`; `used` are those in which a train may wait for a telegram, or run by one.
+///
+/// # Errors
+/// The first rule of WAY-18 and WAY-19 that is broken.
 #[inline(never)]
-fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+pub fn circuits(
+    used: CircuitSet,
+    lengths: &[Metres; MAX_CIRCUITS],
     plan: &SignalPlan,
 ) -> Result<[Option<(Fixed, Length)>; MAX_CIRCUITS], WaysideError> {
-    let used = used(layout);
     let mut kept = [None; MAX_CIRCUITS];
     for (number, place) in (0_u8..).zip(&mut kept) {
         let index = usize::from(number);
@@ -200,7 +213,7 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize>(
             }
             continue;
         };
-        let Some(length) = Length::new(layout.plan().lengths[index]) else {
+        let Some(length) = Length::new(lengths[index]) else {
             return Err(WaysideError::NoLength(circuit));
         };
         let known = |rank| plan.aspects.speed(rank).is_some();

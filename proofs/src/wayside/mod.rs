@@ -34,6 +34,7 @@ pub const ALL: &[Harness] = &[
     occupancy::way_join_hold::HARNESS,
     speech::way_words::HARNESS,
     speech::way_signals::HARNESS,
+    speech::way_codes::HARNESS,
 ];
 
 /// The longest loop: over what there is for each circuit.

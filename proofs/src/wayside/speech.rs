@@ -19,7 +19,7 @@ use atc_kernel::telegram::{Counter, Frame, Gradient, Length, Main, Route, Sectio
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{
     Codes, Consent, Counters, Equipment, Facing, Fixed, Permission, Reading, Saying, Session, SignalPlan, Signals,
-    Speech, State, Wayside, WaysideError, Word, words,
+    Speech, State, Wayside, WaysideError, Word, check_codes, circuits, words,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -29,10 +29,9 @@ const SPEEDS: usize = 3;
 
 const BOUND: &str = "4 circuits, 3 speed codes";
 const BOUND_TABLES: &str = "tables of 3 speeds, 2 code frequencies of each carrier";
-const BOUND_SIGNALS: &str = "2 circuits described, 4 with a length, 1 segment of 1 circuit, 3 speed codes";
+const BOUND_SIGNALS: &str = "2 circuits described, 4 used or with a length, 3 speeds";
 const BOUND_SENT: &str = "1 circuit, three telegrams: none, stop, open";
 
-type Station = Layout<1, 1, 0, 1>;
 type Device<'a> = Wayside<'a, 0, 1, 1, 0, 1>;
 
 /// Any lengths of the circuits.
@@ -42,21 +41,6 @@ fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
         *length = Metres(e.word("length of a circuit (m)", 1..=300));
     }
     lengths
-}
-
-/// A station with a segment of one circuit.
-fn station<E: Engine + ?Sized>(e: &mut E, segment: CircuitSet, lengths: [Metres; MAX_CIRCUITS]) -> Option<Station> {
-    let mut made = plan::<1, 1, 1>();
-    made.turn = Ticks(2);
-    made.lengths = lengths;
-    for (its, distance) in [0, 100, 200].into_iter().zip(&mut made.braking) {
-        let there = its == 0 || any_flag(e, "there is a braking distance for a code (odd: yes)");
-        *distance = Metres(if there { its } else { u16::MAX });
-    }
-    made.segments = [Segment { circuits: [segment], length: 1, ..Segment::NONE }];
-    let layout = Layout::with_what_proofs_need(made).ok();
-    e.assume(layout.is_some());
-    layout
 }
 
 /// Any tables of speeds and codes.
@@ -651,47 +635,36 @@ harness! {
 }
 
 harness! {
-    /// Signals whose codes are sound (`way_words`) are accepted if and only if every code with a braking distance has a speed, every circuit of the segment is described and
-    /// has a length, curves are in the table, and no section number stands twice. The error names a rule that is broken. What is kept is what was given, with the
-    /// layout's lengths, and stop is code 0.
+    /// The circuits' data are accepted if and only if every circuit in which trains may be is described and has a length, curves are in the trains' table, and no section
+    /// number stands twice. The error names a rule that is broken. What is kept is what was given, with the layout's lengths.
     way_signals(e)
     theorem "T-WAY-8";
-    requirements ["WAY-17", "WAY-18", "WAY-19"];
+    requirements ["WAY-18", "WAY-19"];
     assumptions [];
     bound BOUND_SIGNALS;
-    cases 3;
+    cases 1;
     unwind 65 = 1 + LONGEST;
     claims {
         Exact: "accepted if and only if every rule is kept",
         Told: "the error names a rule that is broken",
-        Kept: "the circuits' data are those of the plan with the layout's lengths, and a code is heard as its rank and pair",
+        Kept: "the circuits' data are those of the plan with the layout's lengths, and there are no others",
     }
     covers {
         Accepted: "signals of two circuits are accepted",
-        Unsaid: "a code with a braking distance has no speed",
+        Curve: "a curve limit that trains do not know",
         Twice: "a section number stands twice",
-        Missing: "a circuit of the segment is not described",
+        Missing: "a circuit in which trains may be is not described",
     }
     {
-        let number = e.choose("circuit of the segment (number)", 3);
-        let segment = CircuitSet::nth(number);
         let lengths = any_lengths(e);
-        let Some(station) = station(e, segment, lengths) else { return };
         let Some(mut signals) = fixed_tables() else { return };
-        signals.speeds[0] = Some(KmhTenths(0));
-        for (code, speed) in [(1, 150), (2, 300)] {
-            signals.speeds[code] = if any_flag(e, "there is such a code (odd: yes)") { Some(KmhTenths(speed)) } else { None };
-        }
         let mut any = |likely| any_facing(e, likely);
         let (Some(left), Some(right), Some(next_left), Some(next_right)) = (any(0), any(2), any(3), any(6)) else { return };
         let (one, other) = (Fixed { left, right }, Fixed { left: next_left, right: next_right });
         signals.circuits[0] = Some(one);
         signals.circuits[1] = Some(other);
-        let made = Signals::new(&station, &signals);
-        let mut every = true;
-        for code in 0..SPEEDS {
-            every &= signals.speeds[code].is_some() || station.plan().braking[code].0 == u16::MAX;
-        }
+        let used = CircuitSet::from_bits(u64::from(e.word("circuits in which trains may be (bits)", 0..=7) & 15));
+        let made = circuits(used, &lengths, &signals);
         let ids = [one.left.section.0, one.right.section.0, other.left.section.0, other.right.section.0];
         let mut twice = false;
         for place in 1..4 {
@@ -699,14 +672,13 @@ harness! {
                 twice |= earlier < place && ids[place] == ids[earlier];
             }
         }
-        let described = number < 2;
+        let described = used.bits() < 4;
         let long = lengths[0].0 > 0 && lengths[1].0 > 0;
         let known = |rank: AspectId| usize::from(rank.rank()) < SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
-        e.claim(Claim::Exact as u32, made.is_ok() == (every && described && long && curves && !twice));
+        e.claim(Claim::Exact as u32, made.is_ok() == (described && long && curves && !twice));
         let told = match made.as_ref().err() {
             None => true,
-            Some(WaysideError::CodeWithoutSpeed(_)) => !every,
             Some(WaysideError::CircuitWithoutSignals(_)) => !described,
             Some(WaysideError::NoLength(_)) => !long,
             Some(WaysideError::UnknownCurve(_)) => !curves,
@@ -716,22 +688,66 @@ harness! {
         e.claim(Claim::Told as u32, told);
         let mut kept = true;
         if let Ok(made) = &made {
-            for (circuit, fixed) in [(0, one), (1, other)] {
-                let its = CircuitId::new(circuit).and_then(|circuit| made.circuit(circuit));
-                kept &= its.is_some_and(|(its, length)| its == fixed && length.metres() == lengths[usize::from(circuit)]);
+            for (circuit, fixed) in [one, other].into_iter().enumerate() {
+                kept &= made[circuit].is_some_and(|(its, length)| its == fixed && length.metres() == lengths[circuit]);
             }
-            kept &= CircuitId::new(2).is_some_and(|circuit| made.circuit(circuit).is_none());
-            // The rank is the place of the speed, and the pair the one that names it.
-            let pair = |rank: u8| (rank, [(0, 0), (0, 1), (1, 0)][usize::from(rank)]);
-            let said = |word: Word| (word.rank.rank(), (word.codes.main.place(), word.codes.sub.place()));
-            kept &= said(made.stop()) == pair(0) && said(made.word(SpeedCode(0))) == pair(0);
-            kept &= signals.speeds[1].is_none() || said(made.word(SpeedCode(1))) == pair(1);
-            kept &= signals.speeds[2].is_none() || said(made.word(SpeedCode(2))) == pair(2);
+            for none in made.iter().skip(2) {
+                kept &= none.is_none();
+            }
         }
         e.claim(Claim::Kept as u32, kept);
         e.cover(Cover::Accepted as u32, made.is_ok());
-        e.cover(Cover::Unsaid as u32, matches!(made, Err(WaysideError::CodeWithoutSpeed(_))));
+        e.cover(Cover::Curve as u32, matches!(made, Err(WaysideError::UnknownCurve(_))));
         e.cover(Cover::Twice as u32, matches!(made, Err(WaysideError::SectionNumberTwice(_))));
         e.cover(Cover::Missing as u32, matches!(made, Err(WaysideError::CircuitWithoutSignals(_))));
+    }
+}
+
+harness! {
+    /// Every code for which the layout has a braking distance must have a word, and nothing else is asked; the error names a code without one.
+    way_codes(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-17"];
+    assumptions [];
+    bound "";
+    cases 1;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Exact: "accepted if and only if every code with a braking distance has a word",
+        Told: "the error names a code with a braking distance and no word",
+    }
+    covers {
+        Accepted: "accepted, with a code that has no braking distance",
+        Unsaid: "a code with a braking distance has no word",
+    }
+    {
+        let Some(word) = any_word(e, 0) else { return };
+        let (mut words, mut braking) = ([None; MAX_CODES], [Metres(u16::MAX); MAX_CODES]);
+        let (mut every, mut none) = (true, false);
+        for code in 0..MAX_CODES {
+            words[code] = if e.word("there is such a code (odd: yes)", 1..=1) & 1 == 1 { Some(word) } else { None };
+            let there = e.word("there is a braking distance for a code (odd: yes)", 0..=1) & 1 == 1;
+            let distance = e.word("braking distance (m)", 0..=100);
+            braking[code] = Metres(if there { distance } else { u16::MAX });
+            every &= words[code].is_some() || braking[code].0 == u16::MAX;
+            none |= braking[code].0 == u16::MAX;
+        }
+        let made = check_codes(&words, &braking);
+        e.claim(Claim::Exact as u32, made.is_ok() == every);
+        let told = match made {
+            Ok(()) => true,
+            Err(WaysideError::CodeWithoutSpeed(code)) => {
+                let mut named = false;
+                for number in 0..MAX_CODES {
+                    let its = number == usize::from(code.0);
+                    named |= its && words[number].is_none() && braking[number].0 < u16::MAX;
+                }
+                named
+            }
+            Err(_) => false,
+        };
+        e.claim(Claim::Told as u32, told);
+        e.cover(Cover::Accepted as u32, made.is_ok() && none);
+        e.cover(Cover::Unsaid as u32, made.is_err());
     }
 }
