@@ -423,6 +423,14 @@ fn is_short(line: &Case, (lengths, count): ([u32; 4], usize), (before, known): (
     (short, short_on_line)
 }
 
+/// What a joint is like.
+struct Seen {
+    /// Two sections are on one circuit.
+    twice: bool,
+    /// Every section has a circuit of the segment or its throat, and no other place has one.
+    there: bool,
+}
+
 /// What the constructor says of a joint, and what it should say.
 struct Outcome {
     made: Result<Counted<2>, WaysideError>,
@@ -430,10 +438,7 @@ struct Outcome {
     legal: bool,
     /// The error names a rule that is broken.
     told: bool,
-    /// Two sections are on one circuit.
-    twice: bool,
-    /// Every section has a circuit of the segment or its throat, and no other place has one.
-    there: bool,
+    seen: Seen,
 }
 
 /// Joins a line to a station. `given` are the circuits on the places of its blocks, `turned` whether its direction of travel is the other one.
@@ -507,7 +512,7 @@ fn joined(line: &Case, station: &Station, given: [[Option<CircuitId>; 2]; 2], tu
         Err(WaysideError::HoldTooShortAtTheEntry) => short,
         Err(_) => false,
     };
-    Outcome { made, legal, told, twice, there: complete && there }
+    Outcome { made, legal, told, seen: Seen { twice, there: complete && there } }
 }
 
 harness! {
@@ -545,7 +550,7 @@ harness! {
             }
         }
         let turned = any_flag(e, "the direction of travel is the other (odd: yes)");
-        let Outcome { made, legal, told, twice, there } = joined(&line, &station, given, turned);
+        let Outcome { made, legal, told, seen: Seen { twice, there } } = joined(&line, &station, given, turned);
         e.claim(Claim::Exact as u32, made.is_ok() == legal);
         e.claim(Claim::Told as u32, told);
         e.cover(Cover::Accepted as u32, made.is_ok());

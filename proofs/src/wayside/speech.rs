@@ -223,9 +223,9 @@ harness! {
         let own = main.section == said.its(heading).section && main.section != said.its(heading.opposite()).section;
         e.claim(Claim::Read as u32, own && main.counter == counters.main);
         let mut together = 0_u32;
-        for number in 0..CIRCUITS {
+        for (number, length) in lengths.iter().enumerate().take(CIRCUITS) {
             let granted = movement.hold.bits() >> number & 1 == 1;
-            together += if granted { u32::from(lengths[number].0) } else { 0 };
+            together += if granted { u32::from(length.0) } else { 0 };
         }
         let most = if together < 0xFFFF { together } else { 0xFFFF };
         let meant = movement.heading == Some(heading);
@@ -291,8 +291,8 @@ harness! {
         e.assume(may);
         let (mut begins, mut within) = (0_u32, front == 0);
         let mut circuit = 0;
-        for number in 1..CIRCUITS {
-            let ends = begins + u32::from(lengths[number].0);
+        for (number, length) in lengths.iter().enumerate().take(CIRCUITS).skip(1) {
+            let ends = begins + u32::from(length.0);
             let there = front > begins && front <= ends;
             within |= there && hold.bits() >> number & 1 == 1;
             circuit = if there { number } else { circuit };
