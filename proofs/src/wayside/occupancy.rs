@@ -1,23 +1,19 @@
 //! From sections to circuits (T-WAY-1, T-WAY-2), and what the constructor asks of the joint.
 
-use super::{LONGEST, plan};
+use super::LONGEST;
 use crate::Engine;
 use crate::block::{any_detection, any_parts, suppose_count, suppose_no_phantom};
-use crate::engine::{any_byte, any_flag};
-use atc_kernel::block::{Block, Border, Direction, Hold, Line, LineError, LineState, State as Kept, Status};
+use crate::engine::any_byte;
+use atc_kernel::block::{Block, Border, Direction, Hold, Line, LineState, State as Kept, Status};
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Element, Layout, Positions, Route, Segment, SegmentId, SegmentSet, Travel,
-};
+use atc_kernel::interlocking::{CircuitSet, SegmentId, Travel};
 use atc_kernel::time::Ticks;
-use atc_kernel::wayside::{Counted, Join, WaysideError};
+use atc_kernel::wayside::Counted;
 
 /// The circuits of the track in the direction of travel.
 const TRACK: usize = 7;
 /// The circuits of the segment.
 const PLACES: usize = 4;
-
-type Station = Layout<1, PLACES, 0, 1>;
 
 type Shape = (Travel, Direction, usize, [usize; 2], u8);
 
@@ -31,9 +27,6 @@ const CASES: [Shape; 6] = [
     (Travel::Away, Direction::Down, 3, [1, 2], 1),
     (Travel::Away, Direction::Up, 2, [1, 1], 3),
 ];
-
-/// Those whose hold reaches over the entry: to the end of the segment, and behind the throat.
-const HOLDS: [Shape; 2] = [CASES[1], CASES[5]];
 
 pub const BOUND: &str = "1 route of 2 circuits, 1 segment of 4 circuits and its throat, 2 blocks of 1 or 2 sections";
 
@@ -57,34 +50,6 @@ fn at(travel: Travel, place: usize) -> u64 {
 /// Any lengths of the track's circuits.
 fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [u16; TRACK] {
     core::array::from_fn(|_| e.word("length of a circuit (m)", 5..=9))
-}
-
-/// The station: a route over throat and one circuit more, in the direction of travel, with these lengths.
-fn station(travel: Travel, lengths: [u16; TRACK]) -> Option<Station> {
-    let mut made = plan::<1, PLACES, 1>();
-    made.turn = Ticks(2);
-    let place = |number| Element { circuits: CircuitSet::nth(number), positions: Positions::NONE };
-    let mut path = [Element::default(); PLACES];
-    let one = SegmentSet::nth(0);
-    let (entry, from, to) = match travel {
-        Travel::Toward => {
-            (path[0], path[1]) = (place(4), place(5));
-            (CircuitSet::nth(0), one, SegmentSet::EMPTY)
-        }
-        Travel::Away => {
-            (path[0], path[1]) = (place(5), place(4));
-            (CircuitSet::nth(6), SegmentSet::EMPTY, one)
-        }
-    };
-    let timed = Ticks(1);
-    made.routes =
-        [Route { entry, path, length: 2, from, to, drive: timed, release: timed, stay: timed, ..Route::NONE }];
-    let circuits = core::array::from_fn(CircuitSet::nth);
-    made.segments = [Segment { circuits, length: 4, throat: CircuitSet::nth(4), ..Segment::NONE }];
-    for (length, its) in made.lengths.iter_mut().zip(lengths) {
-        *length = Metres(its);
-    }
-    Layout::with_what_proofs_need(made).ok()
 }
 
 /// A counted line on the circuits of a case.
@@ -114,27 +79,7 @@ impl Case {
         }
     }
 
-    fn join(&self) -> Join<2> {
-        let mut circuits = [[None; 16]; 2];
-        for (block, row) in circuits.iter_mut().enumerate() {
-            for (section, circuit) in row.iter_mut().enumerate().take(2) {
-                if section < self.sizes[block] {
-                    let number = number(self.travel, self.place(block, section));
-                    *circuit = CircuitId::new(number.to_le_bytes()[0]);
-                }
-            }
-        }
-        Join {
-            blocks: self.blocks,
-            direction: self.direction,
-            train: Metres(self.train),
-            segment: SegmentId::ZERO,
-            travel: self.travel,
-            circuits,
-        }
-    }
-
-    /// The joint, as the constructor makes it (`way_join`): a line that is accepted, and holds that are long enough at the entry. `lengths` are those of
+    /// The joint, as the constructor is meant to make it: a line that is accepted, and holds that are long enough at the entry. `lengths` are those of
     /// the track's circuits.
     fn counted<E: Engine + ?Sized>(&self, e: &mut E, lengths: &[u16; TRACK]) -> Option<Counted<2>> {
         let mut sections = [[CircuitSet::EMPTY; 16]; 2];
@@ -366,234 +311,5 @@ harness! {
         e.cover(Cover::More as u32, other & !(told | more.bits()) != 0);
         let first = if line.entry > 0 { at(line.travel, line.entry - 1) } else { 0 };
         e.cover(Cover::Before as u32, told & first & !occupied.bits() != 0);
-    }
-}
-
-/// Any circuit for a section; mostly the one that is right.
-fn any_circuit<E: Engine + ?Sized>(e: &mut E, right: Option<CircuitId>) -> Option<CircuitId> {
-    let other = CircuitId::new(any_byte(e, "another circuit (8 and more: none)", 0..=8)).filter(|it| it.number() < 8);
-    if e.word("another circuit for the section (1 mod 8: yes)", 0..=7) & 7 == 1 { other } else { right }
-}
-
-/// The lengths of the places before the entry, the nearest first, and how many there are; `entry` is a place from the throat outwards.
-fn metres_before(station: &Station, travel: Travel, entry: u8, has_route: bool) -> ([u32; 3], usize) {
-    let length_of = |rank: u8| station.plan().lengths[if rank == 0 { 4 } else { usize::from(rank) - 1 }].0;
-    let mut track = [0_u32; 3];
-    let mut known = 0;
-    for back in 1..=3_u8 {
-        let place = match travel {
-            Travel::Toward => Some(entry + back).filter(|place| *place <= 4).map(length_of),
-            Travel::Away if back <= entry => Some(length_of(entry - back)),
-            // The route out, if there is one: circuit 5, then its entry 6.
-            Travel::Away => match (has_route, back - entry) {
-                (true, 1) => Some(station.plan().lengths[5].0),
-                (true, 2) => Some(station.plan().lengths[6].0),
-                _ => None,
-            },
-        };
-        if let (Some(place), true) = (place, known + 1 == usize::from(back)) {
-            track[known] = u32::from(place);
-            known += 1;
-        }
-    }
-    (track, known)
-}
-
-/// Whether somewhere the k places behind a front are shorter than the train, and whether that is so on the line itself.
-fn is_short(line: &Case, (lengths, count): ([u32; 4], usize), (before, known): ([u32; 3], usize)) -> (bool, bool) {
-    let hold = usize::from(line.hold);
-    let up = line.direction == Direction::Up;
-    let (mut short, mut short_on_line) = (false, false);
-    for front in 0..=4 {
-        if front <= count && hold <= front + known {
-            let mut behind = 0;
-            for back in 1..=3 {
-                if back <= hold {
-                    behind += match front.checked_sub(back) {
-                        Some(place) if up => lengths[place],
-                        Some(place) => lengths[count - 1 - place],
-                        None => before[back - front - 1],
-                    };
-                }
-            }
-            short |= behind < u32::from(line.train);
-            short_on_line |= hold <= front && behind < u32::from(line.train);
-        }
-    }
-    (short, short_on_line)
-}
-
-/// What a joint is like.
-struct Seen {
-    /// Two sections are on one circuit.
-    twice: bool,
-    /// Every section has a circuit of the segment or its throat, and no other place has one.
-    there: bool,
-}
-
-/// What the constructor says of a joint, and what it should say.
-struct Outcome {
-    made: Result<Counted<2>, WaysideError>,
-    /// Every rule is kept.
-    legal: bool,
-    /// The error names a rule that is broken.
-    told: bool,
-    seen: Seen,
-}
-
-/// Joins a line to a station. `given` are the circuits on the places of its blocks, `turned` whether its direction of travel is the other one.
-fn joined(line: &Case, station: &Station, given: [[Option<CircuitId>; 2]; 2], turned: bool) -> Outcome {
-    let mut join = line.join();
-    for (row, circuits) in join.circuits.iter_mut().zip(given) {
-        for (place, circuit) in row.iter_mut().zip(circuits) {
-            *place = circuit;
-        }
-    }
-    if turned {
-        join.travel = if line.travel == Travel::Toward { Travel::Away } else { Travel::Toward };
-    }
-    let made = Counted::new(station, &join);
-    // Every section has a circuit, and no other place has.
-    let (mut complete, mut there, mut order, mut twice) = (true, true, true, false);
-    // Outwards from the throat: circuit 4 is place 0, circuits 0 to 3 are places 1 to 4.
-    let rank = |circuit: CircuitId| match circuit.number() {
-        4 => Some(0_u8),
-        number if number < 4 => Some(number + 1),
-        _ => None,
-    };
-    let outwards = (join.travel == Travel::Away) == (join.direction == Direction::Up);
-    let mut before: Option<u8> = None;
-    let mut first: Option<u8> = None;
-    let mut lengths = [0_u32; 4];
-    let mut count = 0;
-    for (block, row) in given.iter().enumerate() {
-        for (section, circuit) in row.iter().enumerate() {
-            let needed = section < line.sizes[block];
-            complete &= circuit.is_some() == needed;
-            let Some(circuit) = *circuit else { continue };
-            let Some(place) = rank(circuit) else {
-                there = false;
-                continue;
-            };
-            let follows = before.is_none_or(|before| if outwards { place == before + 1 } else { place + 1 == before });
-            twice |= before == Some(place);
-            order &= follows;
-            before = Some(place);
-            first = first.or(before);
-            lengths[count] = u32::from(station.plan().lengths[usize::from(circuit.number())].0);
-            count += 1;
-        }
-    }
-    let sound = complete && there && order;
-    let up = join.direction == Direction::Up;
-    let (entry, exit) = if up { (first, before) } else { (before, first) };
-    let (entry, exit) = (entry.unwrap_or(0), exit.unwrap_or(0));
-    // What is beyond the exit by the layout: circuits outwards, or the throat and what is behind it.
-    let ends = join.travel == Travel::Away && exit == 4;
-    // Travelling towards the station from the throat, nothing is known beyond: the route begins before it.
-    let ends = ends || join.travel == Travel::Toward && exit == 0;
-    let travel = join.travel;
-    let before = metres_before(station, travel, entry, !turned);
-    let (short, short_on_line) = is_short(line, (lengths, count), before);
-    let mut no_length = false;
-    for (place, length) in lengths.iter().enumerate() {
-        no_length |= place < count && *length == 0;
-    }
-    let legal = !turned && sound && !ends && !short && !no_length;
-    let told = match made {
-        Ok(_) => true,
-        Err(WaysideError::RouteAgainstTheLine(0)) => turned,
-        Err(WaysideError::SectionWithoutCircuit(_) | WaysideError::CircuitWithoutSection(_)) => !complete,
-        Err(WaysideError::SectionElsewhere(_)) => !there,
-        Err(WaysideError::SectionsOutOfOrder(_)) => !order,
-        Err(WaysideError::Line(LineError::NoLength(_))) => no_length,
-        Err(WaysideError::NothingBeyondTheExit) => ends,
-        Err(WaysideError::Line(LineError::HoldTooShort(_))) => short_on_line,
-        Err(WaysideError::HoldTooShortAtTheEntry) => short,
-        Err(_) => false,
-    };
-    Outcome { made, legal, told, seen: Seen { twice, there: complete && there } }
-}
-
-harness! {
-    /// A counted line is accepted if and only if each of its sections, and nothing else, has a circuit; these are of the segment or its throat and follow each
-    /// other as the sections do; a circuit is beyond the exit; and no route leads against it. The error names a rule that is broken. All circuits are
-    /// of one length, and no train is longer than nothing: that is for `way_join_hold`.
-    way_join(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-11", "WAY-12", "WAY-13", "WAY-15"];
-    assumptions [];
-    bound BOUND;
-    cases CASES.len();
-    unwind 65 = 1 + LONGEST;
-    apart [0 1 2 3 4 5];
-    claims {
-        Exact: "accepted if and only if every rule is kept",
-        Told: "the error names a rule that is broken",
-    }
-    covers {
-        Accepted: "a line is accepted",
-        Reversed: "a line in the reversed order",
-        Twice: "two sections on one circuit",
-        Against: "a route against the line",
-        Beyond: "a line that ends where the device sees nothing",
-    }
-    {
-        let Some(mut line) = any_line(e, &CASES) else { return };
-        line.train = 0;
-        let Some(station) = station(line.travel, [2; TRACK]) else { return e.claim(Claim::Exact as u32, false) };
-        let its = line.join().circuits;
-        let mut given = [[None; 2]; 2];
-        for (block, row) in given.iter_mut().enumerate() {
-            for (section, circuit) in row.iter_mut().enumerate() {
-                *circuit = any_circuit(e, its[block][section]);
-            }
-        }
-        let turned = any_flag(e, "the direction of travel is the other (odd: yes)");
-        let Outcome { made, legal, told, seen: Seen { twice, there } } = joined(&line, &station, given, turned);
-        e.claim(Claim::Exact as u32, made.is_ok() == legal);
-        e.claim(Claim::Told as u32, told);
-        e.cover(Cover::Accepted as u32, made.is_ok());
-        e.cover(Cover::Reversed as u32, matches!(made, Err(WaysideError::SectionsOutOfOrder(_))) && !twice && there);
-        e.cover(Cover::Twice as u32, matches!(made, Err(WaysideError::SectionsOutOfOrder(_))) && twice);
-        e.cover(Cover::Against as u32, matches!(made, Err(WaysideError::RouteAgainstTheLine(_))));
-        e.cover(Cover::Beyond as u32, matches!(made, Err(WaysideError::NothingBeyondTheExit)));
-    }
-}
-
-harness! {
-    /// A counted line on the right circuits is accepted if and only if every circuit on it has a length, and wherever a front is, the held places behind it, of
-    /// sections and of circuits before the entry, are together no shorter than the longest train. The error names a rule that is broken.
-    way_join_hold(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-14"];
-    assumptions [];
-    bound BOUND;
-    cases HOLDS.len();
-    unwind 65 = 1 + LONGEST;
-    apart [0 1];
-    claims {
-        Exact: "accepted if and only if every rule is kept",
-        Told: "the error names a rule that is broken",
-    }
-    covers {
-        Accepted: "a line is accepted",
-        Short: "a hold that is too short at the entry only",
-        Line: "a hold that is too short on the line",
-    }
-    {
-        let Some(line) = any_line(e, &HOLDS) else { return };
-        let lengths = core::array::from_fn(|_| e.word("length of a circuit (m)", 1..=4));
-        let station = station(line.travel, lengths);
-        e.assume(station.is_some());
-        let Some(station) = station else { return };
-        let its = line.join().circuits;
-        let given = [[its[0][0], its[0][1]], [its[1][0], its[1][1]]];
-        let Outcome { made, legal, told, .. } = joined(&line, &station, given, false);
-        e.claim(Claim::Exact as u32, made.is_ok() == legal);
-        e.claim(Claim::Told as u32, told);
-        e.cover(Cover::Accepted as u32, made.is_ok());
-        e.cover(Cover::Short as u32, matches!(made, Err(WaysideError::HoldTooShortAtTheEntry)));
-        e.cover(Cover::Line as u32, matches!(made, Err(WaysideError::Line(LineError::HoldTooShort(_)))));
     }
 }

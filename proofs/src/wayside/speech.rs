@@ -4,22 +4,18 @@ use super::{LONGEST, plan};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use crate::interlocking::any_heading;
-use atc_kernel::Machine;
 use atc_kernel::aspect::{AspectId, AspectTable};
-use atc_kernel::block::LineState;
 use atc_kernel::code::{Code, CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Commands, Contents, Grant, Heading, Input, Layout, MAX_CIRCUITS, MAX_CODES, Memory,
-    Movement, Orders, Output, Positions, RouteSet, Segment, SegmentSet, SpeedCode, SpeedLimits, Standing, Table,
-    begins, telegram,
+    CircuitId, CircuitSet, Contents, Grant, Heading, Layout, MAX_CIRCUITS, MAX_CODES, Movement, SegmentSet, SpeedCode,
+    SpeedLimits, Standing, begins, telegram,
 };
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::telegram::{Counter, Frame, Gradient, Length, Main, Route, SectionId, Sub, Telegram, decode};
-use atc_kernel::time::Ticks;
+use atc_kernel::telegram::{Counter, Gradient, Length, Route, SectionId};
 use atc_kernel::wayside::{
-    Codes, Consent, Counters, Equipment, Facing, Fixed, Permission, Reading, Saying, Session, SignalPlan, Signals,
-    Speech, State, Wayside, WaysideError, Word, check_codes, circuits, words,
+    Codes, Counters, Facing, Fixed, Saying, SignalPlan, Signals, Speech, WaysideError, Word, check_codes, circuits,
+    words,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -30,9 +26,6 @@ const SPEEDS: usize = 3;
 const BOUND: &str = "4 circuits, 3 speed codes";
 const BOUND_TABLES: &str = "tables of 3 speeds, 2 code frequencies of each carrier";
 const BOUND_SIGNALS: &str = "2 circuits described, 4 used or with a length, 3 speeds";
-const BOUND_SENT: &str = "1 circuit, three telegrams: none, stop, open";
-
-type Device<'a> = Wayside<'a, 0, 1, 1, 0, 1>;
 
 /// Any lengths of the circuits.
 fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
@@ -152,22 +145,6 @@ fn any_movement<E: Engine + ?Sized>(e: &mut E) -> Movement {
         heading: if any_flag(e, "the train may leave its circuit (odd: yes)") { Some(heading) } else { None },
         speed: SpeedCode(any_byte(e, "speed code", 0..=3)),
         hold: CircuitSet::from_bits(u64::from(e.word("granted (bits)", 0..=15) & 15)),
-    }
-}
-
-/// The main telegram of a frame, as trains decode it.
-fn main_of(frame: Frame) -> Option<Main> {
-    match decode(frame) {
-        Ok(Telegram::Main(main)) => Some(main),
-        _ => None,
-    }
-}
-
-/// The sub telegram of a frame, as trains decode it.
-fn sub_of(frame: Frame) -> Option<Sub> {
-    match decode(frame) {
-        Ok(Telegram::Sub(sub)) => Some(sub),
-        _ => None,
     }
 }
 
@@ -395,167 +372,6 @@ harness! {
         e.cover(Cover::Stale as u32, stale && occupied && grants);
         e.cover(Cover::Empty as u32, !stale && !occupied && grants);
         e.cover(Cover::Nothing as u32, !stale && occupied && !grants);
-    }
-}
-
-harness! {
-    /// What is to be said in a circuit: nothing where the ATC is silent, and elsewhere what it tells the train of this circuit, with the restrictions of the cycle and
-    /// this circuit's numbers.
-    t_way_8_said(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-21"];
-    assumptions [];
-    bound "2 circuits of 64 have a train";
-    cases 2;
-    unwind 65 = 1 + LONGEST;
-    claims {
-        Silent: "nothing is to be said where the ATC is silent",
-        Said: "where it is not, its movement, the restrictions and the numbers of this circuit",
-    }
-    covers {
-        Silent: "the ATC is silent in the first circuit, and not in the second",
-        Both: "open telegrams in both",
-    }
-    {
-        let [one, other] = if e.choose("circuits", 2) == 0 { [0_u8, 1] } else { [5, 63] };
-        let mut telegrams = [None; MAX_CIRCUITS];
-        let mut state = State::<0, 1, 1> {
-            line: LineState::INITIAL,
-            device: Memory::INITIAL,
-            consents: [Consent::none(Ticks(1))],
-            counters: [Counters::START; MAX_CIRCUITS],
-            sent: CircuitSet::EMPTY,
-        };
-        let (mut silent, mut opens) = ([false; 2], [false; 2]);
-        for (place, number) in [one, other].into_iter().enumerate() {
-            let movement = any_movement(e);
-            silent[place] = any_flag(e, "the ATC is silent (odd: yes)");
-            opens[place] = movement.is_open();
-            telegrams[usize::from(number)] = if silent[place] { None } else { Some(movement) };
-            let mut any = |what| Counter(any_byte(e, what, 0..=255));
-            let counters = Counters { main: any("number of the main telegram"), sub: any("number of the sub telegram") };
-            state.counters[usize::from(number)] = counters;
-        }
-        let limit = SpeedCode(any_byte(e, "temporary restriction (code)", 0..=3));
-        let restrictions = SpeedLimits::NONE.and_at_most(limit, CircuitSet::nth(0));
-        state.device.interlocking.works.restrictions = restrictions;
-        let sayings = Device::sayings(&state, &telegrams);
-        let (mut nothing, mut said) = (true, true);
-        for (number, saying) in (0_u8..).zip(&sayings) {
-            let index = usize::from(number);
-            nothing &= telegrams[index].is_some() || saying.is_none();
-            if number == one || number == other {
-                said &= match (telegrams[index], *saying) {
-                    (Some(movement), Some(saying)) => {
-                        saying.circuit.number() == number
-                            && saying.movement == movement
-                            && saying.restrictions == restrictions
-                            && saying.counters == state.counters[index]
-                    }
-                    (movement, _) => movement.is_none(),
-                };
-            }
-        }
-        e.claim(Claim::Silent as u32, nothing);
-        e.claim(Claim::Said as u32, said);
-        e.cover(Cover::Silent as u32, silent[0] && !silent[1]);
-        e.cover(Cover::Both as u32, !silent[0] && !silent[1] && opens[0] && opens[1]);
-    }
-}
-
-harness! {
-    /// What leaves the device in a cycle, for three telegrams: nothing in a circuit where the ATC is silent, or of which nothing is said; in every other frames that
-    /// trains decode as what is told to each direction of travel; and signals, drives and confirmed blocks as the interlocking commands. The safe output
-    /// is silence; and what is remembered to be sent is what was sent.
-    t_way_8_sent(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-21", "WAY-23"];
-    assumptions [];
-    bound BOUND_SENT;
-    cases 3;
-    unwind 65 = 1 + LONGEST;
-    claims {
-        Silent: "where the ATC is silent nothing is sent",
-        Said: "where it is not, the frames for each direction of travel are decoded as what is told to it, and the codes are those",
-        Sent: "the circuits for which there are frames are remembered, and no others",
-        Commands: "signals, drives and confirmed blocks are as the interlocking commands, and permissions go to the neighbour",
-        Safe: "the safe output is stop, no drive, no confirmed block, silence in every circuit and to the neighbour",
-    }
-    covers {
-        Silent: "the ATC is silent",
-        Said: "an open telegram is sent",
-    }
-    {
-        let case = e.choose("telegram: none, stop, open", 3);
-        let mut made = plan::<1, 1, 1>();
-        made.turn = Ticks(2);
-        made.segments = [Segment { circuits: [CircuitSet::nth(0)], length: 1, ..Segment::NONE }];
-        let layout = Layout::with_what_proofs_need(made).ok();
-        let Some(station) = layout else { return e.claim(Claim::Said as u32, false) };
-        let Some(mut signals) = fixed_tables() else { return e.claim(Claim::Said as u32, false) };
-        let Some(curve) = AspectId::new(1) else { return };
-        let facing = |section, gradient| Facing { section: SectionId(section), gradient: Gradient(gradient), curve };
-        signals.circuits[0] = Some(Fixed { left: facing(0x1234, -7), right: facing(0x5678, 9) });
-        signals.speeds = [Some(KmhTenths(0)), Some(KmhTenths(150)), Some(KmhTenths(300)), None, None, None, None, None];
-        let equipment = Equipment::<0> { counted: None, signals, life: Ticks(1), session: Session(0) };
-        let device: Option<Device> = Wayside::new(&station, &equipment).ok();
-        let Some(device) = device else { return e.claim(Claim::Said as u32, false) };
-        let open = Movement { stop: CircuitId::ZERO, heading: Some(Heading::Right), speed: SpeedCode(2), hold: CircuitSet::from_bits(6) };
-        let movement = if case == 2 { open } else { Movement::stop_in(CircuitId::ZERO) };
-        let silent = case == 0;
-        let mut telegrams = [None; MAX_CIRCUITS];
-        telegrams[0] = if silent { None } else { Some(movement) };
-        // Of circuit 1 nothing is said.
-        telegrams[1] = Some(movement);
-        let mut state = device.initial();
-        let counters = Counters { main: Counter(41), sub: Counter(200) };
-        state.counters[0] = counters;
-        let restrictions = SpeedLimits::NONE.and_at_most(SpeedCode(1), CircuitSet::nth(0));
-        state.device.interlocking.works.restrictions = restrictions;
-        let bits = e.word("commanded (bits)", 0..=1);
-        let one = u64::from(bits & 1);
-        let interlocking = Output {
-            proceed: RouteSet::from_bits(one),
-            drives: Positions::NONE,
-            permits: SegmentSet::from_bits(one.to_le_bytes()[0]),
-            confirmed: CircuitSet::from_bits(u64::from(bits >> 1)),
-            answer: None,
-            table: Table::UNREADABLE,
-        };
-        let told = Input {
-            occupied: CircuitSet::EMPTY,
-            detected: Positions::NONE,
-            request: None,
-            orders: Orders::default(),
-            consent: SegmentSet::EMPTY,
-        };
-        let reading: Reading<0> = Reading { input: told, line: None, refused: None };
-        let (after, output) = device.send(state, &reading, &Commands { interlocking, telegrams });
-        let saying = Saying { circuit: CircuitId::ZERO, movement, restrictions, counters };
-        e.claim(Claim::Silent as u32, (!silent || output.transmissions[0].is_none()) && output.transmissions[1].is_none());
-        let mut said = silent;
-        if let Some(sent) = output.transmissions[0] {
-            said = true;
-            for (heading, feed) in [(Heading::Left, sent.left), (Heading::Right, sent.right)] {
-                let speech = device.signals().speech(&station.plan().lengths, saying, heading);
-                said &= speech.is_some_and(|speech| {
-                    main_of(feed.main) == Some(speech.main) && sub_of(feed.sub) == Some(speech.sub) && feed.codes == speech.codes
-                });
-            }
-        }
-        e.claim(Claim::Said as u32, said);
-        e.claim(Claim::Sent as u32, after.sent.bits() == u64::from(!silent));
-        let permitted = output.messages[0].is_some_and(|message| (message.permission == Permission::Granted) == (one == 1));
-        let commands = output.proceed == interlocking.proceed && output.drives == interlocking.drives && output.confirmed == interlocking.confirmed;
-        e.claim(Claim::Commands as u32, commands && permitted && output.answer.is_none());
-        let safe = <Device as Machine>::SAFE;
-        let mut silence = safe.messages[0].is_none();
-        for sent in safe.transmissions {
-            silence &= sent.is_none();
-        }
-        e.claim(Claim::Safe as u32, silence && safe.proceed.bits() == 0 && safe.drives.is_empty() && safe.confirmed.bits() == 0 && safe.answer.is_none());
-        e.cover(Cover::Silent as u32, silent);
-        e.cover(Cover::Said as u32, !silent && movement.is_open());
     }
 }
 
