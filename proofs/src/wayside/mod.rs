@@ -28,7 +28,6 @@ pub const ALL: &[Harness] = &[
     consent::way_life::HARNESS,
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
-    speech::way_words::HARNESS,
     speech::way_signals::HARNESS,
     speech::way_codes::HARNESS,
 ];

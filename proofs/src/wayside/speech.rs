@@ -15,7 +15,6 @@ use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Length, Route, SectionId};
 use atc_kernel::wayside::{
     Codes, Counters, Facing, Fixed, Saying, SignalPlan, Signals, Speech, WaysideError, Word, check_codes, circuits,
-    words,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -24,7 +23,6 @@ const CIRCUITS: usize = 4;
 const SPEEDS: usize = 3;
 
 const BOUND: &str = "4 circuits, 3 speed codes";
-const BOUND_TABLES: &str = "tables of 3 speeds, 2 code frequencies of each carrier";
 const BOUND_SIGNALS: &str = "2 circuits described, 4 used or with a length, 3 speeds";
 
 /// Any lengths of the circuits.
@@ -34,29 +32,6 @@ fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
         *length = Metres(e.word("length of a circuit (m)", 1..=300));
     }
     lengths
-}
-
-/// Any tables of speeds and codes.
-fn any_tables<E: Engine + ?Sized>(e: &mut E) -> Option<(AspectTable, CodeTable)> {
-    let mut likely = 0;
-    let speeds: [KmhTenths; SPEEDS] = core::array::from_fn(|_| {
-        likely += 1;
-        KmhTenths(e.word("a speed (tenths of km/h)", likely - 1..=likely - 1))
-    });
-    let aspects = AspectTable::new(&speeds).ok();
-    let codes = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok()?;
-    let mut named = [[None; PLACES]; PLACES];
-    let mut likely = 0;
-    for row in named.iter_mut().take(2) {
-        for speed in row.iter_mut().take(2) {
-            let its = KmhTenths(e.word("speed of a pair of codes (tenths of km/h)", likely..=likely));
-            likely += 1;
-            *speed = if e.word("the pair names a speed (odd: yes)", 1..=1) & 1 == 1 { Some(its) } else { None };
-        }
-    }
-    let table = CodeTable::new(codes, codes, named).ok();
-    e.assume(aspects.is_some() && table.is_some());
-    Some((aspects?, table?))
 }
 
 fn any_rank<E: Engine + ?Sized>(e: &mut E) -> Option<AspectId> {
@@ -108,7 +83,7 @@ impl Said {
     }
 }
 
-/// Any signals as the constructor makes them (`way_signals`, `way_words`): code 0 is there and stops, and a circuit has two numbers.
+/// Any signals as the constructor makes them (`way_signals`; the words as it is meant to make them): code 0 is there and stops, and a circuit has two numbers.
 fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIRCUITS]) -> Option<Said> {
     let stop = any_word(e, 0)?;
     let mut words = [None; MAX_CODES];
@@ -372,81 +347,6 @@ harness! {
         e.cover(Cover::Stale as u32, stale && occupied && grants);
         e.cover(Cover::Empty as u32, !stale && !occupied && grants);
         e.cover(Cover::Nothing as u32, !stale && occupied && !grants);
-    }
-}
-
-harness! {
-    /// Speeds of codes are accepted if and only if code 0 is of speed 0, they rise with the codes, and each is in both of the trains' tables. The error names a rule that is
-    /// broken. By those tables rank and pair of a code then name its speed: no code is one step off.
-    way_words(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-4", "WAY-16"];
-    assumptions [];
-    bound BOUND_TABLES;
-    cases 1;
-    unwind 65 = 1 + LONGEST;
-    claims {
-        Exact: "accepted if and only if every rule is kept",
-        Told: "the error names a rule that is broken",
-        Speeds: "there is a word exactly for the codes with a speed, and by the trains' tables its rank and its codes name that speed",
-    }
-    covers {
-        Accepted: "three speeds are accepted",
-        Falls: "a speed that does not rise",
-        NoRank: "a speed that is not in the table of speeds",
-        NoPair: "a speed without a pair of codes",
-    }
-    {
-        let Some((aspects, codes)) = any_tables(e) else { return };
-        let mut signals = SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes };
-        for (number, speed) in (0_u16..).zip(signals.speeds.iter_mut().take(SPEEDS)) {
-            let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number.saturating_sub(1)..=number));
-            *speed = if e.word("there is such a code (odd: yes)", 1..=1 + number / 2) & 1 == 1 { Some(its) } else { None };
-        }
-        let made = words(&signals);
-        let (mut rises, mut ranked, mut paired) = (true, true, true);
-        let mut before: Option<KmhTenths> = None;
-        for code in 0..SPEEDS {
-            let Some(speed) = signals.speeds[code] else { continue };
-            rises &= before.is_none_or(|before| before < speed);
-            before = Some(speed);
-            let (mut rank, mut pair) = (false, false);
-            for known in 0..3 {
-                rank |= AspectId::new(known).is_some_and(|rank| signals.aspects.speed(rank) == Some(speed));
-            }
-            for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let pair_of = (Code::new(row), Code::new(column));
-                pair |= signals.codes.speed(pair_of.0, pair_of.1) == Some(speed);
-            }
-            (ranked, paired) = (ranked & rank, paired & pair);
-        }
-        let stops = signals.speeds[0] == Some(KmhTenths(0));
-        e.claim(Claim::Exact as u32, made.is_ok() == (stops && rises && ranked && paired));
-        let told = match made {
-            Ok(_) => true,
-            Err(WaysideError::StopMoves) => !stops,
-            Err(WaysideError::SpeedsFall(_)) => !rises,
-            Err(WaysideError::NoRank(_)) => !ranked,
-            Err(WaysideError::NoPair(_)) => !paired,
-            Err(_) => false,
-        };
-        e.claim(Claim::Told as u32, told);
-        let mut named = true;
-        for code in 0..MAX_CODES {
-            named &= match (made, signals.speeds[code]) {
-                (Ok(words), Some(speed)) => words[code].is_some_and(|word| {
-                    let Codes { main, sub } = word.codes;
-                    signals.aspects.speed(word.rank) == Some(speed) && signals.codes.speed(Some(main), Some(sub)) == Some(speed)
-                }),
-                (Ok(words), None) => words[code].is_none(),
-                (Err(_), _) => true,
-            };
-        }
-        e.claim(Claim::Speeds as u32, named);
-        e.cover(Cover::Accepted as u32, made.is_ok_and(|words| words[1].is_some() && words[2].is_some()));
-        e.cover(Cover::Falls as u32, matches!(made, Err(WaysideError::SpeedsFall(_))));
-        e.cover(Cover::NoRank as u32, matches!(made, Err(WaysideError::NoRank(_))));
-        e.cover(Cover::NoPair as u32, matches!(made, Err(WaysideError::NoPair(_))));
     }
 }
 
