@@ -16,7 +16,7 @@ pub const MAX_CODES: usize = 8;
 pub struct Millihertz(pub u32);
 
 /// One code of a carrier: its place among the carrier's code frequencies, 0 to 7.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Code(u8);
 
 impl Code {

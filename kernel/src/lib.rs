@@ -18,6 +18,7 @@
 //! | [`position`] | the train's position from a level difference | JP4045174B2 |
 //! | [`train`] | the on-board device: all of these in one step, from the antennas to the brake | JP4845985B2, JP3886280B2 |
 //! | [`interlocking`] | routes, points, signals and the telegrams of every track circuit | JP4290933B2 |
+//! | [`wayside`] | the ground's device as one machine: from detection to frames and codes | JP4290933B2, JP4845985B2 |
 //! | [`duplex`] | two channels compared every cycle | JP3886280B2 \[0007\] |
 //! | [`time`], [`speed`], [`distance`] | the units that all of them share | |
 //!
@@ -47,6 +48,7 @@ pub mod supervision;
 pub mod telegram;
 pub mod time;
 pub mod train;
+pub mod wayside;
 
 /// A pure, total state machine. The machine itself is its (checked) parameters.
 pub trait Machine {

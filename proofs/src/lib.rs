@@ -28,6 +28,7 @@ pub mod supervision;
 pub mod telegram;
 pub mod time;
 pub mod train;
+pub mod wayside;
 
 #[cfg(kani)]
 mod contracts;
@@ -66,5 +67,6 @@ pub static HARNESSES: &[&[Harness]] = &[
     position::ALL,
     train::ALL,
     interlocking::ALL,
+    wayside::ALL,
     duplex::ALL,
 ];

@@ -102,7 +102,7 @@ fn same(one: Output, other: Output) -> bool {
         && one.counted_out == other.counted_out
 }
 
-fn any_detection<E: Engine + ?Sized>(e: &mut E, block: Block) -> Detection {
+pub(crate) fn any_detection<E: Engine + ?Sized>(e: &mut E, block: Block) -> Detection {
     Detection {
         low_check: any_flag(e, "check at the low end (odd: on)"),
         high_check: any_flag(e, "check at the high end (odd: on)"),

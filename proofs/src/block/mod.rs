@@ -17,6 +17,7 @@ use atc_kernel::time::Ticks;
 
 pub use count::{blk_8, blk_machine, blk_set, blk_total, t_blk_2, t_blk_3};
 pub use geometry::{blk_9, blk_9_size, t_blk_4_geometry};
+pub(crate) use line::any_detection;
 pub use line::{blk_11, t_blk_3_border, t_blk_4_line, t_blk_5_line, t_blk_5_three};
 pub use report::{t_blk_1, t_blk_4, t_blk_5_report, t_blk_6};
 pub use reset::{t_blk_2_reset, t_blk_5};
@@ -50,7 +51,7 @@ pub const ALL: &[Harness] = &[
 pub(crate) const LONGEST: usize = MAX_SECTIONS as usize + 1;
 
 /// An arbitrary hold.
-fn any_hold<E: Engine + ?Sized>(e: &mut E, what: &'static str, likely: u16) -> Option<Hold> {
+pub(crate) fn any_hold<E: Engine + ?Sized>(e: &mut E, what: &'static str, likely: u16) -> Option<Hold> {
     let hold = Hold::new(any_byte(e, what, 0..=likely));
     e.assume(hold.is_some());
     hold
@@ -68,7 +69,7 @@ fn any_block<E: Engine + ?Sized>(e: &mut E) -> Option<Block> {
 }
 
 /// An arbitrary state, valid or not. The status that counts is the likely one.
-fn any_parts<E: Engine + ?Sized>(e: &mut E, block: Block) -> Parts {
+pub(crate) fn any_parts<E: Engine + ?Sized>(e: &mut E, block: Block) -> Parts {
     let count = any_byte(e, "count (trains)", 0..=u16::from(block.max_trains().0));
     let pending = any_byte(e, "pending check-outs (trains)", 0..=u16::from(count));
     let check_in_for = e.word("check-in on for (cycles)", 0..=block.pass().0.saturating_add(1));
@@ -164,7 +165,7 @@ fn any_trains<E: Engine + ?Sized>(e: &mut E, block: Block) -> Trains {
 
 /// Nothing is detected where no head is: no detector hears what is not there, none hears a head that its neighbour hears too, and none at a border
 /// hears one that its block has not counted yet, or has let go.
-fn suppose_no_phantom<E: Engine + ?Sized>(e: &mut E, detected: u16, heads: u16) {
+pub(crate) fn suppose_no_phantom<E: Engine + ?Sized>(e: &mut E, detected: u16, heads: u16) {
     let only_heads = detected & !heads == 0;
     e.suppose("no-phantom", only_heads);
     e.suppose("heard-by-one", only_heads);
@@ -172,7 +173,7 @@ fn suppose_no_phantom<E: Engine + ?Sized>(e: &mut E, detected: u16, heads: u16) 
 }
 
 /// The count is not under the trains, if it is in force: by T-BLK-3, and so by all that it supposes.
-fn suppose_count<E: Engine + ?Sized>(e: &mut E, not_under: bool) {
+pub(crate) fn suppose_count<E: Engine + ?Sized>(e: &mut E, not_under: bool) {
     e.suppose("entries-apart", not_under);
     e.suppose("check-in-fail-safe", not_under);
     e.suppose("live-transmitter", not_under);

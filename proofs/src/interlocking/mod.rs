@@ -118,7 +118,7 @@ pub const ALL: &[Harness] = &[
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
-fn any_circuits<E: Engine + ?Sized>(
+pub(crate) fn any_circuits<E: Engine + ?Sized>(
     e: &mut E,
     what: &'static str,
     likely: core::ops::RangeInclusive<u16>,
@@ -144,7 +144,7 @@ fn any_segments<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> SegmentSet
 }
 
 /// Any direction of travel.
-fn any_heading<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Heading {
+pub(crate) fn any_heading<E: Engine + ?Sized>(e: &mut E, what: &'static str) -> Heading {
     if any_flag(e, what) { Heading::Right } else { Heading::Left }
 }
 
@@ -178,7 +178,7 @@ fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Rout
 }
 
 /// Any plan, as far as the interlocking looks at it.
-fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
+pub(crate) fn any_plan<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, const S: usize>(
     e: &mut E,
 ) -> Plan<R, P, N, S> {
     let mut number = 0;
@@ -284,7 +284,7 @@ fn any_settling<E: Engine + ?Sized>(e: &mut E) -> Settling {
     Settling::from_parts(stood, any_positions(e))
 }
 
-fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> State<R, S> {
+pub(crate) fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> State<R, S> {
     State {
         track: Track::INITIAL,
         started: Ticks(e.word("started for (cycles)", 0..=0)),
@@ -325,7 +325,7 @@ fn any_request<E: Engine + ?Sized>(e: &mut E) -> Option<Request> {
     }
 }
 
-fn any_input<E: Engine + ?Sized>(e: &mut E) -> Input {
+pub(crate) fn any_input<E: Engine + ?Sized>(e: &mut E) -> Input {
     Input {
         occupied: any_circuits(e, "occupied (bits)", 0..=15),
         detected: any_positions(e),

@@ -146,7 +146,7 @@ fn any_received<E: Engine + ?Sized>(e: &mut E) -> Option<Received> {
 }
 
 /// A device in an arbitrary valid state of all but acceptance, and what is detected: the highest aspect is displayed before and after a cycle, or
-/// none. Which one matters by what is displayed alone (`t_trn_2_only`).
+/// none. That another one matters by what is displayed alone is proved without telegrams (`t_trn_2_only`), and with them tested.
 fn any_steady_state<E: Engine + ?Sized>(
     e: &mut E,
     line: Line,

@@ -147,7 +147,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment],
         layout: LOOP,
         old_rule: &["start-moves"],
-        seed: 1,
+        seed: 5,
         model: "interlocking-loop-start",
     },
     Fault {

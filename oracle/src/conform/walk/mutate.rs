@@ -18,6 +18,7 @@ const SESSIONS: &[(&str, &str)] = &[
     ("braking-pattern", include_str!("../../../examples/braking-pattern.jsonl")),
     ("speed-pattern", include_str!("../../../examples/speed-pattern.jsonl")),
     ("train-position", include_str!("../../../examples/train-position.jsonl")),
+    ("train", include_str!("../../../examples/train.jsonl")),
     ("interlocking", include_str!("../../../examples/interlocking.jsonl")),
 ];
 

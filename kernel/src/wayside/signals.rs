@@ -1,0 +1,256 @@
+//! What the transmitters say of the line: the sections' numbers and fixed data, the speeds of the codes, their ranks and pairs.
+
+use super::WaysideError;
+use crate::aspect::{AspectId, AspectTable};
+use crate::code::{Code, CodeTable};
+use crate::distance::Metres;
+use crate::interlocking::{CircuitId, CircuitSet, Heading, Layout, MAX_CIRCUITS, MAX_CODES, SpeedCode};
+use crate::speed::KmhTenths;
+use crate::telegram::{Gradient, Length, SectionId};
+
+/// What trains of one direction of travel are told of a circuit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Facing {
+    /// The number by which they know it. Trains of the other direction know it by another one.
+    pub section: SectionId,
+    /// The least favourable gradient from any place of the circuit to the points where its telegrams may stop a train.
+    pub gradient: Gradient,
+    /// The limit by curves and points.
+    pub curve: AspectId,
+}
+
+/// What trains are told of a circuit. Its length is the layout's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fixed {
+    /// Those that travel towards the left.
+    pub left: Facing,
+    /// Those that travel towards the right.
+    pub right: Facing,
+}
+
+impl Fixed {
+    /// What trains of this direction of travel are told.
+    pub const fn facing(&self, heading: Heading) -> Facing {
+        match heading {
+            Heading::Left => self.left,
+            Heading::Right => self.right,
+        }
+    }
+}
+
+/// The two code frequencies that name a speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Codes {
+    /// The code of the main carrier.
+    pub main: Code,
+    /// The code of the sub carrier.
+    pub sub: Code,
+}
+
+/// What is said of the line. Not checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SignalPlan {
+    /// The circuits to which something is sent.
+    pub circuits: [Option<Fixed>; MAX_CIRCUITS],
+    /// The speed that each speed code of the layout stands for; none where there is no such code.
+    pub speeds: [Option<KmhTenths>; MAX_CODES],
+    /// The line's speeds, as trains have them: what the ranks in telegrams mean.
+    pub aspects: AspectTable,
+    /// The pairs of code frequencies, as trains have them.
+    pub codes: CodeTable,
+}
+
+/// A speed code as trains hear it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The rank in telegrams.
+    pub rank: AspectId,
+    /// The pair of code frequencies.
+    pub codes: Codes,
+}
+
+/// What is said of the line, checked against the layout.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signals {
+    circuits: [Option<(Fixed, Length)>; MAX_CIRCUITS],
+    words: [Option<Word>; MAX_CODES],
+    /// Speed 0.
+    stop: Word,
+}
+
+impl Signals {
+    /// Checks `plan` against `layout`.
+    ///
+    /// # Errors
+    /// The first rule of WAY-16 to WAY-19 that is broken.
+    #[inline(never)]
+    pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
+        layout: &Layout<R, P, N, S>,
+        plan: &SignalPlan,
+    ) -> Result<Self, WaysideError> {
+        let words = words(plan)?;
+        check_codes(&words, &layout.plan().braking)?;
+        let [Some(stop), ..] = words else { return Err(WaysideError::StopMoves) };
+        Ok(Self { circuits: circuits(used(layout), &layout.plan().lengths, plan)?, words, stop })
+    }
+
+    /// Signals as they are given, for proofs: nothing of them is checked.
+    pub const fn from_parts(
+        circuits: [Option<(Fixed, Length)>; MAX_CIRCUITS],
+        words: [Option<Word>; MAX_CODES],
+        stop: Word,
+    ) -> Self {
+        Self { circuits, words, stop }
+    }
+
+    /// What is said of a circuit, and its length; none if nothing is sent there.
+    #[inline]
+    pub fn circuit(&self, circuit: CircuitId) -> Option<(Fixed, Length)> {
+        self.circuits.get(usize::from(circuit.number())).copied().flatten()
+    }
+
+    /// How trains hear a speed code: the highest that is known and not above it.
+    #[inline]
+    pub const fn word(&self, code: SpeedCode) -> Word {
+        //= spec/wayside.md#way-4-the-speed
+        //# The rank and the pair of codes MUST be those of the movement's speed code, or of a lower one where the line has no such code.
+        let mut said = self.stop;
+        let mut number = 0;
+        while number < MAX_CODES {
+            if let Some(word) = self.words[number] {
+                if number <= code.0 as usize {
+                    said = word;
+                }
+            }
+            number += 1;
+        }
+        said
+    }
+
+    /// How trains hear that they must stop.
+    pub const fn stop(&self) -> Word {
+        self.stop
+    }
+}
+
+/// The speed codes as trains hear them, each with the rank and the pair of its speed.
+///
+/// # Errors
+/// The first rule of WAY-16 that is broken.
+#[inline(never)]
+pub fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
+    //= spec/wayside.md#way-16-the-codes
+    //# The constructor MUST reject signals whose code 0 is not of speed 0, whose speeds do not rise with the codes, or with a speed that is not in the trains' table of speeds or has no pair of codes.
+    if plan.speeds.first().copied().flatten() != Some(KmhTenths(0)) {
+        return Err(WaysideError::StopMoves);
+    }
+    let mut words = [None; MAX_CODES];
+    let mut before = None;
+    for (number, (word, speed)) in (0_u8..).zip(words.iter_mut().zip(&plan.speeds)) {
+        let Some(speed) = *speed else { continue };
+        let code = SpeedCode(number);
+        if before.is_some_and(|before| speed <= before) {
+            return Err(WaysideError::SpeedsFall(code));
+        }
+        before = Some(speed);
+        let rank = plan.aspects.aspect(speed).ok_or(WaysideError::NoRank(code))?;
+        let codes = pair(&plan.codes, speed).ok_or(WaysideError::NoPair(code))?;
+        *word = Some(Word { rank, codes });
+    }
+    Ok(words)
+}
+
+/// The first pair of codes that names exactly this speed.
+#[inline(never)]
+fn pair(codes: &CodeTable, speed: KmhTenths) -> Option<Codes> {
+    let mut found = None;
+    for row in 0..8_u8 {
+        for column in 0..8_u8 {
+            let (Some(main), Some(sub)) = (Code::new(row), Code::new(column)) else { continue };
+            if found.is_none() && codes.speed(Some(main), Some(sub)) == Some(speed) {
+                found = Some(Codes { main, sub });
+            }
+        }
+    }
+    found
+}
+
+/// Checks that there is a word for each code that can be told.
+///
+/// # Errors
+/// [`WaysideError::CodeWithoutSpeed`] for the first code without one.
+#[inline]
+pub fn check_codes(words: &[Option<Word>; MAX_CODES], braking: &[Metres; MAX_CODES]) -> Result<(), WaysideError> {
+    for (word, (code, braking)) in words.iter().zip((0_u8..).zip(braking)) {
+        //= spec/wayside.md#way-17-every-code
+        //# The constructor MUST reject signals without a speed for a code for which the layout has a braking distance.
+        if word.is_none() && *braking < Metres(u16::MAX) {
+            return Err(WaysideError::CodeWithoutSpeed(SpeedCode(code)));
+        }
+    }
+    Ok(())
+}
+
+/// The circuits with their `lengths`; `used` are those in which a train may wait for a telegram, or run by one.
+///
+/// # Errors
+/// The first rule of WAY-18 and WAY-19 that is broken.
+#[inline(never)]
+pub fn circuits(
+    used: CircuitSet,
+    lengths: &[Metres; MAX_CIRCUITS],
+    plan: &SignalPlan,
+) -> Result<[Option<(Fixed, Length)>; MAX_CIRCUITS], WaysideError> {
+    let mut kept = [None; MAX_CIRCUITS];
+    for (number, place) in (0_u8..).zip(&mut kept) {
+        let index = usize::from(number);
+        let circuit = CircuitId::new(number).unwrap_or(CircuitId::ZERO);
+        let Some(fixed) = plan.circuits[index] else {
+            //= spec/wayside.md#way-18-every-circuit
+            //# The constructor MUST reject signals that say nothing of a circuit of a path, an entry or a segment, or that are for a circuit without a length, or with a curve limit that is not in the trains' table of speeds.
+            if used.has(circuit) {
+                return Err(WaysideError::CircuitWithoutSignals(circuit));
+            }
+            continue;
+        };
+        let Some(length) = Length::new(lengths[index]) else {
+            return Err(WaysideError::NoLength(circuit));
+        };
+        let known = |rank| plan.aspects.speed(rank).is_some();
+        if !known(fixed.left.curve) || !known(fixed.right.curve) {
+            return Err(WaysideError::UnknownCurve(circuit));
+        }
+        //= spec/wayside.md#way-19-two-numbers-a-circuit
+        //# The constructor MUST reject signals in which one section number stands for two circuits, or for both directions of travel of one.
+        if clashes(&plan.circuits, index, fixed) {
+            return Err(WaysideError::SectionNumberTwice(circuit));
+        }
+        *place = Some((fixed, length));
+    }
+    Ok(kept)
+}
+
+/// Whether a number of the circuit at `index` stands for both directions of travel, or for a circuit before it.
+#[inline(never)]
+fn clashes(circuits: &[Option<Fixed>; MAX_CIRCUITS], index: usize, fixed: Fixed) -> bool {
+    let (left, right) = (fixed.left.section, fixed.right.section);
+    let mut clash = left == right;
+    for its in circuits.iter().take(index).flatten() {
+        clash |= its.left.section == left || its.left.section == right;
+        clash |= its.right.section == left || its.right.section == right;
+    }
+    clash
+}
+
+/// The circuits in which a train may wait for a telegram, or run by one.
+#[inline(never)]
+fn used<const R: usize, const P: usize, const N: usize, const S: usize>(layout: &Layout<R, P, N, S>) -> CircuitSet {
+    let mut used = CircuitSet::EMPTY;
+    for route in &layout.plan().routes {
+        used = used.or(route.held_from(0).circuits).or(route.entry.only_if(route.exists()));
+    }
+    for segment in &layout.plan().segments {
+        used = used.or(segment.all());
+    }
+    used
+}

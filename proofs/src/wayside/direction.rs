@@ -1,0 +1,77 @@
+//! The counted line is never turned (T-WAY-7).
+
+use super::{LONGEST, with_lengths};
+use crate::interlocking::{any_input, any_plan, any_state};
+use atc_kernel::block::{Block, Direction, Hold};
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{Input, Layout, Refusal, Request, SegmentId, Travel};
+use atc_kernel::time::Ticks;
+use atc_kernel::wayside::{Counted, Join};
+
+/// The places of a path and of a segment.
+const PATH: usize = 2;
+
+harness! {
+    /// The segment of a counted line has the direction of the line, or none, whatever is requested, reported or permitted; a request to turn it is
+    /// refused for its direction and not told to the interlocking; and no route needs the other direction.
+    t_way_7(e)
+    theorem "T-WAY-7";
+    requirements ["WAY-10", "WAY-15"];
+    assumptions [];
+    bound "1 route of up to 2 circuits, 1 segment of up to 2, 16 circuits";
+    cases 2;
+    unwind 65 = 1 + LONGEST;
+    apart [0 1];
+    claims {
+        Kept: "after the cycle the segment has no direction against the line",
+        Refused: "a request to turn it against the line is refused for its direction",
+        Told: "every other request is told as it is",
+        Route: "no route of the layout needs the segment against the line",
+    }
+    covers {
+        Turns: "a request to turn the line",
+        Given: "the segment is given the direction of the line",
+        Set: "a route is requested",
+    }
+    {
+        let travel = if e.choose("direction of travel of the line (0 toward, 1 away)", 2) == 0 { Travel::Toward } else { Travel::Away };
+        let plan = with_lengths(any_plan::<E, 1, PATH, 0, 1>(e));
+        let layout = Layout::with_what_proofs_need(plan).ok();
+        e.assume(layout.is_some());
+        let Some(layout) = layout else { return };
+        let Ok(block) = Block::new(1, 1, Hold::NONE, Ticks(1)) else { return };
+        let mut circuits = [[None; 16]];
+        circuits[0][0] = layout.plan().segments[0].circuits[0].first();
+        let join = Join { blocks: [block], direction: Direction::Up, train: Metres(0), segment: SegmentId::ZERO, travel, circuits };
+        let counted = Counted::new(&layout, &join).ok();
+        e.assume(counted.is_some());
+        let Some(counted) = counted else { return };
+        let state = any_state(e);
+        let directions = (state.directions.toward, state.directions.away);
+        let valid = state.is_valid(&layout) && counted.is_kept(directions.0, directions.1);
+        e.assume(valid);
+        if !valid {
+            return;
+        }
+        let input: Input = any_input(e);
+        let admitted = counted.admit(input.request);
+        let (after, _) = layout.interlock(state, Input { request: admitted.unwrap_or(None), ..input });
+        let against = |toward: u8, away: u8| (if travel == Travel::Toward { away } else { toward }) & 1 == 1;
+        let before = against(directions.0.bits(), directions.1.bits());
+        let kept = !before && !against(after.directions.toward.bits(), after.directions.away.bits());
+        e.claim(Claim::Kept as u32, kept && counted.is_kept(after.directions.toward, after.directions.away));
+        let turns = match input.request {
+            Some(Request::Turn(segment, to)) => segment.number() == 0 && to != travel,
+            _ => false,
+        };
+        e.claim(Claim::Refused as u32, !turns || admitted == Err(Refusal::Direction));
+        e.claim(Claim::Told as u32, turns || admitted == Ok(input.request));
+        let route = &layout.plan().routes[0];
+        let needs = if travel == Travel::Toward { route.to } else { route.from };
+        e.claim(Claim::Route as u32, !route.exists() || needs.bits() & 1 == 0);
+        e.cover(Cover::Turns as u32, turns);
+        let given = after.directions.toward.bits() | after.directions.away.bits();
+        e.cover(Cover::Given as u32, given & 1 == 1 && (directions.0.bits() | directions.1.bits()) & 1 == 0);
+        e.cover(Cover::Set as u32, matches!(input.request, Some(Request::Set(_))) && route.exists());
+    }
+}
