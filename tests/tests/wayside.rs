@@ -377,10 +377,10 @@ fn the_device_is_its_parts() {
 }
 
 /// Every word of the state with one bit changed, as far as one place stands for all of its kind.
-fn damaged(state: State<2, 2, 2>) -> Vec<State<2, 2, 2>> {
+fn damaged(state: &State<2, 2, 2>) -> Vec<State<2, 2, 2>> {
     let mut all = Vec::new();
     let mut with = |change: &dyn Fn(&mut State<2, 2, 2>)| {
-        let mut other = state;
+        let mut other = *state;
         change(&mut other);
         all.push(other);
     };
@@ -425,7 +425,7 @@ fn two_channels_put_out_nothing_on_which_they_differ() {
     heard.consents[0].permission = Permission::Withheld;
     pair.a.state = heard;
     pair.b.state = heard;
-    let states = damaged(pair.a.state);
+    let states = damaged(&pair.a.state);
     assert!(states.len() > 1000);
     for state in states {
         let mut faulty = pair;

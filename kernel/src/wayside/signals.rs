@@ -90,7 +90,7 @@ impl Signals {
     ) -> Result<Self, WaysideError> {
         let words = words(plan)?;
         check_codes(&words, &layout.plan().braking)?;
-        let [Some(stop), ..] = words else { return Err(WaysideError::StopMoves) };
+        let Some(stop) = words.first().copied().flatten() else { return Err(WaysideError::StopMoves) };
         Ok(Self { circuits: circuits(used(layout), &layout.plan().lengths, plan)?, words, stop })
     }
 

@@ -107,6 +107,30 @@ fn a_list_that_is_too_short_or_too_long_is_found() {
 /// What plain `assume` may say besides the forms that [`is_validity`] knows: file, text, and why it says nothing about the world. The text is that
 /// of the condition; of what has no value, or of the branch, where the condition is `false`.
 const LISTED: &[(&str, &str, &str)] = &[
+    ("wayside/counter.rs", "ghost.wrapping_add(since.to_le_bytes()[0]) == main.0", AGAIN),
+    ("wayside/consent.rs", "life.0 <= MAX_TICKS", "a range: a time that the constructor accepts"),
+    ("wayside/consent.rs", "!granted || sent <= u32::from(before.age.0)", AGAIN),
+    ("wayside/speech.rs", "fixed.left.section != fixed.right.section", "what the constructor guarantees (WAY-19)"),
+    (
+        "wayside/speech.rs",
+        "match told.main.route { Route::OpenFor(distance) => front <= u32::from(distance.0), Route::Closed => front == 0, }",
+        "the train that the theorem is about: it stops where it is told to",
+    ),
+    ("wayside/speech.rs", "stale || !occupied || !grants", CASE),
+    (
+        "wayside/occupancy.rs",
+        "!known || held >= u32::from(self.train)",
+        "what the constructor must guarantee (WAY-14); not proved",
+    ),
+    ("wayside/occupancy.rs", "head >= line.entry", CASE),
+    ("wayside/occupancy.rs", "u32::from(into) < own", "the front is in its circuit"),
+    ("wayside/occupancy.rs", "under < head", "the circuits that the claim is about"),
+    ("wayside/occupancy.rs", "between < u32::from(length)", "the circuits under the train, which the claim is about"),
+    ("wayside/direction.rs", "counted.is_kept(directions.0, directions.1)", AGAIN),
+    ("train/stop.rs", "knows_main(main)", "a rank that the line has: others are no telegram (T-TRN-4)"),
+    ("train/stop.rs", "fixed == (case == 2)", CASE),
+    ("train/distance.rs", "border == at_border", CASE),
+    ("position.rs", "position.is_some()", "a device that the constructor accepts"),
     ("duplex.rs", "word < words", "a range: the words that there are"),
     ("duplex.rs", "bit < if word == words - 1 { 8 } else { 16 }", "a range: the bits that a word has"),
     ("supervision.rs", "plausible(&cycle)", CASE),

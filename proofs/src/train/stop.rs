@@ -71,7 +71,7 @@ harness! {
     theorem "T-TRN-1";
     requirements ["TRN-9"];
     assumptions [
-        "four-speeds", "printed-sizes", "odometer-bound", "one-section-at-a-time", "fix-of-the-section-heard",
+        "four-speeds", "odometer-bound", "one-section-at-a-time", "fix-of-the-section-heard",
         "margin-covers-the-crossing", "stop-point-life",
     ];
     built_in &[

@@ -35,8 +35,7 @@ harness! {
         Other: "only the other carrier's are taken",
     }
     {
-        let number = usize::from(e.word("circuit (number)", 0..=63));
-        e.assume(number < 64);
+        let number = usize::from(e.word("circuit (number)", 0..=63) & 63);
         let mut others = |what| Counter(any_byte(e, what, 0..=255));
         let (main, sub) = (others("number of the next main telegram"), others("number of the next sub telegram"));
         let sent = any_set(e, "sent (bits)");

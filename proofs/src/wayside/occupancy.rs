@@ -44,7 +44,7 @@ fn number(travel: Travel, place: usize) -> usize {
 
 /// The circuit at a place of the track, as a set's bits.
 fn at(travel: Travel, place: usize) -> u64 {
-    1 << number(travel, place)
+    1_u64.checked_shl(u32::from(number(travel, place).to_le_bytes()[0])).unwrap_or(0)
 }
 
 /// Any lengths of the track's circuits.
