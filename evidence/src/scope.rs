@@ -187,7 +187,11 @@ fn of_part(plan: &Plan, part: &str) -> Chosen {
 fn target(at: &str) -> Option<(String, String)> {
     let path = Path::new(at.rsplit_once(':').map_or(at, |(path, _)| path));
     let mut names = path.iter().map(|name| name.to_string_lossy());
-    let (package, tests, name) = (names.next()?, names.next()?, names.next()?);
+    let (mut package, mut tests, mut name) = (names.next()?, names.next()?, names.next()?);
+    // A crate below `tests/`.
+    if package == "tests" && tests != "tests" {
+        (package, tests, name) = (tests, name, names.next()?);
+    }
     let inside = names.next();
     let is_target = inside.is_none() && name.ends_with(".rs") || inside.is_some() && name != "common";
     (tests == "tests" && is_target).then(|| (format!("atc-{package}"), name.trim_end_matches(".rs").to_owned()))

@@ -84,7 +84,7 @@ fn the_parts_have_everything_and_what_they_need() {
     let known = parts(here());
     let names: BTreeSet<_> =
         ["aspect", "block", "code", "duplex", "interlocking", "pattern", "permitted", "position"].into();
-    let more: BTreeSet<_> = ["supervision", "telegram", "time"].into();
+    let more: BTreeSet<_> = ["supervision", "telegram", "time", "train", "wayside"].into();
     assert_eq!(known, names.union(&more).map(ToString::to_string).collect());
     let mut seen = BTreeSet::new();
     for part in &known {
@@ -96,7 +96,11 @@ fn the_parts_have_everything_and_what_they_need() {
         }
         let Tests::Some(targets) = &chosen.tests else { panic!("{part}: some tests") };
         for (package, target) in targets {
-            let folder = Path::new("..").join(package.trim_start_matches("atc-")).join("tests");
+            let folder = match package.trim_start_matches("atc-") {
+                "adversary" => "tests/adversary",
+                folder => folder,
+            };
+            let folder = Path::new("..").join(folder).join("tests");
             assert!(
                 folder.join(format!("{target}.rs")).exists() || folder.join(target).join("main.rs").exists(),
                 "{target}"
