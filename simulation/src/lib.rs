@@ -7,7 +7,7 @@
 //!
 //! | module | part |
 //! |---|---|
-//! | [`line`], [`generate`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
+//! | [`mod@line`], [`generate`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
 //! | [`motion`], [`driver`] | trains as bodies, and who drives them |
 //! | [`onboard`], [`ground`] | the kernel's devices |
 //! | [`dispatcher`] | who asks for routes and turns lines |

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 const EXAMPLE: &str = include_str!("../../oracle/examples/interlocking.jsonl");
 
 /// ```text
-///   L ═ W │ A ──<─ B │ ═ E      point P in A: normal to B, reverse to C, which ends
+///   L ═ W │ A ──<─ B │ ═ E ┤    point P in A: normal to B, reverse to C, which ends
 ///               \─ C ┤
 /// ```
 fn layout() -> Value {
@@ -37,7 +37,7 @@ fn layout() -> Value {
             "name": "P", "circuit": "A", "toe": "m", "normal": "n", "reverse": "p",
             "normal_unprotected": "trains stop at B", "reverse_unprotected": "nothing is parked in C",
         }],
-        "end": [{"joint": "k", "kind": "line"}, {"joint": "q", "kind": "buffer"}, {"joint": "r", "kind": "line"}],
+        "end": [{"joint": "k", "kind": "line"}, {"joint": "q", "kind": "buffer"}, {"joint": "r", "kind": "buffer"}],
         "segment": [{"name": "West", "circuits": ["W", "L"]}],
         "route": [
             {"name": "in", "entry": "W", "path": ["A", "B"], "overlap": ["E"]},
