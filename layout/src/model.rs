@@ -43,6 +43,26 @@ impl Model {
     pub fn longest_authority(&self) -> Ticks {
         self.routes.iter().map(|route| route.release).max().unwrap_or_default().max(self.values.turn)
     }
+
+    /// In how many ms a train can stand at the end of a route at the soonest, once it has come into the last circuit: it runs at the speed of the route
+    /// as far as it may, and brakes. One that runs slower takes longer. None where nothing is held beyond the end, or no train may run.
+    pub fn least_standstill_ms(&self, route: &Route) -> Option<u32> {
+        let last = self.circuits.get(route.last().filter(|_| !route.overlap.is_empty())?)?;
+        let way = u64::from(last.length.0) * 1000;
+        let brake = u64::from(self.values.brake_mm_s2).max(1);
+        // km/h in mm/s is 1e6 / 3600; and no faster than a train that brakes from the first metre on.
+        let speed = u64::from(self.values.speeds_kmh[usize::from(route.speed.0)]) * 1_000_000 / 3600;
+        let speed = speed.min((2 * brake * way).isqrt());
+        if speed == 0 {
+            return None;
+        }
+        u32::try_from((way * 1000).div_ceil(speed) + (speed * 1000).div_ceil(2 * brake)).ok()
+    }
+
+    /// The longest of these times.
+    pub fn longest_standstill_ms(&self) -> u32 {
+        self.routes.iter().filter_map(|route| self.least_standstill_ms(route)).max().unwrap_or(0)
+    }
 }
 
 /// A circuit.
@@ -275,6 +295,12 @@ pub struct Values {
     pub least_residual_ms: u32,
     /// The longest time to a stand.
     pub standstill: Ticks,
+    /// The same as the file has it, or derived.
+    pub standstill_ms: At<u32>,
+    /// How long a train must have stood before the overlap is given up, where a route says nothing: as the file has it, or derived.
+    pub stay_ms: At<u32>,
+    /// What every train has of its brake on the worst gradient, in mm/s².
+    pub brake_mm_s2: u16,
     /// Whether every train acts on telegrams alone.
     pub cab_signalled: bool,
     /// The time for which a permission must have been withdrawn before a segment turns.
@@ -316,6 +342,9 @@ impl Default for Values {
             residual: Ticks(0),
             least_residual_ms: 0,
             standstill: Ticks(0),
+            standstill_ms: At::derived(0),
+            stay_ms: At::derived(0),
+            brake_mm_s2: 0,
             cab_signalled: false,
             turn: Ticks(0),
             turn_ms: At::derived(0),

@@ -57,6 +57,8 @@ pub enum Rule {
     TurnUnderRun,
     /// After a start nothing moves until every release time and the turn time have passed, or the file says why not.
     StartTooShort,
+    /// A train counts as standing no earlier than it can stand at the end of its route.
+    StandstillTooShort,
     /// The residual running covers the age of a telegram and the braking from the highest speed.
     ResidualTooShort,
     /// The ground counts on telegrams for as long as trains act on them. Held where the trains' times are known.
@@ -128,6 +130,9 @@ impl Rule {
             Self::TurnUnderRun => "plain line turns only after a train that was sent before has run out",
             Self::StartTooShort => {
                 "after a start nothing moves until release and turn times have passed, or the file says why not"
+            }
+            Self::StandstillTooShort => {
+                "a train counts as standing no earlier than it can have come to a stand at the end of its route"
             }
             Self::ResidualTooShort => {
                 "the residual running covers the age of a telegram and the braking from the highest speed"

@@ -33,10 +33,14 @@ pub struct Times {
     /// `telegram_age_ms` and the time to a stand from the highest speed].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual_ms: Option<At<u32>>,
-    /// How long a train must have stood on the last circuit before the overlap is given up: longer than `standstill_ms` and `shunt_loss_ms`.
-    pub stay_ms: At<u32>,
-    /// The longest time in which a train comes to a stand once it is wholly on the last circuit of its route.
-    pub standstill_ms: At<u32>,
+    /// How long a train must have stood on the last circuit before the overlap is given up: longer than `standstill_ms` and `shunt_loss_ms` [default:
+    /// 30 s, or the least that can be if that is longer].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stay_ms: Option<At<u32>>,
+    /// The longest time in which a train comes to a stand once it is wholly on the last circuit of its route [default: 15 s, or if that is longer
+    /// the time for the longest last circuit of a route with an overlap, at the route's speed and then braking].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub standstill_ms: Option<At<u32>>,
     /// For how long the neighbour's permission must have been withdrawn before plain line turns, or a block on it is confirmed [default: the
     /// least that can be: `telegram_age_ms`, `residual_ms` and `shunt_loss_ms`].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -58,8 +62,8 @@ impl Default for Times {
             settle_ms: At::derived(1_000),
             release_ms: At::derived(60_000),
             residual_ms: None,
-            stay_ms: At::derived(30_000),
-            standstill_ms: At::derived(15_000),
+            stay_ms: None,
+            standstill_ms: None,
             turn_ms: None,
             telegram_age_ms: At::derived(1_000),
         }

@@ -265,6 +265,26 @@ fn turn_under_run() {
     assert_eq!(turn("residual_ms = 40000\nshunt_loss_ms = 1500"), 425, "40 s, 1 s and 1.5 s");
 }
 
+/// The accident: the overlap is given up, and another train is let in over it, while one that has come into a long platform still runs to its end.
+#[test]
+fn standstill_too_short() {
+    let text = |times: &str| format!("{LOOP}\n[times]\n{times}\n");
+    let what = "in 2T of 400 m, the last of route W-2, one that comes at 45 km/h stands after";
+    breaks(&text("standstill_ms = 15000\nstay_ms = 60000"), Rule::StandstillTooShort, what);
+    // What is left out is derived: the time to a stand, and a stay that is longer.
+    let times = |text: &str| {
+        let model = Description::from_toml("loop", text).unwrap().model().unwrap();
+        let stay = model.routes.iter().find(|route| !route.overlap.is_empty()).unwrap().stay;
+        (model.longest_standstill_ms(), model.values.standstill.0, stay.0)
+    };
+    let (least, standstill, stay) = times(LOOP);
+    // 400 m at 12.5 m/s, and half of the time in which 0.8 m/s² brake from that: 32.0 and 7.8 s.
+    assert!((39_700..=39_900).contains(&least), "{least} ms");
+    assert_eq!((standstill, stay), (400, 420), "cycles of 100 ms: whole seconds, and a loss of 1 s and a cycle more");
+    assert_eq!(times(&text("standstill_ms = 50000")).2, 520, "the stay follows what the file gives");
+    assert_eq!(times(&LOOP.replace("length_m = 400", "length_m = 60")).1, 150, "15 s at least");
+}
+
 /// A cycle or a time of 50 days is refused, and nothing overflows on the way to that.
 #[test]
 fn times_that_are_too_long() {

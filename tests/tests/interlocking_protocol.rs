@@ -444,7 +444,7 @@ fn the_chart_of_the_example() {
         "provisional: 11000 to 16000 ms",
         "set: 16000 to 40000 ms",
         "in-use: 40000 to 100000 ms",
-        "overlap of W-1: 11000 to 71000 ms",
+        "overlap of W-1: 11000 to 77000 ms",
         "to normal: 10000 to 15000 ms",
         "occupied: 46000 to 100000 ms",
         "▶ to 1T at 75 km/h: 27000 to 40000 ms",

@@ -38,8 +38,8 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         kept("Settling time of points", &times.settle_ms, model.values.settle.into(), "up"),
         of_routes("Release time", &times.release_ms, |route| route.release.0, "up"),
         kept("Residual running", &model.values.residual_ms, model.values.residual.0.into(), "up"),
-        of_routes("Stay time", &times.stay_ms, |route| route.stay.0, "up"),
-        kept("Time to a stand", &times.standstill_ms, model.values.standstill.0.into(), "up"),
+        of_routes("Stay time", &model.values.stay_ms, |route| route.stay.0, "up"),
+        kept("Time to a stand", &model.values.standstill_ms, model.values.standstill.0.into(), "up"),
         kept("Turn time of plain line", &model.values.turn_ms, model.values.turn.0.into(), "up"),
         row("Oldest telegram", format!("{} ms", times.telegram_age_ms), "", &times.telegram_age_ms.span),
         row(
@@ -126,14 +126,14 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
         ("times.throw_ms", &times.throw_ms),
         ("times.settle_ms", &times.settle_ms),
         ("times.release_ms", &times.release_ms),
-        ("times.stay_ms", &times.stay_ms),
-        ("times.standstill_ms", &times.standstill_ms),
         ("times.telegram_age_ms", &times.telegram_age_ms),
     ]
     .map(|(name, time)| (name, &time.span, format!("{time} ms")))
     .into();
     if let Some(values) = model.map(|model| &model.values) {
         all.push(("times.start_ms", &values.start_ms.span, format!("{} ms", values.start_ms)));
+        all.push(("times.standstill_ms", &values.standstill_ms.span, format!("{} ms", values.standstill_ms)));
+        all.push(("times.stay_ms", &values.stay_ms.span, format!("{} ms", values.stay_ms)));
         all.push(("times.turn_ms", &values.turn_ms.span, format!("{} ms", values.turn_ms)));
         all.push(("times.residual_ms", &values.residual_ms.span, format!("{} ms", values.residual_ms)));
     }

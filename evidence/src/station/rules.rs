@@ -79,6 +79,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderRun => (Asked::Engineering, Stage::Model, Scope::File);
+    StandstillTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     StartTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     ResidualTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     SegmentOrder => (Asked::Engineering, Stage::Model, Scope::Segments);

@@ -56,10 +56,30 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         let right = format!("residual_ms must be at least {least}");
         problems.push(Problem::new(Rule::ResidualTooShort, &residual.span, what, right));
     }
+    standing(model, problems);
     detectors(station, model, problems);
     segments(station, model, problems);
     fouling(station, model, problems);
     twice(model, problems);
+}
+
+/// What is held beyond the end of a route is given up when its train stands. So early it cannot stand.
+fn standing(model: &Model, problems: &mut Vec<Problem>) {
+    let (values, least) = (&model.values, model.longest_standstill_ms());
+    let given = values.ms(values.standstill);
+    let slowest = model.routes.iter().find(|route| model.least_standstill_ms(route) == Some(least));
+    if let (Some(route), true) = (slowest, given < least) {
+        let last = route.last().and_then(|last| model.circuits.get(last));
+        let (name, length) = last.map_or(("", 0), |last| (last.name.as_str(), last.length.0));
+        let kmh = values.speeds_kmh[usize::from(route.speed.0)];
+        let what = format!(
+            "a train counts as standing {given} ms after it has come into the last circuit of its route; in {name} of {length} m, the last of route {}, \
+             one that comes at {kmh} km/h stands after {least} ms at the soonest",
+            route.name
+        );
+        let right = format!("standstill_ms must be at least {least}, and longer for slower trains, or be left out");
+        problems.push(Problem::new(Rule::StandstillTooShort, &values.standstill_ms.span, what, right));
+    }
 }
 
 /// A train may come in wherever the line goes on unseen. Only on a segment does the kernel ask whose trains may be under way before it sends

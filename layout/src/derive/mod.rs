@@ -21,6 +21,9 @@ use crate::rule::Rule;
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::Heading;
+use atc_kernel::time::{Cycle, Ticks};
+
+use values::Rounding;
 
 /// The model of `station` as far as it can be made; what cannot is a problem.
 pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
@@ -48,6 +51,7 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
         }
         model.routes.push(route);
     }
+    stand(station, &mut model, cycle, problems);
     if station.times.start_ms.is_none() {
         model.values.start = model.longest_authority();
         model.values.start_ms = At::derived(model.values.ms(model.values.start));
@@ -57,6 +61,27 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
     positions::positions(&mut model);
     approaches(station, &names, &mut model, problems);
     model
+}
+
+/// The times to a stand, and before an overlap is given up, where the file does not have them: in whole seconds.
+fn stand(station: &Station, model: &mut Model, cycle: Cycle, problems: &mut Vec<Problem>) {
+    let times = &station.times;
+    if times.standstill_ms.is_none() {
+        model.values.standstill_ms =
+            At::derived(model.longest_standstill_ms().max(values::STANDSTILL_MS).div_ceil(1000) * 1000);
+        let given = &model.values.standstill_ms;
+        model.values.standstill = values::ticks("standstill_ms", given, Rounding::Permits, cycle, problems);
+    }
+    if times.stay_ms.is_none() {
+        // Longer than both together, by a cycle: the kernel asks for that.
+        let least = Ticks(model.values.standstill.0.saturating_add(u16::from(model.values.loss)).saturating_add(1));
+        let stay = At::derived(model.values.ms(least).max(values::STAY_MS).div_ceil(1000) * 1000);
+        let ticks = values::ticks("stay_ms", &stay, Rounding::Permits, cycle, problems);
+        model.values.stay_ms = stay;
+        for (given, route) in station.routes.iter().zip(&mut model.routes) {
+            route.stay = if given.stay_ms.is_some() { route.stay } else { ticks };
+        }
+    }
 }
 
 fn circuits(station: &Station, problems: &mut Vec<Problem>) -> Vec<Circuit> {

@@ -27,7 +27,7 @@ pub fn route(
     };
     let drive = time("drive_ms", &given.drive_ms, &times.drive_ms, Rounding::Restricts);
     let release = time("release_ms", &given.release_ms, &times.release_ms, Rounding::Permits);
-    let stay = time("stay_ms", &given.stay_ms, &times.stay_ms, Rounding::Permits);
+    let stay = time("stay_ms", &given.stay_ms, &model.values.stay_ms, Rounding::Permits);
     let mut route = Route {
         name: name.value.clone(),
         signal: given.signal.clone().unwrap_or_else(|| name.value.clone()),

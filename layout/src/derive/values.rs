@@ -48,6 +48,11 @@ fn at_most(what: &str, time: &At<u32>, cycle: Cycle, problems: &mut Vec<Problem>
 /// The longest cycle: a minute. A longer one is a slip, and the longest time, of 60 000 of them, would be no number of ms any more.
 const LONGEST_CYCLE_MS: u32 = 60_000;
 
+/// The least that is derived of the times to a stand and of the stay.
+pub const STANDSTILL_MS: u32 = 15_000;
+/// The same of the stay.
+pub const STAY_MS: u32 = 30_000;
+
 /// The values for the whole station.
 pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle) {
     let times = &station.times;
@@ -77,7 +82,10 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         problems.push(Problem::new(Rule::Range, &times.settle_ms.span, what, "0 to 255 cycles are possible"));
         u8::MAX
     });
-    let standstill = at_most("standstill_ms", &times.standstill_ms, cycle, problems);
+    // These two are derived from the routes too.
+    let standstill_ms = times.standstill_ms.clone().unwrap_or_else(|| At::derived(0));
+    let standstill = at_most("standstill_ms", &standstill_ms, cycle, problems);
+    let stay_ms = times.stay_ms.clone().unwrap_or_else(|| At::derived(STAY_MS));
     let (speeds_kmh, braking) = codes(station, problems);
     let least_residual_ms = times.telegram_age_ms.value.saturating_add(stopping_ms(station, speeds_kmh));
     let residual_ms = times.residual_ms.clone().unwrap_or_else(|| At::derived(least_residual_ms));
@@ -98,6 +106,9 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         residual,
         least_residual_ms,
         standstill,
+        standstill_ms,
+        stay_ms,
+        brake_mm_s2: brake(station).map_or(0, Deceleration::mm_s2),
         cab_signalled: station.cab_signalled,
         turn,
         turn_ms,

@@ -12,7 +12,7 @@ use crate::names::Names;
 use crate::problem::Problem;
 use crate::rule::Rule;
 
-/// Fills in segments of plain line, missing flank protection and missing overlaps.
+/// Fills in segments of plain line, missing flank protection and missing overlaps, and makes stay times longer that are too short.
 pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
     derive::heading::align(station);
     segments(station, report);
@@ -53,6 +53,15 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
             given.short_overlap =
                 Some(At::derived(format!("assumed on import: the {form} file gives no overlap that is long enough")));
             report.defaulted.push(format!("route {}: an overlap of {length} m is taken to be enough", given.name));
+        }
+        // A timer of the file that runs out before a train can stand there.
+        let (values, given) = (&model.values, &mut station.routes[number]);
+        if let Some(stay) = given.stay_ms.as_mut().filter(|stay| stay.value < values.stay_ms.value) {
+            report.defaulted.push(format!(
+                "route {}: the overlap is given up after {} ms and not after the {stay} ms of the file: before that a train need not stand",
+                given.name, values.stay_ms
+            ));
+            *stay = At::derived(values.stay_ms.value);
         }
     }
 }

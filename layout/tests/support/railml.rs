@@ -353,7 +353,7 @@ fn interlocking(text: &mut String, model: &Model, version: Version, dialect: &Di
     }
     text.push_str("        </routes>\n        <overlaps>\n");
     for (number, route) in model.routes.iter().enumerate().filter(|(_, route)| !route.overlap.is_empty()) {
-        let stay = u32::from(route.stay.0) * model.values.cycle_ms / 1000;
+        let stay = (u32::from(route.stay.0) * model.values.cycle_ms).div_ceil(1000);
         let _ = write!(text, "          <overlap id=\"ov{number}\"><activeForApproachRoute ref=\"rt{number}\"/>");
         for circuit in &route.overlap {
             let _ = write!(text, "<hasTvdSection ref=\"tvd{circuit}\"/>");
