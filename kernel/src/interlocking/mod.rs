@@ -134,7 +134,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let (alone, answer) = self.carry_out(&mut state, heard, sight);
         let answer = if refused { Some(Err(Refusal::Starting)) } else { answer };
         //= spec/interlocking.md#ilk-30-points-ahead
-        //# A point that a place needs which a route keeps, or its overlap, MUST NOT be driven.
+        //# A point that a kept place, or a kept overlap, needs MUST NOT be driven.
         let mut demand = Demand { wanted: alone, locked: ways.points };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
             demand = demand.with(route, *held);
@@ -145,7 +145,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let unsent = SegmentSet::ALL.without(input.consent);
         let view = View { occupied, blocked: state.works.blocked, closed: closed.or(unsent), firm };
         //= spec/interlocking.md#ilk-32-line-ahead
-        //# A segment MUST be treated as one to which a route out is held while a route to it runs.
+        //# While a route out to a segment runs, the segment MUST be treated as one to which a route out is held.
         let needs = Needs::of(self, &state.routes).and_out_to(ways.outward);
         //= spec/interlocking.md#ilk-31-blocks-ahead
         //# A block on an unswept circuit MUST NOT be confirmed.

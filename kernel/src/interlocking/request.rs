@@ -104,7 +104,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     let (toward, away) = sight.directions;
     let moves = needed.missing_in(sight.detected).points();
     //= spec/interlocking.md#ilk-29-route-ahead
-    //# A route MUST be refused if its path or overlap meets what a route keeps, but for places that follow its entry in that route's path and direction without a gap; if a point of it must move that such a place needs; and if it shares nothing with a route that keeps anything and is declared to conflict with it.
+    //# A route MUST be refused if it meets what a route keeps, other than as the way on of that route's train, if a point that is kept would have to move, or if it shares nothing with a route that keeps anything and is declared to conflict with it.
     if refusal.is_some() {
         refusal
     } else if ahead.meets(sight.occupied) {

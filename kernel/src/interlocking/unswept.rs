@@ -77,7 +77,7 @@ impl Unswept {
     #[inline]
     fn kept_by<const P: usize>(&self, route: &Route<P>, it: RouteSet, occupied: CircuitSet) -> Kept {
         //= spec/interlocking.md#ilk-28-kept
-        //# A route that is not cab-signalled MUST keep its path from the first occupied place on and its overlap, if all that is unswept, while a place before the last is among these, and for its overlap release time after any route has ended to run.
+        //# A route that is not cab-signalled MUST keep the places of its path from the first occupied one on, and its overlap, where all of these are unswept, while it runs and for its overlap release time after that.
         let overlap = route.overlap;
         let mut seen = false;
         let mut kept = Kept::default();
@@ -140,7 +140,8 @@ impl Unswept {
                 }
             }
             let beyond = other.overlap.circuits;
-            in_the_way |= needed.meets(beyond.and(kept)) && !own;
+            // A train that has slid there is not the one that waits where the route begins.
+            in_the_way |= needed.meets(beyond.and(kept)) && (!own || beyond.meets(occupied));
             // What two routes share says it all; where they share nothing the declared conflict alone does.
             let apart = !shares && !needed.meets(beyond);
             in_the_way |= apart && route.conflicts.meets(it) && !kept.is_empty();
