@@ -51,7 +51,7 @@ impl Unswept {
         }
         let mut after = Self::SWEPT;
         let mut ways = Ways::default();
-        let mut longest = Ticks(0);
+        let (mut longest, mut ended) = (Ticks(0), false);
         for (number, route) in layout.plan().routes.iter().enumerate() {
             let it = RouteSet::nth(number);
             let kept = self.kept_by(route, it, occupied);
@@ -59,6 +59,7 @@ impl Unswept {
             after.running = after.running.or(it.only_if(kept.running));
             ways.points = ways.points.or(kept.held.positions.points());
             ways.outward = ways.outward.or(route.to.only_if(kept.running));
+            ended |= route.exists() && self.running.meets(it) && !kept.running;
             longest = if route.stay > longest { route.stay } else { longest };
         }
         //= spec/interlocking.md#ilk-27-unswept
@@ -66,7 +67,6 @@ impl Unswept {
         if after.circuits.is_empty() {
             return (Self::SWEPT, ways);
         }
-        let ended = !after.running.contains(self.running);
         let more = Ticks(self.still.0.saturating_add(1));
         let longer = if more < longest { more } else { longest };
         after.still = if ended { Ticks(0) } else { longer };

@@ -48,5 +48,5 @@ fn permitted_speed() {
 #[test]
 fn interlocking() {
     let (requests, replies) = station::interlocking(1, 60_000, side::oracle());
-    in_c("interlocking", 36, &requests, &replies);
+    in_c("interlocking", 37, &requests, &replies);
 }

@@ -236,6 +236,7 @@ fn the_sessions_are_lively() {
         Refusal::OverlapHeld,
         Refusal::PointLocked,
         Refusal::Occupied,
+        Refusal::Unswept,
         Refusal::Blocked,
         Refusal::PointUnderTrain,
         Refusal::Direction,
