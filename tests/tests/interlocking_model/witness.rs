@@ -110,7 +110,7 @@ pub struct Witness {
     confirmed: Set,
     limits: Vec<u8>,
     /// What trains from before the start may still run over.
-    unswept: Unswept,
+    pub unswept: Unswept,
 }
 
 fn meets(one: &[usize], other: &Set) -> bool {
@@ -236,6 +236,7 @@ impl Witness {
             .collect();
         let telegrams = self.telegrams(sketch, &occupied, &proceed, &firm);
         self.sends.clear();
+        self.unswept.forget();
         let permitted = |stretch: &Stretch| stretch.travel == Some(Travel::Toward);
         Said {
             permits: (0..self.stretches.len())

@@ -16,13 +16,13 @@ struct Keep {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Unswept {
     pub circuits: Set,
-    /// Of each route; until the start is over nothing.
+    /// In this cycle, of each route; until the start is over nothing.
     keeps: Vec<Keep>,
     /// The routes that ran in the cycle before.
     ran: Set,
     /// For how many cycles no route has ended to run.
     still: u16,
-    /// What was so in the cycle before.
+    /// In this cycle, what was so in the cycle before.
     before: (Set, Set, u16),
 }
 
@@ -31,7 +31,13 @@ impl Unswept {
         let circuits: Set = (0..sketch.lengths.len()).collect();
         let ran: Set = (0..sketch.routes.len()).collect();
         let keeps = vec![Keep::default(); sketch.routes.len()];
-        Self { before: (circuits.clone(), ran.clone(), 0), circuits, keeps, ran, still: 0 }
+        Self { before: Default::default(), circuits, keeps, ran, still: 0 }
+    }
+
+    /// The cycle is over: what was found in it is not remembered.
+    pub fn forget(&mut self) {
+        self.keeps.fill(Keep::default());
+        self.before = Default::default();
     }
 
     /// One cycle after the start.
