@@ -1,6 +1,6 @@
 // Interlocking and ATC, written from spec/interlocking.md alone, without the kernel. It speaks protocol 1 of
 // oracle/README.md, for a plan in the kernel's own terms, which it takes as one that keeps the rules of LAY-1.
-// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with --fault 1 to 37 it has a fault on purpose.
+// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with --fault 1 to 38 it has a fault on purpose.
 #include "json.h"
 
 enum { CIRCUITS = 64, POINTS = 32, ROUTES = 64, PLACES = 16, SEGMENTS = 8, CODES = 8, NAME = 64 };
@@ -814,7 +814,7 @@ static bool step(const struct json *input) {
     set held = 0;
     for (int r = 0; r < plan.routes; r++) held |= held_path(r) | held_overlap(r);
     for (int c = 0; c < plan.circuits && !starting; c++) {
-        if (!(now.blocked & one(c)) || ((held | now.unswept) & one(c)) || (now.occupied & one(c))) continue;
+        if (!(now.blocked & one(c)) || ((held | (FAULTY(38) ? 0 : now.unswept)) & one(c)) || (now.occupied & one(c))) continue;
         bool safe = true;
         for (int s = 0; s < plan.segments; s++) {
             if (!(plan.segment[s].circuits & one(c))) continue;
