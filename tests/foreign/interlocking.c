@@ -1,6 +1,6 @@
 // Interlocking and ATC, written from spec/interlocking.md alone, without the kernel. It speaks protocol 1 of
 // oracle/README.md, for a plan in the kernel's own terms, which it takes as one that keeps the rules of LAY-1.
-// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with --fault 1 to 36 it has a fault on purpose.
+// Build: gcc -std=c11 -Wall -Wextra -Werror -O1 interlocking.c -o interlocking; with --fault 1 to 38 it has a fault on purpose.
 #include "json.h"
 
 enum { CIRCUITS = 64, POINTS = 32, ROUTES = 64, PLACES = 16, SEGMENTS = 8, CODES = 8, NAME = 64 };
@@ -64,12 +64,16 @@ static struct {
     enum position stands[POINTS], drives[POINTS]; // as detected, and as driven, in the cycle before
     enum travel travel[SEGMENTS], before[SEGMENTS];
     struct route_state route[ROUTES];
+    set unswept, ran; // circuits; routes, of the cycle before
+    int64_t still;
 } now;
 
 // Of one cycle.
 static enum position detected[POINTS], settled[POINTS];
 static set consent; // of segments
 static bool proceed[ROUTES];
+static set kept[ROUTES], running; // by each route; routes
+static bool kept_point[POINTS];
 
 static set one(int circuit) { return (set)1 << circuit; }
 
@@ -226,6 +230,7 @@ static bool start(const struct json *config) {
         return false;
     }
     // The most restrictive state: everything occupied, blocked and restricted to stop.
+    now.unswept = now.ran = ~(set)0;
     now.occupied = now.blocked = plan.circuits == CIRCUITS ? ~(set)0 : one(plan.circuits) - 1;
     printf("{\"started\":{\"protocol\":1,\"machine\":\"interlocking\"}}\n");
     return true;
@@ -332,6 +337,68 @@ static void follow(int r) {
     if (state->phase == RELEASING && state->since >= route->release && (!((held_path(r) | held_overlap(r)) & now.occupied) || FAULTY(9))) idle(r);
 }
 
+// ---- what a start leaves unswept ----------------------------------------------------------------------------------
+
+static void keep(int r, set *circuits) {
+    const struct route *route = &plan.route[r];
+    int first = -1;
+    if (route->cab || (route->overlap & ~now.unswept)) return;
+    for (int i = 0; i < route->length; i++) {
+        if (!(now.unswept & one(route->place[i]))) first = -1;
+        else if (first < 0 && (now.occupied & one(route->place[i]))) first = i;
+    }
+    bool alone = route->length == 1 && (now.occupied & one(route->entry));
+    bool runs = first >= 0 && (first < route->length - 1 || alone);
+    bool stops = (now.ran & one(r)) || now.still < route->stay;
+    if (!runs && !(stops && (first >= 0 || (route->overlap & now.occupied)))) return;
+    if (runs) running |= one(r);
+    *circuits = route->overlap;
+    for (int i = first; i >= 0 && i < route->length; i++) *circuits |= one(route->place[i]);
+    for (int p = 0; p < plan.points; p++) {
+        if (route->overlap_needs.of[p]) kept_point[p] = true;
+        for (int i = first; i >= 0 && i < route->length; i++)
+            if (route->needs[i].of[p]) kept_point[p] = true;
+    }
+}
+
+static void sweep(bool starting) {
+    int64_t longest = 0;
+    set all = 0, routes = 0;
+    memset(kept, 0, sizeof kept);
+    memset(kept_point, 0, sizeof kept_point);
+    running = 0;
+    if (starting) return;
+    for (int r = 0; r < plan.routes; r++) {
+        keep(r, &kept[r]);
+        all |= kept[r];
+        routes |= one(r);
+        if (plan.route[r].stay > longest) longest = plan.route[r].stay;
+    }
+    if (!all || (now.ran & routes & ~running)) now.still = 0;
+    else if (now.still < longest) now.still++;
+    now.unswept = FAULTY(37) ? 0 : all;
+    now.ran = running;
+}
+
+// Whether what a route keeps is in the way of another one.
+static bool in_the_way(int r) {
+    const struct route *route = &plan.route[r];
+    set needed = route->path | route->overlap;
+    for (int other = 0; other < plan.routes; other++) {
+        const struct route *its = &plan.route[other];
+        bool own = false, begins = false;
+        for (int i = 0; i < its->length; i++) {
+            bool meets = needed & one(its->place[i]);
+            own = own && meets;
+            if (meets && !own && (kept[other] & one(its->place[i]))) return true;
+            if (its->place[i] == route->entry && its->right == route->right) own = begins = true;
+        }
+        if ((needed & its->overlap & kept[other]) && (!own || (its->overlap & now.occupied))) return true;
+        if (kept[other] && (route->conflicts & one(other)) && !begins && !(needed & (its->path | its->overlap))) return true;
+    }
+    return false;
+}
+
 // ---- requests -----------------------------------------------------------------------------------------------------
 
 static const char *set_route(int r) {
@@ -356,6 +423,11 @@ static const char *set_route(int r) {
     }
     if (FAULTY(14) && ((route->path | route->overlap) & now.blocked)) return "blocked";
     if ((route->path | route->overlap) & now.occupied) return "occupied";
+    if (in_the_way(r)) return "unswept";
+    for (int p = 0; p < plan.points; p++) {
+        enum position want = wanted_point(r, p);
+        if (want && want != detected[p] && kept_point[p]) return "unswept";
+    }
     if (((route->path | route->overlap) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
     if (route->from >= 0 && now.travel[route->from] != TOWARD) return "direction";
     if (route->to >= 0 && (now.travel[route->to] != AWAY || !(consent & one(route->to)))) return "direction";
@@ -389,6 +461,7 @@ static const char *drive(int p) {
     for (int r = 0; r < plan.routes; r++)
         if ((held_path(r) | held_overlap(r)) & plan.detectors[p]) return "path-held";
     if (plan.detectors[p] & now.occupied) return "point-under-train";
+    if (kept_point[p]) return "unswept";
     if (plan.detectors[p] & now.blocked) return "blocked";
     return NULL;
 }
@@ -397,7 +470,7 @@ static const char *turn_toward(int s) {
     bool in = false, out = false, clear = !(line_and_throat(s) & now.occupied);
     for (int r = 0; r < plan.routes; r++) {
         in = in || plan.route[r].from == s;
-        out = out || (plan.route[r].to == s && now.route[r].phase != IDLE);
+        out = out || (plan.route[r].to == s && (now.route[r].phase != IDLE || (running & one(r))));
     }
     if (line_blocked(s)) return "blocked";
     if (now.travel[s] == TOWARD) return NULL;
@@ -693,6 +766,7 @@ static bool step(const struct json *input) {
     }
 
     for (int r = 0; r < plan.routes; r++) follow(r);
+    sweep(starting);
 
     // The request.
     const char *refused = NULL;
@@ -713,7 +787,7 @@ static bool step(const struct json *input) {
     // Drives.
     for (int p = 0; p < plan.points; p++) {
         enum position want = p == driven ? drive_to : NOWHERE;
-        bool locked = false;
+        bool locked = kept_point[p];
         for (int r = 0; r < plan.routes; r++) {
             if (now.route[r].phase == PROVISIONAL && held_point(r, p)) want = held_point(r, p);
             if (now.route[r].phase > PROVISIONAL && held_point(r, p)) locked = true;
@@ -740,13 +814,13 @@ static bool step(const struct json *input) {
     set held = 0;
     for (int r = 0; r < plan.routes; r++) held |= held_path(r) | held_overlap(r);
     for (int c = 0; c < plan.circuits && !starting; c++) {
-        if (!(now.blocked & one(c)) || (held & one(c)) || (now.occupied & one(c))) continue;
+        if (!(now.blocked & one(c)) || ((held | (FAULTY(38) ? 0 : now.unswept)) & one(c)) || (now.occupied & one(c))) continue;
         bool safe = true;
         for (int s = 0; s < plan.segments; s++) {
             if (!(plan.segment[s].circuits & one(c))) continue;
             if (((FAULTY(19) ? plan.segment[s].circuits : line_and_throat(s)) & now.occupied) || now.travel[s] == TOWARD || now.turned[s] < plan.turn) safe = false;
             for (int r = 0; r < plan.routes; r++)
-                if (plan.route[r].to == s && now.route[r].phase != IDLE) safe = false;
+                if (plan.route[r].to == s && (now.route[r].phase != IDLE || (running & one(r)))) safe = false;
         }
         if (safe) now.confirmed |= one(c);
     }

@@ -70,6 +70,13 @@ impl Needs {
         }
         needs
     }
+
+    /// These, and those of routes out to `segments`.
+    #[inline]
+    #[must_use]
+    pub(super) fn and_out_to(self, segments: SegmentSet) -> Self {
+        Self { away: self.away.or(segments), ..self }
+    }
 }
 
 /// The answer to a command to turn a segment.

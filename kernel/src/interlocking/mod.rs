@@ -24,6 +24,7 @@ mod standing;
 mod state;
 mod table;
 mod track;
+mod unswept;
 mod works;
 
 pub use atc::{MAX_LINKS, Movement, begins, connect, movement, silent, telegram};
@@ -45,6 +46,7 @@ pub use standing::Standing;
 pub use state::State;
 pub use table::{Contents, Epoch, Table};
 pub use track::Track;
+pub use unswept::{Unswept, Ways};
 pub use works::{Orders, Works};
 
 use crate::Machine;
@@ -114,11 +116,16 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
             *held = held.follow(route, occupied);
         }
         let under = point::meeting(self, occupied);
+        let from_before = state.unswept;
+        let (unswept, ways) =
+            if starting { (Unswept::INITIAL, Ways::default()) } else { from_before.sweep(self, occupied) };
+        state.unswept = unswept;
         //= spec/interlocking.md#ilk-26-outward
         //# A route to a segment MUST be set and show proceed, and trains be granted the segment outward, only in cycles in which the neighbour permits this station to send.
         let directions = (state.directions.toward, state.directions.away.and(input.consent));
         let closed = direction::closed(self, state.works.blocked);
-        let sight = Sight { occupied, blocked: state.works.blocked, closed, detected, under, directions };
+        let sight =
+            Sight { occupied, blocked: state.works.blocked, closed, detected, under, directions, from_before, ways };
         //= spec/interlocking.md#ilk-24-start
         //# After a start, until the layout's time has passed, a device MUST refuse to set a route, to drive a point and to turn a segment, and confirm no block.
         let moves = !matches!(input.request, None | Some(Request::Withdraw(_)));
@@ -126,7 +133,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let heard = Input { request: if refused { None } else { input.request }, ..input };
         let (alone, answer) = self.carry_out(&mut state, heard, sight);
         let answer = if refused { Some(Err(Refusal::Starting)) } else { answer };
-        let mut demand = Demand { wanted: alone, ..Demand::default() };
+        //= spec/interlocking.md#ilk-30-points-ahead
+        //# A point that a kept place, or a kept overlap, needs MUST NOT be driven.
+        let mut demand = Demand { wanted: alone, locked: ways.points };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
             demand = demand.with(route, *held);
         }
@@ -135,8 +144,12 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         state.points = points;
         let unsent = SegmentSet::ALL.without(input.consent);
         let view = View { occupied, blocked: state.works.blocked, closed: closed.or(unsent), firm };
-        let needs = Needs::of(self, &state.routes);
-        let mut circuits = direction::open_line(self, &state.directions, (occupied, needs));
+        //= spec/interlocking.md#ilk-32-line-ahead
+        //# While a route out to a segment runs, the segment MUST be treated as one to which a route out is held.
+        let needs = Needs::of(self, &state.routes).and_out_to(ways.outward);
+        //= spec/interlocking.md#ilk-31-blocks-ahead
+        //# A block on an unswept circuit MUST NOT be confirmed.
+        let mut circuits = direction::open_line(self, &state.directions, (occupied, needs)).or(unswept.circuits);
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             circuits = circuits.or(held.circuits(route));
@@ -203,7 +216,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
             Some(Request::Turn(segment, travel)) => Some((segment.alone(), travel)),
             _ => None,
         };
-        let needs = Needs::of(self, &state.routes);
+        let needs = Needs::of(self, &state.routes).and_out_to(sight.ways.outward);
         let (directions, turned) =
             direction::turn(self, state.directions, command, (sight.occupied, sight.closed, needs, input.consent));
         state.directions = directions;

@@ -3,6 +3,7 @@
 use super::layout::{Layout, Route};
 use super::route::RouteState;
 use super::set::{CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet};
+use super::unswept::{Unswept, Ways};
 use super::{Travel, point};
 
 /// What may be asked for; one thing a cycle. Nothing that is refused is remembered.
@@ -39,6 +40,8 @@ pub enum Refusal {
     PointLocked,
     /// A circuit of path or overlap is occupied.
     Occupied,
+    /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
+    Unswept,
     /// A circuit of path or overlap, the point's detector, or a circuit of the segment that the route leads to is blocked.
     Blocked,
     /// A point must move, and a train stands on it.
@@ -65,6 +68,10 @@ pub struct Sight {
     pub under: PointSet,
     /// The segments towards this station, and those away from it.
     pub directions: (SegmentSet, SegmentSet),
+    /// What was unswept in the cycle before.
+    pub from_before: Unswept,
+    /// What trains from before the start still need.
+    pub ways: Ways,
 }
 
 /// Why the route of number `asked` cannot be reserved; `None` if it can.
@@ -95,15 +102,20 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     let ahead = path.circuits.or(overlap.circuits);
     let needed = path.positions.or(overlap.positions);
     let (toward, away) = sight.directions;
+    let moves = needed.missing_in(sight.detected).points();
+    //= spec/interlocking.md#ilk-29-route-ahead
+    //# A route MUST be refused if it meets what a route keeps, other than as the way on of that route's train, if a point that is kept would have to move, or if it shares nothing with a route that keeps anything and is declared to conflict with it.
     if refusal.is_some() {
         refusal
     } else if ahead.meets(sight.occupied) {
         Some(Refusal::Occupied)
+    } else if sight.from_before.is_in_the_way(layout, asked, sight.occupied) || moves.meets(sight.ways.points) {
+        Some(Refusal::Unswept)
     } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) {
         Some(Refusal::Blocked)
     } else if !toward.contains(route.from) || !away.contains(route.to) {
         Some(Refusal::Direction)
-    } else if needed.missing_in(sight.detected).points().and(sight.under).is_empty() {
+    } else if !moves.meets(sight.under) {
         None
     } else {
         Some(Refusal::PointUnderTrain)
@@ -169,6 +181,8 @@ pub fn refuse_point<const R: usize, const P: usize, const N: usize, const S: usi
         Some(Refusal::PathHeld)
     } else if sight.under.meets(it) {
         Some(Refusal::PointUnderTrain)
+    } else if sight.ways.points.meets(it) {
+        Some(Refusal::Unswept)
     } else if point::meeting(layout, sight.blocked).meets(it) {
         Some(Refusal::Blocked)
     } else {

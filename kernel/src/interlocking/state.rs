@@ -7,6 +7,7 @@ use super::route::RouteState;
 use super::set::{CircuitSet, RouteSet};
 use super::table::Epoch;
 use super::track::Track;
+use super::unswept::Unswept;
 use super::works::Works;
 use crate::time::Ticks;
 
@@ -17,6 +18,8 @@ pub struct State<const R: usize, const S: usize> {
     pub track: Track,
     /// For how long the device has run, up to the layout's time.
     pub started: Ticks,
+    /// Where trains from before the start may still be on their way.
+    pub unswept: Unswept,
     /// The points.
     pub points: Settling,
     /// The routes.
@@ -34,6 +37,7 @@ impl<const R: usize, const S: usize> State<R, S> {
     pub const INITIAL: Self = Self {
         track: Track::INITIAL,
         started: Ticks(0),
+        unswept: Unswept::INITIAL,
         points: Settling::INITIAL,
         routes: [RouteState::IDLE; R],
         directions: Directions::INITIAL,
@@ -48,7 +52,7 @@ impl<const R: usize, const S: usize> State<R, S> {
         valid &= self.points.is_valid(plan.settle) && self.started <= plan.start;
         let starts = self.is_starting(layout);
         let none = self.works.confirmed.is_empty() && self.directions.toward.or(self.directions.away).is_empty();
-        valid &= !starts || none;
+        valid &= !starts || none && self.unswept == Unswept::INITIAL;
         let mut held = CircuitSet::EMPTY;
         for (route, state) in plan.routes.iter().zip(&self.routes) {
             valid &= state.is_valid(route) && (!starts || !state.is_held());

@@ -6,7 +6,7 @@ use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circui
 use super::train::{Fate, Train};
 use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, SpeedLimits, Track,
-    Works,
+    Unswept, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -17,6 +17,8 @@ pub struct Kept {
     pub clear_for: [u8; CIRCUITS],
     /// For how many cycles the device has run, as far as that matters.
     pub started: Ticks,
+    /// What the start has left unswept.
+    pub unswept: Unswept,
     /// Cycles for which each point has been detected and not driven.
     pub stood: [u8; POINTS],
     /// Where the points were detected last, if that matters.
@@ -49,6 +51,7 @@ impl Kept {
         Self {
             clear_for: std::array::from_fn(|circuit| all[circuit]),
             started: state.started,
+            unswept: state.unswept,
             stood: std::array::from_fn(|point| state.points.parts().0[point]),
             last: state.points.parts().1,
             routes: state.routes,
@@ -69,6 +72,7 @@ impl Kept {
         kernel::State {
             track: Track::from_parts(clear_for),
             started: self.started,
+            unswept: self.unswept,
             points: Settling::from_parts(stood, self.last),
             routes: self.routes,
             directions: self.directions,

@@ -280,6 +280,7 @@ const fn refused(refusal: Refusal) -> &'static str {
         Refusal::OverlapHeld => "overlap-held",
         Refusal::PointLocked => "point-locked",
         Refusal::Occupied => "occupied",
+        Refusal::Unswept => "unswept",
         Refusal::Blocked => "blocked",
         Refusal::PointUnderTrain => "point-under-train",
         Refusal::Direction => "direction",

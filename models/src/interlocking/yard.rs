@@ -350,6 +350,10 @@ impl<D: Device> Subject for Yard<D> {
     fn initial(&self) -> Vec<State> {
         let layout = &self.station.layout;
         let mut state = kernel::State::INITIAL;
+        if !self.environment.found {
+            // A device that has been running for long.
+            state.unswept = kernel::Unswept::SWEPT;
+        }
         let mut permits = 0;
         for input in self.prelude() {
             let (next, output) = self.device.step(layout, state, input);

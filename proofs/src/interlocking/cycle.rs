@@ -26,10 +26,11 @@ fn plausible(detected: Positions) -> Positions {
 
 /// What the conflict check sees, found from the layout and the inputs.
 fn sight<const R: usize, const P: usize, const N: usize, const S: usize>(
-    plan: &Plan<R, P, N, S>,
+    layout: &Layout<R, P, N, S>,
     before: &State<R, S>,
     input: Input,
 ) -> Sight {
+    let plan = layout.plan();
     let blocked = before.works.blocked.bits() & !input.orders.unblock.bits() | input.orders.block.bits();
     let mut under = 0;
     for number in 0..N {
@@ -53,6 +54,8 @@ fn sight<const R: usize, const P: usize, const N: usize, const S: usize>(
             before.directions.toward,
             SegmentSet::from_bits(before.directions.away.bits() & input.consent.bits()),
         ),
+        from_before: before.unswept,
+        ways: before.unswept.sweep(layout, input.occupied).1,
     }
 }
 
@@ -121,7 +124,7 @@ fn parts<E: Engine + ?Sized, const R: usize, const P: usize, const N: usize, con
     let input = any_input(e);
     let it = if cases == 1 { 0 } else { e.choose("the route that is looked at", cases) };
     let (after, output) = layout.interlock(before, input);
-    let sight = sight(plan, &before, input);
+    let sight = sight(&layout, &before, input);
     let firm = firm(plan, &before, (sight.detected, output.drives));
     // Into a segment that is closed, or where the neighbour does not permit it, nobody is sent.
     let unsent = SegmentSet::from_bits(sight.closed.bits() | !input.consent.bits());

@@ -20,6 +20,7 @@ mod start;
 mod table;
 mod track;
 mod train;
+mod unswept;
 mod works;
 
 use crate::engine::{any_byte, any_flag, any_u32};
@@ -27,7 +28,7 @@ use crate::{Engine, Harness};
 use atc_kernel::interlocking::{
     CircuitSet, Directions, Element, Epoch, Heading, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan,
     Point, PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment,
-    SegmentId, SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Works,
+    SegmentId, SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Unswept, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -55,7 +56,7 @@ pub(crate) const LONGEST: usize = MAX_CIRCUITS;
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 8] = [
+pub const SMALLER: [&str; 9] = [
     direction::BOUND,
     pair::BOUND,
     point::BOUND,
@@ -63,6 +64,7 @@ pub const SMALLER: [&str; 8] = [
     signal::BOUND,
     train::ALONE,
     train::BOUND,
+    unswept::BOUND,
     works::BOUND,
 ];
 
@@ -115,6 +117,7 @@ pub const ALL: &[Harness] = &[
     ahead::t_ilk_train_worker::HARNESS,
     meeting::t_ilk_train_line::HARNESS,
     start::t_ilk_train_start::HARNESS,
+    unswept::t_ilk_train_unswept::HARNESS,
 ];
 
 /// Any set of 32 circuits; `likely` is for the lower 16.
@@ -284,10 +287,22 @@ fn any_settling<E: Engine + ?Sized>(e: &mut E) -> Settling {
     Settling::from_parts(stood, any_positions(e))
 }
 
+/// Anything that may be unswept, or all that a start leaves so.
+fn any_unswept<E: Engine + ?Sized>(e: &mut E) -> Unswept {
+    let whole = e.word("nothing is swept (1: yes)", 0..=0) == 1;
+    let any = Unswept {
+        circuits: any_circuits(e, "unswept (bits)", 0..=0),
+        running: any_routes(e, "running routes (bits)"),
+        still: Ticks(e.word("no route has ended to run for (cycles)", 0..=0)),
+    };
+    if whole { Unswept::INITIAL } else { any }
+}
+
 pub(crate) fn any_state<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E) -> State<R, S> {
     State {
         track: Track::INITIAL,
         started: Ticks(e.word("started for (cycles)", 0..=0)),
+        unswept: any_unswept(e),
         points: any_settling(e),
         routes: core::array::from_fn(|_| any_route_state(e)),
         directions: Directions {

@@ -1,8 +1,10 @@
 //! Two routes, and three: what may be held together (T-ILK-1).
 
-use super::{PATH, any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, bit, held, kept};
+use super::{
+    PATH, any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, any_unswept, bit, held, kept,
+};
 use crate::Engine;
-use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, Sight, refuse_route};
+use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, SegmentSet, Sight, Ways, refuse_route};
 
 pub const BOUND: &str = match PATH {
     4 => "2 routes of up to 4 circuits, 32 circuits, 16 points",
@@ -25,6 +27,11 @@ fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
             any_segments(e, "segments towards the station (bits)"),
             any_segments(e, "segments away from it (bits)"),
         ),
+        from_before: any_unswept(e),
+        ways: Ways {
+            points: PointSet::from_bits(u32::from(e.word("points of trains from before the start (bits)", 0..=0))),
+            outward: SegmentSet::EMPTY,
+        },
     }
 }
 

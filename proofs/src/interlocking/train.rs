@@ -288,6 +288,7 @@ fn any_device<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E, bes
     State {
         track: Track::INITIAL,
         started: Ticks(u16::MAX),
+        unswept: super::any_unswept(e),
         points: beside.points,
         routes: core::array::from_fn(|_| any_route_state(e)),
         directions: beside.directions,

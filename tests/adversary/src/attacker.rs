@@ -179,6 +179,7 @@ impl Attacker {
                 let unblock = world.truth.now + self.dice.within(1, 60);
                 self.unblock = Some(unblock);
                 self.turn_after(world, unblock, moves);
+                self.dawdle(world, unblock, moves);
             }
             _ => {}
         }
@@ -217,6 +218,24 @@ impl Attacker {
                 }
             }
         }
+    }
+
+    /// A driver who goes by signals takes his time: he goes on when the device that forgot him obeys, and staff have come where they may.
+    fn dawdle(&mut self, world: &World, unblock: i64, moves: &mut Vec<Move>) {
+        let ground = world.ground;
+        if self.arsenal.block == 0 || !self.arsenal.drivers[1] {
+            return;
+        }
+        let running = world.trains.iter().filter(|train| train.driver == Driver::Signals && train.speed > 0);
+        let running: Vec<usize> = running.map(|train| train.number).collect();
+        let Some(train) = self.dice.pick(&running) else { return };
+        moves.push(Move::Pace(train, 0));
+        let obeys = unblock.max(world.truth.now + ground.start) + 1;
+        self.later.push((obeys, Move::Command(Commands { block: all(ground), ..Commands::default() })));
+        for circuit in members(all(ground)) {
+            self.later.push((obeys + 3, Move::Work(circuit, true)));
+        }
+        self.later.push((obeys + 6, Move::Pace(train, mm_s(400))));
     }
 
     fn line(&mut self, ground: &Ground) -> Option<usize> {

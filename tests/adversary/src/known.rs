@@ -151,6 +151,17 @@ pub const KNOWN: &[Fault] = &[
         model: "interlocking-loop-start",
     },
     Fault {
+        name: "restart forgets the driver",
+        session: "none: a third reader found it",
+        must: "after a start nothing is done ahead of a driver who goes by the signal that he has passed, whatever time he takes",
+        arsenal: Arsenal { restart: 2, block: 4, drivers: [false, true], ..Arsenal::RUNNING },
+        ends_in: &[Family::Worker, Family::Derailment, Family::Collision],
+        layout: LOOP,
+        old_rule: &["unswept-forgotten"],
+        seed: 3,
+        model: "interlocking-loop-restart",
+    },
+    Fault {
         name: "telegram against the direction",
         session: "telegram-against-the-direction",
         must: "a telegram says for which direction of travel it is, and a train that faces the other way has none",

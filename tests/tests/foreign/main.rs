@@ -47,6 +47,6 @@ fn permitted_speed() {
 
 #[test]
 fn interlocking() {
-    let (requests, replies) = station::interlocking(1, 60_000, side::oracle());
-    in_c("interlocking", 36, &requests, &replies);
+    let (requests, replies) = station::interlocking(1, 90_000, side::oracle());
+    in_c("interlocking", 38, &requests, &replies);
 }

@@ -91,6 +91,17 @@ impl Session {
         }
     }
 
+    /// One cycle in which these circuits are to be blocked.
+    pub fn block(&mut self, blocked: &[&str], occupied: &[&str]) {
+        let orders = Orders { block: self.circuits(blocked), ..Orders::default() };
+        self.step(occupied, None, orders);
+    }
+
+    /// Whether staff may rely on a block of the circuit.
+    pub fn is_confirmed(&self, circuit: &str) -> bool {
+        self.said.confirmed.meets(self.circuits(&[circuit]))
+    }
+
     /// One cycle with a request; whether it was accepted.
     pub fn ask(&mut self, request: Request, occupied: &[&str]) -> Result<(), Refusal> {
         self.step(occupied, Some(request), Orders::default());

@@ -106,6 +106,7 @@ fn compare<const R: usize, const P: usize, const N: usize, const S: usize>(
         let came = state.directions.came.bits() >> number & 1 == 1;
         same("segment", number, &(travel, time, came), &(stretch.travel, stretch.withdrawn, stretch.came))?;
     }
+    same("unswept", 0, &numbers(state.unswept.circuits.bits(), count), &witness.unswept.circuits)?;
     same("proceed", 0, &numbers(output.proceed.bits(), 64), &said.proceed)?;
     same("permits", 0, &numbers(output.permits.bits().into(), 8), &said.permits)?;
     same("confirmed", 0, &numbers(output.confirmed.bits(), count), &said.confirmed)?;
@@ -236,6 +237,7 @@ fn the_sessions_are_lively() {
         Refusal::OverlapHeld,
         Refusal::PointLocked,
         Refusal::Occupied,
+        Refusal::Unswept,
         Refusal::Blocked,
         Refusal::PointUnderTrain,
         Refusal::Direction,

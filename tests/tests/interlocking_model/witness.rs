@@ -9,8 +9,10 @@ use atc_tests::sketch::{Need, Sketch};
 mod authority;
 mod held;
 mod refusal;
+mod unswept;
 
 pub use held::{Behind, Held, Place, Stage};
+use unswept::Unswept;
 
 pub type Set = BTreeSet<usize>;
 
@@ -107,6 +109,8 @@ pub struct Witness {
     blocked: Set,
     confirmed: Set,
     limits: Vec<u8>,
+    /// What trains from before the start may still run over.
+    pub unswept: Unswept,
 }
 
 fn meets(one: &[usize], other: &Set) -> bool {
@@ -135,6 +139,7 @@ impl Witness {
             blocked: all,
             confirmed: Set::new(),
             limits: vec![0; sketch.lengths.len()],
+            unswept: Unswept::new(sketch),
         }
     }
 
@@ -171,6 +176,9 @@ impl Witness {
         self.sends.clone_from(&read.consent);
         for (held, way) in self.routes.iter_mut().zip(&sketch.routes) {
             held.follow(way, &occupied);
+        }
+        if self.age >= sketch.start {
+            self.unswept.sweep(sketch, &occupied);
         }
         let seen: Vec<Need> = read
             .detected
@@ -228,6 +236,7 @@ impl Witness {
             .collect();
         let telegrams = self.telegrams(sketch, &occupied, &proceed, &firm);
         self.sends.clear();
+        self.unswept.forget();
         let permitted = |stretch: &Stretch| stretch.travel == Some(Travel::Toward);
         Said {
             permits: (0..self.stretches.len())
@@ -265,7 +274,8 @@ impl Witness {
         let locked: Set = locked.by_ref().map(|need| need.0).collect();
         let mut drives: Vec<Need> = wanted.chain(alone).collect();
         drives.retain(|need| {
-            !seen.contains(need) && !locked.contains(&need.0) && !meets(&sketch.points[need.0], occupied)
+            let ahead = self.unswept.needs(need.0);
+            !ahead && !seen.contains(need) && !locked.contains(&need.0) && !meets(&sketch.points[need.0], occupied)
         });
         drives
     }
@@ -292,6 +302,7 @@ impl Witness {
             meets(&sketch.segments[number].circuits, occupied)
                 || sketch.segments[number].throat.is_some_and(|throat| occupied.contains(&throat))
                 || routes().any(|(_, way)| way.to == Some(number))
+                || self.unswept.goes_out_to(sketch, number)
                 || self.stretches[number].withdrawn < sketch.turn
         };
         let line = sketch.segments.iter().position(|line| line.circuits.contains(&circuit));
@@ -299,7 +310,11 @@ impl Witness {
     }
 
     fn confirm(&mut self, sketch: &Sketch, occupied: &Set) {
-        let safe = |circuit: &usize| !occupied.contains(circuit) && !self.may_be_coming(sketch, *circuit, occupied);
+        let safe = |circuit: &usize| {
+            !self.unswept.circuits.contains(circuit)
+                && !occupied.contains(circuit)
+                && !self.may_be_coming(sketch, *circuit, occupied)
+        };
         let safe: Vec<usize> = self.blocked.iter().copied().filter(safe).collect();
         self.confirmed.extend(safe);
     }

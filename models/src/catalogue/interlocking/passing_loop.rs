@@ -5,7 +5,7 @@ use super::{
 };
 use super::{Environment, Purpose, Sight};
 use crate::check::Entry;
-use crate::interlocking::environment::{Detection, Drives, Obey};
+use crate::interlocking::environment::{Detection, Drives, Obey, Start};
 use crate::interlocking::ground::Heading;
 use crate::interlocking::stations::{Overlaps, loop_route, passing, passing_loop};
 use atc_kernel::distance::Metres;
@@ -308,6 +308,26 @@ fn false_occupancy_and_start() -> Vec<Entry> {
                 found: true,
                 requests: [dispatch(&PASSING), turns(&[0, 1]), drives(0)].concat(),
                 ..Environment::usual(vec![UP])
+            },
+            Purpose::Safe(&[Sight::Arrived]),
+        ),
+        yard(
+            about(
+                "interlocking-loop-restart",
+                "A device starts with a driver in his route, who goes on by the signal that he has passed and takes any time: nothing ahead of him is \
+                 confirmed to staff, driven or given to another.",
+                "the train is in the throat when the device starts; routes are set and withdrawn, segments turned, a point driven, the platform ahead \
+                 blocked, and the throat and that platform falsely occupied in any cycle",
+                &["ILK-27", "ILK-28", "ILK-29", "ILK-30", "ILK-31"],
+                SOUND,
+            ),
+            station.with(|plan| plan.start = Ticks(1)),
+            Environment {
+                found: true,
+                requests: [dispatch(&PASSING), turns(&[0, 1]), drives(1)].concat(),
+                blocks: 1 << passing::ONE,
+                falsely: 1 << passing::WEST | 1 << passing::ONE,
+                ..Environment::usual(vec![Start { at: passing::WEST, ..UP }])
             },
             Purpose::Safe(&[Sight::Arrived]),
         ),

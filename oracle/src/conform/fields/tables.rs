@@ -145,7 +145,7 @@ const INTERLOCKING: Table = Table {
         },
         Field { shape: Shape::Entries(&[]), ..output("drives", Danger::More, &["ILK-3", "ILK-8", "ILK-23"]) },
         set("permits", Danger::More, &["ILK-4", "ILK-15", "ILK-18", "ILK-19", "ILK-20", "ILK-25"]),
-        set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-19", "ILK-24", "TRK-1"]),
+        set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-19", "ILK-24", "ILK-28", "ILK-31", "TRK-1"]),
         Field { absent: Absent::Empty, ..set("silent", Danger::Fewer, &["ATC-12"]) },
         Field {
             get: Some(|output| {
@@ -157,7 +157,7 @@ const INTERLOCKING: Table = Table {
                 Danger::Appears,
                 &[
                     "ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-12", "ILK-15", "ILK-17", "ILK-18", "ILK-19", "ILK-20",
-                    "ILK-24", "ILK-25", "ILK-26", "TRK-1",
+                    "ILK-24", "ILK-25", "ILK-26", "ILK-27", "ILK-28", "ILK-29", "ILK-30", "ILK-32", "TRK-1",
                 ],
             )
         },
@@ -175,7 +175,7 @@ const INTERLOCKING: Table = Table {
         reason(
             "answer reason",
             |output| output.get("answer")?.get("refused").cloned(),
-            &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24"],
+            &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24", "ILK-28", "ILK-29", "ILK-30"],
         ),
     ],
 };

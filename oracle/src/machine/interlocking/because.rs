@@ -55,6 +55,13 @@ impl Interlocked {
                 }
             }),
             Refusal::Occupied => self.circuits_of(all.and(occupied)),
+            Refusal::Unswept => match request {
+                Request::Drive(point, _) => self.points_of(point.alone()),
+                _ if all.meets(self.state().unswept.circuits) => {
+                    self.circuits_of(all.and(self.state().unswept.circuits))
+                }
+                _ => self.points_of(asked.positions.missing_in(detected).points()),
+            },
             Refusal::Blocked => self.circuits_of(all.or(self.line(asked.out)).and(self.state().works.blocked)),
             Refusal::PointUnderTrain => match request {
                 Request::Drive(point, _) => self.points_of(point.alone()),

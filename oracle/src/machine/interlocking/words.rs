@@ -95,6 +95,7 @@ word! {
     OverlapHeld => "overlap-held", "A circuit of the overlap is held by another route.";
     PointLocked => "point-locked", "A point is needed or locked in another position by a route.";
     Occupied => "occupied", "A circuit of path or overlap is occupied.";
+    Unswept => "unswept", "A train from before the start may still run over a circuit of path or overlap, or over the point.";
     Blocked => "blocked", "A circuit of path or overlap, or the point's detector, is blocked.";
     PointUnderTrain => "point-under-train", "A point must move, and a train stands on it.";
     Direction => "direction", "A segment has not the direction that the route needs, or cannot turn because of a route or a train.";

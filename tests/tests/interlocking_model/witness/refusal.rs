@@ -61,6 +61,8 @@ impl Witness {
         let stuck = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], occupied);
         reasons.extend(listed(&[
             (meets(&path, occupied) || meets(overlap, occupied), Refusal::Occupied),
+            (self.unswept.is_in_the_way(sketch, asked, occupied), Refusal::Unswept),
+            (needs.iter().any(|need| !seen.contains(need) && self.unswept.needs(need.0)), Refusal::Unswept),
             (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),
             (way.to.is_some_and(|segment| self.closed(sketch, segment)), Refusal::Blocked),
             (!has(way.from, Travel::Toward) || !has(way.to, Travel::Away), Refusal::Direction),
@@ -79,6 +81,7 @@ impl Witness {
             (locked, Refusal::PointLocked),
             (held, Refusal::PathHeld),
             (meets(detectors, occupied), Refusal::PointUnderTrain),
+            (self.unswept.needs(point), Refusal::Unswept),
             (meets(detectors, &self.blocked), Refusal::Blocked),
         ])
     }
@@ -104,6 +107,7 @@ impl Witness {
         // A train on the line that the neighbour sent is let in; of any other nobody knows where it goes.
         let loses = travel == Travel::Away || !stretch.came;
         let no_way_in = travel == Travel::Toward && sketch.routes.iter().all(|way| way.from != Some(segment));
+        let needs_other = needs_other || travel == Travel::Toward && self.unswept.goes_out_to(sketch, segment);
         let in_the_way = needs_other || taken && loses || no_way_in;
         let early = stretch.withdrawn < sketch.turn || stretch.travel == Some(Travel::Toward);
         let blocked = self.closed(sketch, segment);

@@ -1,0 +1,339 @@
+//! A driver who is on his way through a route when the device starts (T-ILK-10): nothing is done ahead of him, whatever time he takes.
+//!
+//! The accident: a driver has passed a signal at proceed. The device is started again, and forgets him. He goes slowly, or stands for a while, and
+//! goes on by the signal that he has passed. Ahead of him a block is confirmed and staff step onto the track; a point is driven; a route over his is
+//! set for another train; or the line that he is on his way out to is given to the neighbour.
+//!
+//! The train is a ghost: the kernel sees nothing of it but the circuits in which it is reported, and any other may be reported at any time.
+
+use super::train::LENGTH;
+use super::{any_cycle, held, kept};
+use crate::Engine;
+use crate::engine::{any_byte, any_flag};
+use atc_kernel::interlocking::{CircuitSet, Phase, Request, Route, RouteState, State};
+
+/// That of the train, and another one.
+const ROUTES: usize = 2;
+
+/// As many places as the train's route of the other theorems has, and the bound says so.
+pub const BOUND: &str = match LENGTH {
+    3 => "2 routes of up to 3 circuits, 32 circuits, 1 point, 1 segment of up to 3 circuits",
+    _ => "2 routes of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits",
+};
+
+const BUILT_IN: &[(&str, &str)] = &[
+    (
+        "path-complete",
+        "its front goes from place to place of the path, and out to the line where the route leads there",
+    ),
+    ("train-whole", "it is one train from front to tail, and reported in every circuit between"),
+    ("no-setting-back", "neither its front nor its tail ever goes back"),
+];
+
+/// Where an end of the train is: at the entry or before it; the places of the path are `FIRST`, `FIRST` + 1, and so on.
+const BEFORE: u8 = 0;
+const FIRST: u8 = 1;
+
+/// The train, which has passed the signal of its route before the start.
+#[derive(Clone, Copy, Debug)]
+struct Train {
+    front: u8,
+    tail: u8,
+    /// For how many cycles more the circuit of its front may not be reported.
+    late: u8,
+    /// For how many cycles more it may slide out of the last circuit.
+    moving: u16,
+}
+
+/// The route, and what lies beyond it.
+struct Ground {
+    route: Route<LENGTH>,
+    /// The last place, and where the train is that has left the path.
+    last: u8,
+    over: u8,
+    line: CircuitSet,
+    /// Whether the route leads out to the line.
+    out: bool,
+    loss: u8,
+    standstill: u16,
+    start: u16,
+}
+
+impl Train {
+    fn any<E: Engine + ?Sized>(e: &mut E) -> Self {
+        Self {
+            front: any_byte(e, "the train's front (1 first place, 2 second ...)", 1..=3),
+            tail: any_byte(e, "the train's tail (0 at the entry or before it)", 0..=2),
+            late: any_byte(e, "its front is unreported for (cycles)", 0..=0),
+            moving: e.word("it slides for (cycles)", 0..=1),
+        }
+    }
+
+    /// Whether this is a train that there can be. Beyond the path it is in the overlap, or on the line.
+    fn is_one(&self, ground: &Ground) -> bool {
+        let beyond = ground.out || !ground.route.overlap.circuits.is_empty();
+        let ordered = self.tail <= self.front && FIRST <= self.front && self.front <= ground.over;
+        ordered
+            && (self.front < ground.over || beyond)
+            && self.late <= ground.loss
+            && self.moving <= ground.standstill
+            && (self.tail >= ground.last || self.moving == 0)
+    }
+
+    /// The first and the last position where it is reported.
+    const fn seen(&self) -> (u8, u8) {
+        if self.late == 0 {
+            return (self.tail, self.front);
+        }
+        let behind = self.front.wrapping_sub(1);
+        (if self.tail < behind { self.tail } else { behind }, behind)
+    }
+
+    fn is_reported(&self, ground: &Ground, occupied: CircuitSet) -> bool {
+        let (first, last) = self.seen();
+        let there = |position: u8| first <= position && position <= last;
+        let beyond = if ground.out { ground.line } else { ground.route.overlap.circuits };
+        let mut reported = !there(BEFORE) || occupied.contains(ground.route.entry);
+        reported &= !there(ground.over) || occupied.meets(beyond);
+        for (position, element) in (FIRST..).zip(&ground.route.path) {
+            reported &= !there(position) || position > ground.last || occupied.contains(element.circuits);
+        }
+        reported
+    }
+
+    /// What it does in a cycle, before the device reads.
+    fn moves<E: Engine + ?Sized>(mut self, e: &mut E, ground: &Ground) -> Self {
+        let (on, up) = (any_flag(e, "its front goes on (odd: yes)"), any_flag(e, "its tail goes on (odd: yes)"));
+        let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
+        e.suppose("loss-of-shunt-within-clear", late <= ground.loss);
+        let slides = (self.tail < ground.last || self.moving > 0) && !ground.route.overlap.circuits.is_empty();
+        e.suppose("overlap-covers-sliding", !on || self.front != ground.last || ground.out || slides);
+        e.suppose("loss-of-shunt-within-clear", !on || self.late == 0);
+        let whole = self.tail >= ground.last;
+        if on && self.front < ground.over {
+            self.front += 1;
+            self.late = late;
+        } else {
+            // It may be reported earlier.
+            self.late = if self.late > 0 && late < self.late { late } else { self.late.saturating_sub(1) };
+        }
+        self.moving = self.moving.saturating_sub(1);
+        if up && self.tail < self.front {
+            self.tail += 1;
+        }
+        if !whole && self.tail >= ground.last {
+            self.moving = ground.standstill;
+        }
+        self
+    }
+
+    /// Whether it may still come to a place of its path, or slide beyond it, or has and is not reported there yet.
+    const fn goes(&self, ground: &Ground) -> bool {
+        let unseen = self.late > 0 && (!ground.out || self.front < ground.over);
+        self.tail < ground.last || unseen || self.moving > 0 && !ground.out
+    }
+
+    /// Whether it is on its way out to the line, or on it.
+    const fn goes_out(&self, ground: &Ground, left: bool) -> bool {
+        ground.out && !left
+    }
+}
+
+/// What the train still needs: circuits from its tail on, and points; the overlap with them.
+fn needed(train: &Train, ground: &Ground) -> (CircuitSet, u32) {
+    let (mut circuits, mut points) = (0, 0);
+    for (position, element) in (FIRST..).zip(&ground.route.path) {
+        if train.goes(ground) && train.tail <= position && position <= ground.last {
+            circuits |= element.circuits.bits();
+            points |= element.positions.points().bits();
+        }
+    }
+    if train.goes(ground) {
+        circuits |= ground.route.overlap.circuits.bits();
+        points |= ground.route.overlap.positions.points().bits();
+    }
+    (CircuitSet::from_bits(circuits), points)
+}
+
+/// The invariant of the train and what the device has not swept.
+fn holds<const S: usize>(train: &Train, ground: &Ground, device: &State<ROUTES, S>) -> bool {
+    let unswept = device.unswept;
+    let starting = device.started.0 < ground.start;
+    let (late, moving) = (u32::from(train.late), u32::from(train.moving));
+    let unseen = train.front == FIRST && train.late > 0;
+    // Who has just passed the signal is reported before the start is over.
+    let mut holds = !unseen || starting && late + u32::from(device.started.0) <= u32::from(ground.start);
+    let (first, _) = train.seen();
+    if train.goes(ground) {
+        holds &= unswept.circuits.contains(needed(train, ground).0);
+        for (position, element) in (FIRST..).zip(&ground.route.path) {
+            let there = first <= position && position <= ground.last;
+            holds &= !there || unswept.circuits.contains(element.circuits);
+        }
+    }
+    let runs = unswept.running.bits() & 1 == 1;
+    let (still, standstill) = (u32::from(unswept.still.0), u32::from(ground.standstill));
+    holds &= first >= ground.last || runs;
+    holds &= runs || ground.out || moving == 0 || still + moving <= standstill;
+    holds & (runs || ground.out || train.late == 0 || still + late <= standstill + u32::from(ground.loss))
+}
+
+/// Whether a route begins at a place of the train's path, and leads the same way: it is for this train.
+fn begins(route: &Route<LENGTH>, ground: &Ground, from: u8) -> bool {
+    let mut begins = false;
+    for (position, element) in (FIRST..).zip(&ground.route.path) {
+        begins |= from <= position && position <= ground.last && element.circuits == route.entry;
+    }
+    begins && route.heading == ground.route.heading
+}
+
+harness! {
+    /// A ghost train is on its way through a route whose signal it passed before the start, slowly or standing for a while, and no driver in it looks
+    /// at telegrams. As long as it may go on, nothing is done ahead of it or under it; and that is so again after the cycle.
+    t_ilk_train_unswept(e)
+    theorem "T-ILK-10";
+    requirements ["ILK-27", "ILK-28", "ILK-29", "ILK-30", "ILK-31", "ILK-32"];
+    assumptions [
+        "loss-of-shunt-within-clear", "start-outlasts-running", "overlap-covers-sliding", "path-complete", "train-whole", "no-setting-back",
+    ];
+    built_in BUILT_IN;
+    bound BOUND;
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Holds: "the invariant: what the train still needs is unswept, and the time counts no more than has passed since it was wholly in the last circuit",
+        Set: "a route over what it still needs is set only if it begins where the train is or comes to, in its direction",
+        Declared: "and none that is declared to conflict with its route and shares nothing with it",
+        Apart: "no route holds, and no telegram grants, what it still needs, but such a route",
+        Points: "no point is driven that it still needs, nor one with a detector there",
+        Staff: "no block is confirmed on what it still needs, or where it is",
+        Line: "while it is on its way out the line is given to nobody who comes in, and no block is confirmed there",
+    }
+    covers {
+        Goes: "a route is refused because of the train, which is before the last place",
+        Own: "a route is set for the train ahead of it",
+        Stops: "the train is wholly in the last circuit, and its overlap is swept",
+        Slides: "it has slid into the overlap, and is not reported there",
+        Point: "a point ahead of it is asked for, and not driven",
+        Starts: "the start is over in this cycle, with the train in the path",
+        Out: "the line is asked for from outside while the train is in the path of a route out",
+    }
+    {
+        let Some((layout, mut before, input)) = any_cycle::<E, ROUTES, LENGTH, 1, 1>(e) else { return };
+        let plan = layout.plan();
+        let (route, segment) = (plan.routes[0], plan.segments[0]);
+        let mut line = 0;
+        for (place, circuit) in (0..).zip(&segment.circuits) {
+            line |= if place < segment.length { circuit.bits() } else { 0 };
+        }
+        let ground = Ground {
+            route,
+            last: route.length,
+            over: route.length.wrapping_add(1),
+            line: CircuitSet::from_bits(line),
+            out: route.to.bits() & 1 == 1,
+            loss: plan.loss,
+            standstill: plan.standstill.0,
+            start: plan.start.0,
+        };
+        // Rules of engineering: LAY-2.
+        let mut path = 0;
+        for (place, element) in (0..).zip(&route.path) {
+            path |= if place < route.length { element.circuits.bits() } else { 0 };
+        }
+        let apart = (path & route.overlap.circuits.bits() | (path | route.overlap.circuits.bits()) & route.entry.bits()) == 0;
+        let engineered = route.exists() && !route.cab_signalled && route.entry.is_one() && apart
+            && (!ground.out || segment.length > 0 && segment.throat == route.last() && route.overlap.circuits.is_empty());
+        e.assume(engineered);
+        let earlier = Train::any(e);
+        e.assume(earlier.is_one(&ground));
+        if !engineered || !earlier.is_one(&ground) {
+            return;
+        }
+        // Where nothing else is drawn, what the train needs is unswept.
+        let whole = before.unswept.circuits == CircuitSet::ALL;
+        let (own, _) = needed(&earlier, &ground);
+        before.unswept.circuits = if whole { CircuitSet::ALL } else { before.unswept.circuits.or(own) };
+        let left = any_flag(e, "the train has left the line (odd: yes)") && ground.out && earlier.tail >= ground.over;
+        let quiet = |device: &State<ROUTES, 1>, train: &Train, left: bool| {
+            let directions = device.directions;
+            let given = (directions.toward.bits() | directions.came.bits()) & 1 == 1;
+            !train.goes_out(&ground, left) || !given && !device.works.confirmed.meets(ground.line)
+        };
+        let under = |train: &Train| {
+            let mut under = 0;
+            for (position, element) in (FIRST..).zip(&ground.route.path) {
+                under |= if train.tail <= position && position <= train.front && position <= ground.last { element.circuits.bits() } else { 0 };
+            }
+            CircuitSet::from_bits(under)
+        };
+        let free = |device: &State<ROUTES, 1>, train: &Train| {
+            let (ahead, _) = needed(train, &ground);
+            let mut free = !device.works.confirmed.meets(ahead.or(under(train)));
+            for (number, state) in device.routes.iter().enumerate() {
+                let its = |route: &Route<LENGTH>, state: RouteState| held(route, state).circuits.or(kept(route, state).circuits);
+                let other = &plan.routes[number];
+                free &= !its(other, *state).meets(ahead) || begins(other, &ground, FIRST);
+            }
+            free
+        };
+        let invariant = holds(&earlier, &ground, &before) && quiet(&before, &earlier, left) && free(&before, &earlier);
+        e.assume(invariant);
+        let starting = before.started.0 < ground.start;
+        let train = earlier.moves(e, &ground);
+        let left = left || any_flag(e, "the train leaves the line (odd: yes)") && ground.out && train.tail >= ground.over;
+        let occupied = input.occupied;
+        e.suppose("loss-of-shunt-within-clear", left || train.is_reported(&ground, occupied));
+        // Nobody passes a signal by what he saw before the start when that is over, nor is unreported since.
+        let unseen = train.front == FIRST && train.late > 0;
+        let ends = u32::from(train.late) + u32::from(before.started.0) < u32::from(ground.start);
+        e.suppose("start-outlasts-running", !unseen || ends);
+
+        let (after, output) = layout.interlock(before, input);
+        e.claim(Claim::Holds as u32, holds(&train, &ground, &after) && train.is_one(&ground));
+        let (ahead, points) = needed(&train, &ground);
+        let done = output.answer == Some(Ok(()));
+        let (mut set, mut declared, mut own) = (true, true, false);
+        for (number, other) in plan.routes.iter().enumerate() {
+            let asked = matches!(input.request, Some(Request::Set(asked)) if usize::from(asked.number()) == number);
+            let reserved = asked && done && before.routes[number].phase == Phase::Idle;
+            let its = held(other, RouteState::RESERVED).circuits.or(kept(other, RouteState::RESERVED).circuits);
+            // Its front may just have left the circuit where the route begins, and not be reported.
+            let from = if train.late > 0 { train.front.wrapping_sub(1) } else { train.front };
+            set &= !reserved || !its.meets(ahead) || begins(other, &ground, from);
+            own |= reserved && its.meets(ahead);
+            let shares = its.bits() & (path | route.overlap.circuits.bits()) != 0 || begins(other, &ground, FIRST);
+            let conflicts = other.conflicts.bits() & 1 == 1 && !shares;
+            declared &= !reserved || !conflicts || !train.goes(&ground);
+        }
+        e.claim(Claim::Set as u32, set);
+        e.claim(Claim::Declared as u32, declared);
+        let (_, _, contents) = output.table.parts();
+        let mut granted = false;
+        for (other, grant) in plan.routes.iter().zip(&contents.grants) {
+            granted |= grant.circuits.meets(ahead) && !begins(other, &ground, FIRST);
+        }
+        e.claim(Claim::Apart as u32, free(&after, &train) && !granted);
+        let driven = output.drives.points().bits();
+        let over = plan.points[0].detectors.meets(ahead);
+        e.claim(Claim::Points as u32, driven & points == 0 && !(over && driven & 1 == 1));
+        e.claim(Claim::Staff as u32, !output.confirmed.meets(ahead.or(under(&train))));
+        let goes_out = train.goes_out(&ground, left);
+        let taken = output.permits.bits() & 1 == 1 || output.confirmed.meets(ground.line);
+        e.claim(Claim::Line as u32, quiet(&after, &train, left) && !(goes_out && taken));
+
+        let refused = output.answer == Some(Err(atc_kernel::interlocking::Refusal::Unswept));
+        e.cover(Cover::Goes as u32, !starting && matches!(input.request, Some(Request::Set(_))) && refused && train.tail < ground.last);
+        e.cover(Cover::Own as u32, own);
+        let whole = train.tail == ground.last && train.front == ground.last && !route.overlap.circuits.is_empty();
+        let swept = before.unswept.circuits.contains(route.overlap.circuits) && !after.unswept.circuits.meets(route.overlap.circuits);
+        e.cover(Cover::Stops as u32, whole && swept && !starting);
+        e.cover(Cover::Slides as u32, !starting && !ground.out && train.front == ground.over && train.late > 0);
+        let asked = matches!(input.request, Some(Request::Drive(..)));
+        e.cover(Cover::Point as u32, !starting && asked && refused);
+        e.cover(Cover::Starts as u32, starting && after.started.0 == ground.start && train.front > FIRST);
+        let turns = matches!(input.request, Some(Request::Turn(_, atc_kernel::interlocking::Travel::Toward)));
+        let clear = !occupied.meets(ground.line.or(segment.throat));
+        e.cover(Cover::Out as u32, !starting && turns && clear && goes_out && train.tail >= FIRST);
+    }
+}
