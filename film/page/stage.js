@@ -61,7 +61,7 @@ const Stage = (() => {
     const [x, y] = head;
     plan.over.append(element("path", { class: "train-head", d: "M9 0L-5 -8V8Z", transform: `translate(${x} ${y}) rotate(${angle})` }));
     const wide = (12 + 7 * name.length) / scale;
-    const [left, top] = [(x + back[0]) / 2, y - 22];
+    const [left, top] = [(x + back[0]) / 2, y - 32];
     plan.over.append(element("rect", { class: "train-tag", x: left - wide / 2, y: top - 9, width: wide, height: 17, rx: 4 }));
     plan.over.append(element("text", { class: "train-name", x: left, y: top + 4 }, name));
   };
@@ -133,7 +133,7 @@ const Stage = (() => {
     for (const { text, name } of plan.circuits) {
       const { told } = circuit(name);
       if (told === "") continue;
-      const [x, y, wide] = [Number(text.getAttribute("x")), Number(text.getAttribute("y")) - 25, (12 + told.length * 6.6) / scale];
+      const [x, y, wide] = [Number(text.getAttribute("x")), Number(text.getAttribute("y")) - 46, (12 + told.length * 6.6) / scale];
       plan.over.append(element("rect", { class: "told-tag", x: x - wide / 2, y: y - 12, width: wide, height: 17, rx: 8 }));
       plan.over.append(element("text", { class: "told", x, y: y + 1 }, told));
     }

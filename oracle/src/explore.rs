@@ -42,6 +42,9 @@ pub struct ExploreArgs {
     as_recorded: bool,
     #[command(flatten, next_help_heading = "A simulated line")]
     run: RunArgs,
+    /// Draws so many faults of the kind of --faults, as the run of a campaign with this seed has them
+    #[arg(long, value_name = "FAULTS")]
+    each: Option<usize>,
 }
 
 /// The page, and what is said beside it.
@@ -76,7 +79,7 @@ pub fn line(args: &ExploreArgs) -> Result<Done, String> {
     if let Some((option, _)) = asked.iter().find(|(_, there)| *there) {
         return Err(format!("{option} is for a session; {} is a line, which is simulated", args.file.display()));
     }
-    let made = simulate::film(&args.file, &args.run, args.title.as_deref())?;
+    let made = simulate::film(&args.file, &args.run, args.each, args.title.as_deref())?;
     Ok(done(&made.film, made.remarks, made.is_unsafe))
 }
 

@@ -127,10 +127,19 @@ const fn extent(args: &RunArgs) -> Extent {
 /// For how many seconds a run goes on if nothing else is said.
 const SECONDS: u32 = 1_800;
 
-fn setting(args: &RunArgs, line: &Line, trains: usize) -> Setting {
+/// `each`: draws so many faults of the one kind that is named, as the run of a campaign with this seed has them.
+fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> Result<Setting, String> {
     let seconds = args.time.unwrap_or(SECONDS);
     let mut faults = Vec::new();
-    for (number, kind) in args.faults.iter().enumerate() {
+    if let Some(each) = each {
+        let [kind] = args.faults.as_slice() else {
+            return Err(format!("--each {each} is of one kind: name it with --faults"));
+        };
+        let (kinds, extent, seed) = (vec![*kind], extent(args), args.seed);
+        faults = campaign::faults(line, &Campaign { runs: 1, kinds, extent, faults: each, trains, seconds, seed }, 0).1;
+    }
+    let single = if each.is_none() { args.faults.as_slice() } else { &[] };
+    for (number, kind) in single.iter().enumerate() {
         let window = (60_000.0_f64.min(f64::from(seconds) * 500.0), f64::from(seconds) * 1000.0);
         faults.push(Fault::drawn(*kind, extent(args), line, window, args.seed + number as u64));
     }
@@ -138,7 +147,7 @@ fn setting(args: &RunArgs, line: &Line, trains: usize) -> Setting {
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
-    Setting { operate, trains, seed: args.seed, faults, compared: false }
+    Ok(Setting { operate, trains, seed: args.seed, faults, compared: false })
 }
 
 /// The film of a run.
@@ -152,9 +161,9 @@ pub struct Made {
 }
 
 /// Runs a line and films it, second by second.
-pub fn film(file: &Path, args: &RunArgs, title: Option<&str>) -> Result<Made, String> {
+pub fn film(file: &Path, args: &RunArgs, each: Option<usize>, title: Option<&str>) -> Result<Made, String> {
     let line = opened(file, args)?;
-    let mut world = World::new(&line, setting(args, &line, trains(args, &line)))?;
+    let mut world = World::new(&line, setting(args, &line, trains(args, &line), each)?)?;
     let end_ms = u64::from(args.time.unwrap_or(SECONDS)) * 1000;
     let mut film = atc_simulation::film::of(&mut world, end_ms, 1_000)?;
     if let Some(title) = title {
@@ -176,7 +185,7 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
     if args.profile >= trains {
         return Err(format!("--profile {}: the trains are 0 to {}", args.profile, trains.saturating_sub(1)));
     }
-    let mut world = World::new(line, setting(&args.run, line, trains))?;
+    let mut world = World::new(line, setting(&args.run, line, trains, None)?)?;
     let start = Instant::now();
     let record = Record::of(&mut world, u64::from(seconds) * 1000, 1_000);
     let took = start.elapsed().as_secs_f64();
