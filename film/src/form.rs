@@ -119,19 +119,25 @@ pub struct Stretch {
     pub to_m: u32,
 }
 
-/// A machine of the kernel as a WebAssembly module, with what it needs to run the session again.
+/// The kernel's interlocking as a WebAssembly module (`atc-film-kernel`), with what it needs to run the session again. Binary data
+/// are in base64; words of 64 bits are little-endian.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Kernel {
-    /// The module, in base64.
+    /// The module.
     pub module: String,
-    /// What it is configured with, in its own words.
-    pub config: Vec<u64>,
-    /// The input of each step, in its own words.
-    pub steps: Vec<Vec<u64>>,
-    /// The names of its numbers, of each kind.
+    /// The words of its plan.
+    pub plan: String,
+    /// The words of the inputs, each once.
+    pub inputs: Vec<String>,
+    /// The number of the input of each step.
+    pub steps: Vec<u32>,
+    /// The names of its numbers: `circuit`, `point`, `route`, `signal` (of each route), `segment`; and the words of its answers:
+    /// `phase`, `refusal`.
     pub names: BTreeMap<String, Vec<String>>,
-    /// The speeds of its codes, in km/h.
+    /// The speed of each code, in km/h.
     pub speeds_kmh: Vec<u16>,
+    /// Where in the words of a cycle what stands.
+    pub places: BTreeMap<String, usize>,
 }
 
 impl Film {

@@ -1,5 +1,6 @@
 //! `oracle explore`: a session, a trace of a model or a simulated line as a page that plays it.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use atc_film::{Film, TOO_LONG};
@@ -40,6 +41,9 @@ pub struct ExploreArgs {
     /// Shows replies that differ from the kernel's as they were recorded; else the first one is an error
     #[arg(long)]
     as_recorded: bool,
+    /// The kernel as a WebAssembly module, made by ci/page-kernel: a reader can change the inputs of an interlocking and go on
+    #[arg(long, value_name = "FILE.wasm")]
+    kernel: Option<PathBuf>,
     #[command(flatten, next_help_heading = "A simulated line")]
     run: RunArgs,
     /// Draws so many faults of the kind of --faults, as the run of a campaign with this seed has them
@@ -74,8 +78,12 @@ pub fn is_line(file: &Path) -> bool {
 
 /// Makes the page of a line.
 pub fn line(args: &ExploreArgs) -> Result<Done, String> {
-    let asked =
-        [("--layout", args.layout.is_some()), ("--trace", args.trace.is_some()), ("--as-recorded", args.as_recorded)];
+    let asked = [
+        ("--layout", args.layout.is_some()),
+        ("--trace", args.trace.is_some()),
+        ("--as-recorded", args.as_recorded),
+        ("--kernel", args.kernel.is_some()),
+    ];
     if let Some((option, _)) = asked.iter().find(|(_, there)| *there) {
         return Err(format!("{option} is for a session; {} is a line, which is simulated", args.file.display()));
     }
@@ -101,13 +109,23 @@ pub fn session(args: &ExploreArgs, text: &str) -> Result<Done, Wrong> {
     let replies = if args.as_recorded { Replies::AsRecorded } else { Replies::MustAgree };
     let layout = args.layout.as_ref().map(read).transpose().map_err(Wrong::Layout)?;
     let title = args.title.clone().or(traced.title.clone());
-    let setting = Setting { title, replies, layout, words: traced.words.clone() };
+    let kernel = args.kernel.as_deref().map(module).transpose().map_err(Wrong::Reason)?;
+    let setting = Setting { title, replies, layout, words: traced.words.clone(), kernel };
     let made = film::film(record, &setting).map_err(Wrong::Trace)?;
     let mut remarks = String::new();
     if cases.len() > 1 {
         remarks = format!("case {} of {}; --case NUMBER shows another\n", args.case, cases.len());
     }
     Ok(done(&made, remarks, args.as_recorded && differs(record)))
+}
+
+/// The module of a file.
+fn module(file: &Path) -> Result<Vec<u8>, String> {
+    let bytes = fs::read(file).map_err(|error| format!("--kernel {}: it cannot be read: {error}", file.display()))?;
+    if !bytes.starts_with(b"\0asm") {
+        return Err(format!("--kernel {}: this is no WebAssembly module; ci/page-kernel makes one", file.display()));
+    }
+    Ok(bytes)
 }
 
 fn differs(record: &Record) -> bool {

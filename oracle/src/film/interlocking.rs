@@ -3,7 +3,7 @@
 use atc_film::{Class, Film, Plan};
 use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet};
 
-use super::{Take, schematic, stage};
+use super::{Take, inside, schematic, stage};
 use crate::machine::Machine as _;
 use crate::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, State, Step, Travel};
 use crate::names::Named as _;
@@ -35,7 +35,7 @@ pub(crate) fn put(take: &Take<'_, Interlocked>, film: &mut Film) -> Result<(), S
     segments(film, &machine, &moments);
     tables(film);
     events(film);
-    Ok(())
+    inside::put(take, &machine, film)
 }
 
 fn plan(take: &Take<'_, Interlocked>, machine: &Interlocked) -> Result<Plan, String> {

@@ -3,6 +3,7 @@
 //! Every machine gets the rows of its chart and the values of each step. The interlocking gets a track plan: from the layout of
 //! its configuration, from one that is given, or a schematic after the paths of its routes.
 
+mod inside;
 pub(crate) mod interlocking;
 mod lanes;
 mod plain;
@@ -34,11 +35,13 @@ pub struct Setting {
     pub layout: Option<Description>,
     /// What a model knows of each step.
     pub words: Vec<Words>,
+    /// The kernel's interlocking as a WebAssembly module, for the page: `atc-film-kernel`.
+    pub kernel: Option<Vec<u8>>,
 }
 
 impl Default for Setting {
     fn default() -> Self {
-        Self { title: None, replies: Replies::MustAgree, layout: None, words: Vec::new() }
+        Self { title: None, replies: Replies::MustAgree, layout: None, words: Vec::new(), kernel: None }
     }
 }
 
@@ -76,6 +79,12 @@ pub(crate) fn made<M: Machine>(take: &Take<'_, M>) -> Result<Film, String> {
     lanes::put(&mut film, &scene);
     let shown = M::film(take, &mut film)?;
     if !shown {
+        if take.setting.kernel.is_some() {
+            return Err(format!(
+                "the kernel can be put into films of an interlocking; this session is of {}",
+                scene.machine
+            ));
+        }
         plain::values(&mut film, take);
     }
     plain::differences(&mut film, take);

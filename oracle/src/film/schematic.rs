@@ -67,7 +67,8 @@ impl Order {
         for circuit in order {
             let left = self.after.iter().filter(|(_, right)| *right == circuit).map(|(left, _)| rows[*left]).min();
             let wanted = left.unwrap_or(0);
-            let free = (wanted..).find(|row| !taken.contains(&(columns[circuit], *row))).unwrap_or(wanted);
+            let free =
+                (wanted..=wanted + self.count).find(|row| !taken.contains(&(columns[circuit], *row))).unwrap_or(wanted);
             taken.insert((columns[circuit], free));
             rows[circuit] = free;
         }

@@ -65,6 +65,8 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         "{\"start\":{\"protocol\":1,\"machine\":\"block-count\",\"config\":{\"sections\":0,\"max_trains\":1,\"tail_hold_sections\":0}}}\n{\"step\":{}}\n",
     );
     let session = example("oracle/examples/interlocking.jsonl");
+    let supervised = example("oracle/examples/supervision.jsonl");
+    put("empty.wasm", "\0asm");
     let terminus = example("layouts/terminus.toml");
     let line = example("simulation/examples/three-stations.toml");
     let cases: &[(&[&str], &str)] = &[
@@ -78,6 +80,15 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         (&[&session, "--layout", &terminus], "is not that of the session: it has no circuit W2"),
         (&[&session, "--layout", "absent.toml"], "absent.toml"),
         (&[&session, "--trace", "x"], "a session has no traces with names"),
+        (
+            &[&session, "--kernel", "words.jsonl"],
+            "--kernel words.jsonl: this is no WebAssembly module; ci/page-kernel makes one",
+        ),
+        (&[&session, "--kernel", "absent.wasm"], "--kernel absent.wasm: it cannot be read"),
+        (
+            &[&supervised, "--kernel", "empty.wasm"],
+            "the kernel can be put into films of an interlocking; this session is of speed-supervision",
+        ),
         (&[&line, "--trace", "x"], "--trace is for a session"),
         (&[&line, "--trains", "99"], "99 trains: 1 to 5 are possible"),
         (&[&line, "--each", "3"], "--each 3 is of one kind: name it with --faults"),
@@ -166,6 +177,9 @@ Options:
 
       --as-recorded
           Shows replies that differ from the kernel's as they were recorded; else the first one is an error
+
+      --kernel <FILE.wasm>
+          The kernel as a WebAssembly module, made by ci/page-kernel: a reader can change the inputs of an interlocking and go on
 
   -h, --help
           Print help (see a summary with '-h')

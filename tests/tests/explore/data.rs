@@ -86,8 +86,31 @@ fn each_frame_of_the_example_says_what_was_answered() {
 
 #[test]
 fn each_frame_of_random_sessions_says_what_was_answered() {
+    let mut seen = BTreeMap::new();
     for seed in 1..25 {
-        check(&random_session(seed, 150));
+        let session = random_session(seed, 150);
+        check(&session);
+        for output in answered(&session).1 {
+            let mut add = |what: &str| *seen.entry(what.to_owned()).or_insert(0) += 1;
+            output["routes"]
+                .as_object()
+                .expect("routes")
+                .values()
+                .for_each(|phase| add(phase.as_str().expect("a phase")));
+            for (field, words) in
+                [("proceed", "proceed"), ("telegrams", "told"), ("drives", "driven"), ("confirmed", "confirmed")]
+            {
+                let empty = output[field].as_array().is_some_and(Vec::is_empty)
+                    || output[field].as_object().is_some_and(serde_json::Map::is_empty);
+                if !empty {
+                    add(words);
+                }
+            }
+        }
+    }
+    println!("in random sessions: {seen:?}");
+    for what in ["provisional", "set", "in-use", "releasing", "proceed", "told", "driven", "confirmed"] {
+        assert!(seen.get(what).is_some_and(|times| *times >= 20), "{what}: {seen:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod command;
 mod data;
+mod inside;
 mod logic;
 mod page;
 mod simulated;
@@ -63,12 +64,12 @@ fn random_session(seed: u64, steps: usize) -> String {
     let mut occupied = [false; 8];
     let mut points = [json!("normal"), json!("normal")];
     for step in 0..steps {
-        if dice.below(3) == 0 {
-            let at = dice.below(8);
-            occupied[at] = !occupied[at];
-        }
+        // More clear than occupied, and more normal than reverse: or no route is ever set.
+        let at = dice.below(8);
+        occupied[at] = !occupied[at] && dice.below(5) == 0;
         if dice.below(6) == 0 {
-            points[dice.below(2)] = [json!("normal"), json!("reverse"), Value::Null][dice.below(3)].clone();
+            points[dice.below(2)] =
+                [json!("normal"), json!("reverse"), Value::Null, json!("normal")][dice.below(4)].clone();
         }
         let list: Vec<&str> = (0..8).filter(|at| occupied[*at]).map(|at| CIRCUITS[at]).collect();
         let mut body = json!({"occupied": list, "detected": {"P1": points[0], "P2": points[1]}});
@@ -82,7 +83,7 @@ fn random_session(seed: u64, steps: usize) -> String {
         if step == 0 {
             body["orders"] = json!({"unblock": CIRCUITS, "lift": CIRCUITS});
             occupied = [false; 8];
-        } else if dice.below(10) == 0 {
+        } else if dice.below(30) == 0 {
             body["orders"] = json!({(["block", "unblock"][dice.below(2)]): [CIRCUITS[dice.below(8)]]});
         }
         if dice.below(2) == 0 {

@@ -193,7 +193,7 @@ impl Interlocked {
     }
 
     /// The speed of a code; of one that the layout does not have, that of the next lower one.
-    fn speed(&self, code: SpeedCode) -> u16 {
+    pub(crate) fn speed(&self, code: SpeedCode) -> u16 {
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
