@@ -93,6 +93,12 @@ pub fn line(args: &ExploreArgs) -> Result<Done, String> {
 
 /// Makes the page of a text: a session or a trace of a model.
 pub fn session(args: &ExploreArgs, text: &str) -> Result<Done, Wrong> {
+    if let Some(option) = args.run.given().or(args.each.map(|_| "--each")) {
+        let file = args.file.display();
+        return Err(Wrong::Reason(format!(
+            "{option} is for a line that is simulated (.toml); {file} is read as a session"
+        )));
+    }
     let traced = film::read(text, args.trace.as_deref()).map_err(|error| match error {
         TracedError::Trace(error) => Wrong::Trace(error),
         TracedError::Model(reason) => Wrong::Reason(reason),

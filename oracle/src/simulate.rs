@@ -70,7 +70,23 @@ pub struct RunArgs {
     clears_at_once: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+impl RunArgs {
+    /// An option that was given, for what is no run.
+    pub fn given(&self) -> Option<&'static str> {
+        let options = [
+            ("--seed", self.seed != 1),
+            ("--time", self.time.is_some()),
+            ("--trains", self.trains.is_some()),
+            ("--faults", !self.faults.is_empty()),
+            ("--beyond", self.beyond),
+            ("--device", self.device != Device::Shortened),
+            ("--clears-at-once", self.clears_at_once),
+        ];
+        options.iter().find(|(_, there)| *there).map(|(option, _)| *option)
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Device {
     /// With the shortened operate time
     Shortened,

@@ -79,6 +79,8 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         (&["refused.jsonl"], "line 1: a start to reject: "),
         (&[&session, "--layout", &terminus], "is not that of the session: it has no circuit W2"),
         (&[&session, "--layout", "absent.toml"], "absent.toml"),
+        (&[&session, "--trains", "3"], "--trains is for a line that is simulated (.toml)"),
+        (&[&session, "--each", "3"], "--each is for a line that is simulated (.toml)"),
         (&[&session, "--trace", "x"], "a session has no traces with names"),
         (
             &[&session, "--kernel", "words.jsonl"],

@@ -89,7 +89,8 @@ fn random_session(seed: u64, steps: usize) -> String {
         if dice.below(2) == 0 {
             body["consent"] = json!(["East"]);
         }
-        text += &format!("{}\n", json!({"step": body}));
+        text += &json!({"step": body}).to_string();
+        text.push('\n');
     }
     text
 }
