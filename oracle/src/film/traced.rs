@@ -43,6 +43,8 @@ impl fmt::Display for TracedError {
 /// A trace of a model, as `models check --json` writes it.
 #[derive(Clone, Debug, Deserialize)]
 struct ModelTrace {
+    #[serde(default)]
+    title: Option<String>,
     machine: String,
     config: Value,
     steps: Vec<ModelStep>,
@@ -100,7 +102,9 @@ pub fn read(text: &str, wanted: Option<&str>) -> Result<Traced, TracedError> {
         TracedError::Model(format!("neither a session nor traces as `models check --json` writes them: {error}"))
     };
     if start.starts_with('{') {
-        return session(serde_json::from_str(text).map_err(wrong)?, None);
+        let trace: ModelTrace = serde_json::from_str(text).map_err(wrong)?;
+        let title = trace.title.clone();
+        return session(trace, title);
     }
     let outcomes: Vec<Outcome> = serde_json::from_str(text).map_err(wrong)?;
     let mut found: Vec<(String, String, ModelTrace)> = Vec::new();
@@ -140,7 +144,7 @@ fn session(trace: ModelTrace, title: Option<String>) -> Result<Traced, TracedErr
     Ok(Traced { trace, words, title })
 }
 
-/// Puts what a model knows into a film: trains by the circuits of their front and rear, how points lie, what goes wrong.
+/// Puts what a model, or the adversary, knows into a film: where trains are, how points lie, what goes wrong.
 pub(super) fn words(film: &mut Film, words: &[Words]) {
     let mut names: BTreeMap<&str, Vec<&Value>> = BTreeMap::new();
     for name in words.iter().flat_map(|words| words.keys()) {
@@ -169,7 +173,7 @@ pub(super) fn words(film: &mut Film, words: &[Words]) {
         }
     }
     if rest {
-        film.table("What the model knows", "truth", &[("value", "value")], true);
+        film.table("What is true", "truth", &[("value", "value")], true);
     }
     let harm = |name: &str, word: &str| {
         (name == "harm" && word != "none" && !word.is_empty()).then(|| format!("harm: {word}"))
@@ -194,6 +198,23 @@ fn trains(film: &mut Film, values: &[&Value]) {
         film.channel(("train", &name, "place"), place);
         film.trains.push(name);
     }
-    let columns = [("place", "where"), ("front", "front in"), ("rear", "rear in"), ("heading", "heading")];
-    film.table("Trains, as the model moves them", "train", &columns, true);
+    let mut columns = vec![("place", "where"), ("front", "front in"), ("rear", "rear in"), ("heading", "heading")];
+    // What knows metres also says which pieces a train is on, and how far into the first and the last one, in thousandths.
+    let number =
+        |value: &Value, train: usize, what: &str| value.get(train).and_then(|at| at.get(what)).and_then(Value::as_i64);
+    if values.iter().any(|value| (0..most).any(|train| number(value, train, "front_share").is_some())) {
+        for (train, name) in film.trains.clone().iter().enumerate() {
+            let on = values.iter().map(|value| value[train]["on"].as_str().unwrap_or("").to_owned());
+            film.channel(("train", name, "on"), on);
+            for (what, of, unit) in [
+                ("front", "front_share", ("", 1000)),
+                ("tail", "rear_share", ("", 1000)),
+                ("speed", "speed_km_h", ("km/h", 1)),
+            ] {
+                film.curve(("train", name, what), unit, values.iter().map(|value| number(value, train, of)));
+            }
+        }
+        columns.push(("speed", "speed"));
+    }
+    film.table("Trains, as they truly are", "train", &columns, true);
 }

@@ -3,6 +3,7 @@
 
 mod command;
 mod data;
+mod hunted;
 mod inside;
 mod logic;
 mod page;
