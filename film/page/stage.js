@@ -71,7 +71,7 @@ const Stage = (() => {
       const of = (what) => Logic.word(reel, "train", train, what, frame);
       const on = of("on");
       if (on) {
-        const [front, tail] = [Logic.number(reel, "train", train, "front", frame), Logic.number(reel, "train", train, "tail", frame)];
+        const [front, tail] = [Logic.number(reel, "train", train, "front_share", frame), Logic.number(reel, "train", train, "rear_share", frame)];
         const list = Logic.covered(on, front, tail);
         const lines = [];
         let [head, back] = [null, null];

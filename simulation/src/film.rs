@@ -280,8 +280,8 @@ fn trains(film: &mut Film, line: &Line, frames: &[Frame]) {
         let mut curve = |what: &str, told: (&str, u32), value: fn(&Glimpse) -> i64| {
             film.curve(("train", &name, what), told, frames.iter().map(|now| of(now, value)));
         };
-        curve("front", ("", 1000), |train| train.front);
-        curve("tail", ("", 1000), |train| train.tail);
+        curve("front_share", ("", 1000), |train| train.front);
+        curve("rear_share", ("", 1000), |train| train.tail);
         curve("front_m", ("m", 10), |train| train.along[0]);
         curve("tail_m", ("m", 10), |train| train.along[1]);
         curve("speed", ("km/h", 10), |train| train.speed);

@@ -87,8 +87,8 @@ pub(crate) fn made<M: Machine>(take: &Take<'_, M>) -> Result<Film, String> {
         }
         plain::values(&mut film, take);
     }
-    plain::differences(&mut film, take);
     traced::words(&mut film, &take.setting.words);
+    plain::differences(&mut film, take);
     film.sort_events();
     Ok(film)
 }

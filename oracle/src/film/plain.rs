@@ -83,7 +83,12 @@ pub(super) fn differences<M: Machine>(film: &mut Film, take: &Take<'_, M>) {
     if kernel.iter().all(String::is_empty) {
         return;
     }
-    film.notes.insert(0, "THE RECORD DIFFERS FROM THE KERNEL. What was answered is shown as recorded.".to_owned());
+    film.notes.insert(
+        0,
+        "THE RECORD DIFFERS FROM THE KERNEL. What was answered is shown as recorded; what is only remembered, such as what a \
+         circuit counts as and is held for, is the kernel's, and so are the rows over time."
+            .to_owned(),
+    );
     film.channel(("record", "the kernel says", "kernel"), &kernel);
     film.table("The record differs", "record", &[("kernel", "instead")], true);
     let told = |_: &str, word: &str| (!word.is_empty()).then(|| format!("the record differs; the kernel says {word}"));

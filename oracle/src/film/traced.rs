@@ -184,7 +184,8 @@ pub(super) fn words(film: &mut Film, words: &[Words]) {
 fn trains(film: &mut Film, values: &[&Value]) {
     let most = values.iter().filter_map(|value| value.as_array()).map(Vec::len).max().unwrap_or(0);
     for train in 0..most {
-        let name = format!("T{train}");
+        let named = values.iter().find_map(|value| value.get(train)?.get("name")?.as_str());
+        let name = named.map_or_else(|| format!("T{train}"), str::to_owned);
         let at = |value: &Value| value.get(train).cloned().unwrap_or_default();
         for what in ["front", "rear", "heading"] {
             let said = values.iter().map(|value| at(value).get(what).and_then(Value::as_str).unwrap_or("").to_owned());
@@ -207,8 +208,8 @@ fn trains(film: &mut Film, values: &[&Value]) {
             let on = values.iter().map(|value| value[train]["on"].as_str().unwrap_or("").to_owned());
             film.channel(("train", name, "on"), on);
             for (what, of, unit) in [
-                ("front", "front_share", ("", 1000)),
-                ("tail", "rear_share", ("", 1000)),
+                ("front_share", "front_share", ("", 1000)),
+                ("rear_share", "rear_share", ("", 1000)),
                 ("speed", "speed_km_h", ("km/h", 1)),
             ] {
                 film.curve(("train", name, what), unit, values.iter().map(|value| number(value, train, of)));

@@ -187,6 +187,7 @@ fn placed(ground: &Ground, train: &Train) -> Value {
     let share = |at: i64, length: i64| (at * 1000 / length.max(1)).clamp(0, 1000);
     let (Some((rear, begin, _)), Some((front, _, end))) = (parts.first(), parts.last()) else { return json!("gone") };
     json!({
+        "name": train.number.to_string(),
         "front": circuit(front.piece),
         "rear": circuit(rear.piece),
         "heading": if ground.faces_right(&train.front()) { "right" } else { "left" },
