@@ -3,12 +3,14 @@
 //! * [`serve`]: JSON lines, protocol 1 — somebody else's implementation is stepped beside the kernel
 //!   ([`protocol`] for the forms, [`machine`] for what each machine reads and puts out).
 //! * [`trace`] and [`chart`]: the timing chart (SVG, VCD) of a recorded session, checked against the kernel.
+//! * [`film`]: a recorded session, or a trace of a model, as a page that plays it.
 //! * [`conform`]: another implementation against the kernel, down to the first difference; and vectors.
 //! * [`signal`]: the train control signal as a WAV file, made and read back.
 //! * [`schema`]: the JSON Schema of the protocol, generated from the types.
 
 pub mod chart;
 pub mod conform;
+pub mod film;
 pub mod machine;
 mod names;
 pub mod protocol;

@@ -1,6 +1,7 @@
 //! `oracle`: the kernel as a reference, on the command line.
 
 mod conformance;
+mod explore;
 mod layout;
 mod line;
 mod simulate;
@@ -56,6 +57,8 @@ enum Command {
     },
     /// Runs a line with trains under the kernel's devices, judged by the truth and not by the devices; exit code 1 if it is unsafe
     Simulate(simulate::SimulateArgs),
+    /// Makes a page that plays a session, a trace of a model or a simulated line: track plan, trains, signals, rows over time
+    Explore(explore::ExploreArgs),
     /// Prints what a shell needs to complete the commands
     Completions {
         /// The shell
@@ -174,6 +177,7 @@ fn main() -> ExitCode {
             SchemaOf::Vector => atc_oracle::conform::vectors::schema(),
         }),
         Command::Simulate(args) => simulate(&args),
+        Command::Explore(args) => explore(&args),
         Command::Completions { shell } => completions(shell),
     };
     match result {
@@ -262,6 +266,24 @@ fn simulate(args: &simulate::SimulateArgs) -> Result<(), Failure> {
     print(&done.text)?;
     remark(&done.remarks);
     if done.is_unsafe { Err(Failure::Differs) } else { Ok(()) }
+}
+
+fn explore(args: &explore::ExploreArgs) -> Result<(), Failure> {
+    let done = if explore::is_line(&args.file) {
+        explore::line(args).map_err(Failure::Signal)?
+    } else {
+        explore::session(args, &read(&args.file)?).map_err(|wrong| match wrong {
+            explore::Wrong::Trace(error) => Failure::Trace(args.file.clone(), error),
+            explore::Wrong::Layout(errors) => Failure::Layout(errors),
+            explore::Wrong::Reason(reason) => Failure::Config(args.file.clone(), reason),
+        })?
+    };
+    match &args.output {
+        Some(path) => write(path, &done.page)?,
+        None => print(&done.page)?,
+    }
+    remark(&done.remarks);
+    if done.differs { Err(Failure::Differs) } else { Ok(()) }
 }
 
 fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {

@@ -1,9 +1,10 @@
-//! `oracle simulate`: a line with trains, one run or a campaign of them, and the headline.
+//! `oracle simulate`: a line with trains, one run or a campaign of them, and the headline; the film of a run for `oracle explore`.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use atc_film::Film;
 use atc_simulation::campaign::{self, Campaign};
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::headline;
@@ -24,6 +25,28 @@ pub struct SimulateArgs {
     /// The line: stations and trains (TOML)
     #[arg(required_unless_present = "headline", value_name = "LINE.toml")]
     file: Option<PathBuf>,
+    #[command(flatten)]
+    run: RunArgs,
+    /// The train of the speed profile
+    #[arg(long, default_value_t = 0, value_name = "TRAIN")]
+    profile: usize,
+    /// Runs so many times with one fault each, and tells in how many runs something unsafe happened
+    #[arg(long, value_name = "RUNS")]
+    campaign: Option<u64>,
+    /// How many faults each run of a campaign has, all of one kind
+    #[arg(long, default_value_t = 1, requires = "campaign", value_name = "FAULTS")]
+    each: usize,
+    /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
+    #[arg(long, conflicts_with = "campaign")]
+    headline: bool,
+    /// Where events (JSON lines), pictures (SVG) and figures go [default: the events to standard output]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+}
+
+/// What a run is like.
+#[derive(Args)]
+pub struct RunArgs {
     /// What chance depends on; a run is the same every time for one seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -45,24 +68,25 @@ pub struct SimulateArgs {
     /// An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
     #[arg(long)]
     clears_at_once: bool,
-    /// The train of the speed profile
-    #[arg(long, default_value_t = 0, value_name = "TRAIN")]
-    profile: usize,
-    /// Runs so many times with one fault each, and tells in how many runs something unsafe happened
-    #[arg(long, value_name = "RUNS")]
-    campaign: Option<u64>,
-    /// How many faults each run of a campaign has, all of one kind
-    #[arg(long, default_value_t = 1, requires = "campaign", value_name = "FAULTS")]
-    each: usize,
-    /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
-    #[arg(long, conflicts_with = "campaign")]
-    headline: bool,
-    /// Where events (JSON lines), pictures (SVG) and figures go [default: the events to standard output]
-    #[arg(short, long, value_name = "FOLDER")]
-    pub output: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+impl RunArgs {
+    /// An option that was given, for what is no run.
+    pub fn given(&self) -> Option<&'static str> {
+        let options = [
+            ("--seed", self.seed != 1),
+            ("--time", self.time.is_some()),
+            ("--trains", self.trains.is_some()),
+            ("--faults", !self.faults.is_empty()),
+            ("--beyond", self.beyond),
+            ("--device", self.device != Device::Shortened),
+            ("--clears-at-once", self.clears_at_once),
+        ];
+        options.iter().find(|(_, there)| *there).map(|(option, _)| *option)
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Device {
     /// With the shortened operate time
     Shortened,
@@ -94,23 +118,44 @@ pub fn run(args: &SimulateArgs) -> Result<Done, String> {
         return measure(args);
     }
     let file = args.file.as_ref().ok_or("a line file is needed")?;
-    let mut line = Line::read(file)?;
-    line.clears_at_once = args.clears_at_once;
-    let trains = args.trains.or(line.number_of_trains).unwrap_or_else(|| line.room().saturating_sub(1));
+    let line = opened(file, &args.run)?;
+    let trains = trains(&args.run, &line);
     match args.campaign {
         Some(runs) => many(args, &line, (trains, runs)),
         None => one(args, &line, trains),
     }
 }
 
-const fn extent(args: &SimulateArgs) -> Extent {
+fn opened(file: &Path, args: &RunArgs) -> Result<Line, String> {
+    let mut line = Line::read(file)?;
+    line.clears_at_once = args.clears_at_once;
+    Ok(line)
+}
+
+fn trains(args: &RunArgs, line: &Line) -> usize {
+    args.trains.or(line.number_of_trains).unwrap_or_else(|| line.room().saturating_sub(1))
+}
+
+const fn extent(args: &RunArgs) -> Extent {
     if args.beyond { Extent::Beyond } else { Extent::Tolerated }
 }
 
-fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> {
-    let seconds = args.time.unwrap_or(1_800);
+/// For how many seconds a run goes on if nothing else is said.
+const SECONDS: u32 = 1_800;
+
+/// `each`: draws so many faults of the one kind that is named, as the run of a campaign with this seed has them.
+fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> Result<Setting, String> {
+    let seconds = args.time.unwrap_or(SECONDS);
     let mut faults = Vec::new();
-    for (number, kind) in args.faults.iter().enumerate() {
+    if let Some(each) = each {
+        let [kind] = args.faults.as_slice() else {
+            return Err(format!("--each {each} is of one kind: name it with --faults"));
+        };
+        let (kinds, extent, seed) = (vec![*kind], extent(args), args.seed);
+        faults = campaign::faults(line, &Campaign { runs: 1, kinds, extent, faults: each, trains, seconds, seed }, 0).1;
+    }
+    let single = if each.is_none() { args.faults.as_slice() } else { &[] };
+    for (number, kind) in single.iter().enumerate() {
         let window = (60_000.0_f64.min(f64::from(seconds) * 500.0), f64::from(seconds) * 1000.0);
         faults.push(Fault::drawn(*kind, extent(args), line, window, args.seed + number as u64));
     }
@@ -118,11 +163,45 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
+    Ok(Setting { operate, trains, seed: args.seed, faults, compared: false })
+}
+
+/// The film of a run.
+pub struct Made {
+    /// The film.
+    pub film: Film,
+    /// What is said beside it.
+    pub remarks: String,
+    /// Whether something unsafe happened.
+    pub is_unsafe: bool,
+}
+
+/// Runs a line and films it, second by second.
+pub fn film(file: &Path, args: &RunArgs, each: Option<usize>, title: Option<&str>) -> Result<Made, String> {
+    let line = opened(file, args)?;
+    let mut world = World::new(&line, setting(args, &line, trains(args, &line), each)?)?;
+    let end_ms = u64::from(args.time.unwrap_or(SECONDS)) * 1000;
+    let mut film = atc_simulation::film::of(&mut world, end_ms, 1_000)?;
+    if let Some(title) = title {
+        title.clone_into(&mut film.title);
+    }
+    let remarks = unsafe_event(&world)?;
+    Ok(Made { film, remarks, is_unsafe: world.is_unsafe })
+}
+
+/// What was unsafe, as a remark; nothing if nothing was.
+fn unsafe_event(world: &World<'_>) -> Result<String, String> {
+    let Some(event) = world.events.iter().find(|event| event.what.is_unsafe()) else { return Ok(String::new()) };
+    let event = serde_json::to_string(event).map_err(|error| error.to_string())?;
+    Ok(format!("UNSAFE: {event}\n"))
+}
+
+fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> {
+    let seconds = args.run.time.unwrap_or(SECONDS);
     if args.profile >= trains {
         return Err(format!("--profile {}: the trains are 0 to {}", args.profile, trains.saturating_sub(1)));
     }
-    let setting = Setting { operate, trains, seed: args.seed, faults, compared: false };
-    let mut world = World::new(line, setting)?;
+    let mut world = World::new(line, setting(&args.run, line, trains, None)?)?;
     let start = Instant::now();
     let record = Record::of(&mut world, u64::from(seconds) * 1000, 1_000);
     let took = start.elapsed().as_secs_f64();
@@ -141,10 +220,7 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
         line.stations.len(),
         ran / took.max(1e-9)
     );
-    if let Some(event) = world.events.iter().find(|event| event.what.is_unsafe()) {
-        let event = serde_json::to_string(event).map_err(|error| error.to_string())?;
-        let _ = writeln!(done.remarks, "UNSAFE: {event}");
-    }
+    done.remarks += &unsafe_event(&world)?;
     if args.output.is_none() {
         done.text = events;
         return Ok(done);
@@ -160,15 +236,15 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
 }
 
 fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Result<Done, String> {
-    let kinds = if args.faults.is_empty() { Kind::ALL.to_vec() } else { args.faults.clone() };
+    let kinds = if args.run.faults.is_empty() { Kind::ALL.to_vec() } else { args.run.faults.clone() };
     let campaign = Campaign {
         runs,
         kinds,
-        extent: extent(args),
+        extent: extent(&args.run),
         faults: args.each,
         trains,
-        seconds: args.time.unwrap_or(600),
-        seed: args.seed,
+        seconds: args.run.time.unwrap_or(600),
+        seed: args.run.seed,
     };
     let outcomes = campaign::run(line, &campaign, &|_| ())?;
     let mut done = Done::default();
@@ -196,9 +272,9 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
 }
 
 fn measure(args: &SimulateArgs) -> Result<Done, String> {
-    let mut extent = headline::Extent { seed: args.seed, ..headline::Extent::default() };
-    extent.seconds = args.time.unwrap_or(extent.seconds);
-    extent.trains = args.trains.unwrap_or(extent.trains);
+    let mut extent = headline::Extent { seed: args.run.seed, ..headline::Extent::default() };
+    extent.seconds = args.run.time.unwrap_or(extent.seconds);
+    extent.trains = args.run.trains.unwrap_or(extent.trains);
     let measured = headline::measure(&extent)?;
     let svg = charts::headline(&measured).map_err(|error| error.to_string())?;
     let is_unsafe = measured.unsafe_events() > 0;

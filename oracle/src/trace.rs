@@ -8,9 +8,13 @@ use std::fmt;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde_json::Value;
 use serde_json::value::RawValue;
 
+use atc_film::Film;
+
 use crate::chart::Scene;
+use crate::film::{self, Setting, Take};
 use crate::machine::{self, Cycle, KINDS, Kind, Machine};
 use crate::protocol::{self, Fault, Rejected, Stop};
 
@@ -58,6 +62,13 @@ pub struct Record {
     line: usize,
     config: Box<RawValue>,
     steps: Vec<RecordedStep>,
+}
+
+impl Record {
+    /// The machine that it is of.
+    pub(crate) const fn kind(&self) -> &'static Kind {
+        self.kind
+    }
 }
 
 /// A step and what was answered to it.
@@ -218,6 +229,27 @@ impl Reader {
 
 /// Runs a record through the kernel, compares, and lays out the chart.
 pub(crate) fn chart<M: Machine>(record: &Record, replies: Replies) -> Result<Scene, TraceError> {
+    let Run { config, cycles, .. } = run::<M>(record, replies)?;
+    Ok(M::chart(&config, &cycles))
+}
+
+/// Runs a record through the kernel, compares, and lays out the film.
+pub(crate) fn film<M: Machine>(record: &Record, setting: &Setting) -> Result<Film, TraceError> {
+    let Run { config, cycles, steps } = run::<M>(record, setting.replies)?;
+    let take = Take { config: &config, cycles: &cycles, steps: &steps, setting };
+    film::made(&take).map_err(|what| TraceError { line: record.line, fault: Fault::whole(what) })
+}
+
+/// A case that was run through the kernel.
+struct Run<M: Machine> {
+    config: M::Config,
+    cycles: Vec<Cycle<M>>,
+    /// The body of the step of each cycle, as it was recorded.
+    steps: Vec<Value>,
+}
+
+/// Runs a record through the kernel and compares.
+fn run<M: Machine>(record: &Record, replies: Replies) -> Result<Run<M>, TraceError> {
     let at = |line: usize| move |fault: Fault| TraceError { line, fault };
     let config: M::Config = machine::config_of::<M>("", &record.config).map_err(|fault| TraceError {
         line: record.line,
@@ -229,6 +261,7 @@ pub(crate) fn chart<M: Machine>(record: &Record, replies: Replies) -> Result<Sce
         fault: Fault::whole(format!("a start to reject: {reason}")),
     })?;
     let mut cycles = Vec::with_capacity(record.steps.len());
+    let mut steps = Vec::with_capacity(record.steps.len());
     for recorded in &record.steps {
         let step = read_step::<M>(&recorded.text);
         let result = step.and_then(|step| match machine.step(&step) {
@@ -262,6 +295,8 @@ pub(crate) fn chart<M: Machine>(record: &Record, replies: Replies) -> Result<Sce
             }
         };
         cycles.push(Cycle { step, output, recorded: said });
+        let whole: Value = serde_json::from_str(&recorded.text).unwrap_or_default();
+        steps.push(whole.get("step").cloned().unwrap_or_default());
     }
     if cycles.is_empty() {
         return Err(TraceError {
@@ -269,7 +304,7 @@ pub(crate) fn chart<M: Machine>(record: &Record, replies: Replies) -> Result<Sce
             fault: Fault::whole("the case has no step, so there is nothing to draw"),
         });
     }
-    Ok(M::chart(&config, &cycles))
+    Ok(Run { config, cycles, steps })
 }
 
 fn read_step<M: Machine>(text: &str) -> Result<M::Step, Fault> {

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Heading, Input, Layout, MAX_CIRCUITS, Memory, Movement, Orders, PointSet, Positions, Refusal,
-    Request, RouteSet, SegmentSet,
+    CircuitSet, Combined, Heading, Input, Layout, MAX_CIRCUITS, Memory, Movement, Orders, Phase, PointSet, Positions,
+    Refusal, Request, RouteSet, SegmentSet,
 };
 
 use crate::motion::Lie;
@@ -26,12 +26,29 @@ pub struct Reply {
     pub telegrams: [Option<Movement>; MAX_CIRCUITS],
 }
 
+/// What a station's device remembers, for pictures.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// The circuits that count as occupied.
+    pub occupied: CircuitSet,
+    /// The blocked circuits.
+    pub blocked: CircuitSet,
+    /// The phase of each route, and what it still holds of its path and of its overlap.
+    pub routes: Vec<(Phase, CircuitSet, CircuitSet)>,
+    /// The segments where the neighbour may send.
+    pub toward: SegmentSet,
+    /// The segments where this station sends.
+    pub away: SegmentSet,
+}
+
 /// A device of any size.
 pub trait Device: Send {
     /// One cycle.
     fn step(&mut self, input: Input) -> Reply;
     /// Starts it anew.
     fn restart(&mut self);
+    /// What it remembers.
+    fn view(&self) -> View;
 }
 
 /// The kernel's device for one layout.
@@ -63,6 +80,21 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
 
     fn restart(&mut self) {
         self.memory = Memory::INITIAL;
+    }
+
+    fn view(&self) -> View {
+        let (plan, state) = (self.layout.plan(), &self.memory.interlocking);
+        let mut occupied = CircuitSet::EMPTY;
+        for (number, cycles) in state.track.clear_for().iter().enumerate() {
+            occupied = occupied.or(CircuitSet::nth(number).only_if(*cycles < plan.clear));
+        }
+        let routes = plan
+            .routes
+            .iter()
+            .zip(&state.routes)
+            .map(|(route, state)| (state.phase, state.path(route).circuits, state.overlap(route).circuits));
+        let (toward, away) = (state.directions.toward, state.directions.away);
+        View { occupied, blocked: state.works.blocked, routes: routes.collect(), toward, away }
     }
 }
 
@@ -132,6 +164,11 @@ impl Station {
         self.device.restart();
         self.unblocked = false;
         self.consents.fill(Consent::default());
+    }
+
+    /// What the device remembers.
+    pub fn view(&self) -> View {
+        self.device.view()
     }
 
     /// Puts a telegram of the neighbour on its way: whether trains may be sent into `segment`.

@@ -14,7 +14,7 @@
 //! | [`fault`] | what fails, when, for how long |
 //! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
 //! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
-//! | [`record`], [`diagram`], [`charts`] | pictures |
+//! | [`record`], [`diagram`], [`charts`], [`film`] | pictures; a run as a film |
 //!
 //! A run is the same every time for one seed.
 
@@ -27,6 +27,7 @@ pub mod dispatcher;
 pub mod driver;
 pub mod event;
 pub mod fault;
+pub mod film;
 pub mod generate;
 pub mod ground;
 pub mod headline;

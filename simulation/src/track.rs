@@ -45,6 +45,8 @@ pub struct Site {
     pub circuits: Vec<usize>,
     /// The point of each number.
     pub points: Vec<usize>,
+    /// The piece of each track of its graph.
+    pub pieces: Vec<usize>,
     /// For each piece of the ground and each of its joints, the direction of travel of a train that leaves it there, as the
     /// station calls it; `None` for pieces of others.
     pub headings: Vec<Option<Vec<Heading>>>,
@@ -222,6 +224,7 @@ fn lay(
             }
             track.pieces.len() - 1
         });
+        site.pieces.push(at);
         site.headings.resize(track.pieces.len().max(site.headings.len()), None);
         // Marked as this station's; which way is which follows when all is laid.
         site.headings[at] = Some(Vec::new());

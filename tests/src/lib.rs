@@ -1,8 +1,10 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
-//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the benchmarks.
+//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the benchmarks;
+//! and a browser.
 
 pub mod approach;
 pub mod block_chart;
+pub mod browser;
 pub mod busy_station;
 pub mod device;
 pub mod drawing;

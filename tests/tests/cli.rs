@@ -47,6 +47,7 @@ Commands:
   line         Checks the data of a whole line, and what its stations and trains count on of each other
   schema       Prints a JSON Schema: of protocol 1, or of what `conform` and `vectors` write
   simulate     Runs a line with trains under the kernel's devices, judged by the truth and not by the devices; exit code 1 if it is unsafe
+  explore      Makes a page that plays a session, a trace of a model or a simulated line: track plan, trains, signals, rows over time
   completions  Prints what a shell needs to complete the commands
   help         Print this message or the help of the given subcommand(s)
 

@@ -19,6 +19,7 @@ pub const FOLDERS: &[&str] = &[
     "oracle",
     "waveform",
     "simulation",
+    "film",
     "tests",
     "spec",
     "evidence",

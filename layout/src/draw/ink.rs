@@ -21,6 +21,16 @@ svg.plan .platform{fill:#d8d8d8}\
 svg.plan .name{fill:#555;font-size:10px}\
 svg.plan .title{font-size:16px;font-weight:600;text-anchor:start}";
 
+/// What a drawn piece of track is.
+pub struct Drawn<'a> {
+    /// Its circuit.
+    pub circuit: &'a str,
+    /// Its number in the graph.
+    pub number: usize,
+    /// The point whose leg it is, and whether the reverse one.
+    pub leg: Option<(&'a str, bool)>,
+}
+
 /// A drawing under way. Places are relative to the tracks' own origin.
 pub struct Ink {
     text: String,
@@ -44,20 +54,29 @@ impl Ink {
         (x + self.origin.0, y + self.origin.1)
     }
 
-    fn label(&mut self, class: &str, at: (i32, i32), text: &str) {
+    fn label(&mut self, class: &str, kind: &str, at: (i32, i32), text: &str) {
         let (x, y) = self.at(at);
-        let _ = writeln!(self.text, "<text class=\"{class}\" x=\"{x}\" y=\"{y}\">{}</text>", escape(text));
+        let text = escape(text);
+        let of = if kind.is_empty() { String::new() } else { format!(" data-{kind}=\"{text}\"") };
+        let _ = writeln!(self.text, "<text class=\"{class}\"{of} x=\"{x}\" y=\"{y}\">{text}</text>");
     }
 
-    /// A piece of track.
-    pub fn track(&mut self, class: &str, title: &str, corners: &[(i32, i32)]) {
+    /// A piece of track. What it is stands in attributes, for pages that show more on it.
+    pub fn track(&mut self, piece: &Drawn<'_>, corners: &[(i32, i32)]) {
         let places: Vec<String> =
             corners.iter().map(|corner| self.at(*corner)).map(|(x, y)| format!("{x},{y}")).collect();
+        let (circuit, number) = (escape(piece.circuit), piece.number);
+        let (class, point) = match piece.leg {
+            None => ("track", String::new()),
+            Some((point, reverse)) => {
+                let (class, leg) = if reverse { ("track reverse", "reverse") } else { ("track", "normal") };
+                (class, format!(" data-point=\"{}\" data-leg=\"{leg}\"", escape(point)))
+            }
+        };
         let _ = writeln!(
             self.text,
-            "<polyline class=\"{class}\" points=\"{}\"><title>{}</title></polyline>",
-            places.join(" "),
-            escape(title)
+            "<polyline class=\"{class}\" data-circuit=\"{circuit}\" data-piece=\"{number}\"{point} points=\"{}\"><title>{circuit}</title></polyline>",
+            places.join(" ")
         );
     }
 
@@ -94,17 +113,17 @@ impl Ink {
 
     /// The name of a circuit.
     pub fn circuit(&mut self, at: (i32, i32), name: &str) {
-        self.label("circuit", at, name);
+        self.label("circuit", "circuit", at, name);
     }
 
     /// The name of a circuit that is hardly longer than its point.
     pub fn small_circuit(&mut self, at: (i32, i32), name: &str) {
-        self.label("circuit small", at, name);
+        self.label("circuit small", "circuit", at, name);
     }
 
     /// The name of a point.
     pub fn point(&mut self, at: (i32, i32), name: &str) {
-        self.label("point", at, name);
+        self.label("point", "point", at, name);
     }
 
     /// A signal at the left of the track for trains to the right (1) or to the left (−1).
@@ -113,12 +132,14 @@ impl Ink {
         let up = base_y - toward * 9;
         let _ = writeln!(
             self.text,
-            "<path class=\"mast\" d=\"M{base_x} {base_y}V{up}h{}\"/><circle class=\"lamp\" cx=\"{}\" cy=\"{up}\" r=\"3.5\"/>",
+            "<g data-signal=\"{}\"><path class=\"mast\" d=\"M{base_x} {base_y}V{up}h{}\"/><circle class=\"lamp\" cx=\"{}\" cy=\"{up}\" r=\"3.5\"/>",
+            escape(name),
             -toward * 6,
             base_x - toward * 9
         );
         let below = if toward > 0 { -7 } else { 14 };
-        self.label("signal", (x - toward * 14, y - toward * 13 + below), name);
+        self.label("signal", "", (x - toward * 14, y - toward * 13 + below), name);
+        self.text.push_str("</g>\n");
     }
 
     /// A stretch of plain line.
@@ -130,7 +151,7 @@ impl Ink {
             y - 20,
             right - left
         );
-        self.label("name", (i32::midpoint(left, right), height + 25), name);
+        self.label("name", "segment", (i32::midpoint(left, right), height + 25), name);
     }
 
     /// A platform below its track.
@@ -143,7 +164,7 @@ impl Ink {
             x + 10,
             y + 8
         );
-        self.label("name", (i32::midpoint(left, right), height + 18), name);
+        self.label("name", "", (i32::midpoint(left, right), height + 18), name);
     }
 
     /// The drawing.

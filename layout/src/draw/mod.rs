@@ -9,16 +9,25 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::form::{EndKind, Station};
 use crate::graph::Kind;
 use crate::model::Model;
-use ink::Ink;
+use ink::{Drawn, Ink};
 use orient::is_left;
 use place::{Placed, ROW, by_reverse, place};
 
 /// The margin around the tracks.
 const MARGIN: i32 = 50;
 
-/// The track plan of a layout. `station` gives its platforms.
+/// The track plan of a layout. `station` gives its platforms. The first circuit of the file is left of the last one.
 pub fn svg(station: &Station, model: &Model) -> String {
-    let placed = place(model);
+    drawn(station, model, true)
+}
+
+/// The same with the left ends of the file on the left: so it lies beside its neighbours, and a train that is told to go right goes right.
+pub fn svg_as_laid(station: &Station, model: &Model) -> String {
+    drawn(station, model, false)
+}
+
+fn drawn(station: &Station, model: &Model, may_turn: bool) -> String {
+    let placed = place(model, may_turn);
     let right = placed.joints.iter().map(|(x, _)| *x).max().unwrap_or(0);
     let bottom = placed.rows.iter().max().map_or(0, |row| i32::try_from(*row).unwrap_or(0) * ROW);
     let mut ink = Ink::new(&station.name, (right + 2 * MARGIN, bottom + 2 * MARGIN + 60), (MARGIN, MARGIN + 40));
@@ -35,20 +44,20 @@ fn tracks(ink: &mut Ink, model: &Model, placed: &Placed) {
     for (number, track) in model.graph.tracks.iter().enumerate() {
         let y = placed.y(number);
         let xs: Vec<i32> = track.joints.iter().map(|joint| placed.joints[*joint].0).collect();
-        let title = &model.circuits[track.circuit].name;
+        let circuit = &model.circuits[track.circuit].name;
         match track.kind {
-            Kind::Plain => ink.track("track", title, &[(xs[0], y), (xs[1], y)]),
-            Kind::Point(_) => {
+            Kind::Plain => ink.track(&Drawn { circuit, number, leg: None }, &[(xs[0], y), (xs[1], y)]),
+            Kind::Point(point) => {
+                let leg = |reverse| Some((model.points[point].name.as_str(), reverse));
                 let toward = if placed.joints[track.joints[1]].0 >= xs[0] { 1 } else { -1 };
                 let blade = xs[0] + toward * 8;
                 let (x, end) = placed.joints[track.joints[2]];
-                ink.track("track", title, &[(xs[0], y), (xs[1], y)]);
+                ink.track(&Drawn { circuit, number, leg: leg(false) }, &[(xs[0], y), (xs[1], y)]);
                 // A gap at the blade shows that the other leg is the normal one.
                 let away = if end > y { 5 } else { -5 };
                 let slant = (x - blade).abs().max(1);
                 ink.track(
-                    "track reverse",
-                    title,
+                    &Drawn { circuit, number, leg: leg(true) },
                     &[(blade + toward * (5 * slant / (end - y).abs().max(slant)).max(3), y + away), (x, end)],
                 );
             }

@@ -34,8 +34,8 @@ fn height(row: usize) -> i32 {
     i32::try_from(row).unwrap_or(0) * ROW
 }
 
-/// Places the tracks of a layout.
-pub fn place(model: &Model) -> Placed {
+/// Places the tracks of a layout. If it `may_turn`, its first circuit comes to lie left of its last one.
+pub fn place(model: &Model, may_turn: bool) -> Placed {
     let graph = &model.graph;
     let mut flipped = flipped(graph);
     let line_of = lines(graph);
@@ -45,7 +45,7 @@ pub fn place(model: &Model) -> Placed {
     // The first circuit of the file is left of the last one.
     let first = graph.tracks.iter().min_by_key(|track| track.circuit).map(|track| columns[track.joints[0]]);
     let last = graph.tracks.iter().max_by_key(|track| track.circuit).map(|track| columns[track.joints[0]]);
-    if first > last {
+    if may_turn && first > last {
         for turned in &mut flipped {
             *turned = !*turned;
         }

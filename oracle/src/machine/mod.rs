@@ -10,12 +10,14 @@ pub mod supervision;
 pub mod telegram;
 pub mod train;
 
+use atc_film::Film;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::value::RawValue;
 
 use crate::chart::Scene;
+use crate::film::Take;
 use crate::protocol::{self, Fault, PROTOCOL};
 
 /// A machine behind the protocol: a kernel machine, its state, and the forms of its messages.
@@ -53,6 +55,15 @@ pub trait Machine: Sized + 'static {
 
     /// The timing chart of a case.
     fn chart(config: &Self::Config, cycles: &[Cycle<Self>]) -> Scene;
+
+    /// Puts into a film what the machine shows besides the rows of its chart; false: nothing, and the film tells the values of
+    /// each step as they stand on the wire.
+    ///
+    /// # Errors
+    /// Why what the film is to be made with does not fit.
+    fn film(_: &Take<'_, Self>, _: &mut Film) -> Result<bool, String> {
+        Ok(false)
+    }
 }
 
 /// One logic cycle of a recorded case.
@@ -115,6 +126,8 @@ pub struct Kind {
     pub output: fn(&mut SchemaGenerator) -> Schema,
     /// Checks a recorded case against the kernel and draws it.
     pub chart: fn(&crate::trace::Record, crate::trace::Replies) -> Result<Scene, crate::trace::TraceError>,
+    /// Checks a recorded case against the kernel and makes its film.
+    pub film: fn(&crate::trace::Record, &crate::film::Setting) -> Result<Film, crate::trace::TraceError>,
 }
 
 /// Every machine of this oracle.
@@ -143,6 +156,7 @@ const fn kind<M: Machine>() -> Kind {
         step: SchemaGenerator::subschema_for::<M::Step>,
         output: SchemaGenerator::subschema_for::<M::Output>,
         chart: crate::trace::chart::<M>,
+        film: crate::trace::film::<M>,
     }
 }
 

@@ -4,6 +4,7 @@ use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Heading, Input, Layout, Orders, PointId, PointSet, Position, Positions, Request, RouteId,
     RouteSet, SegmentId, SegmentSet, SpeedCode, State, Travel, begins, silent, telegram,
 };
+pub use atc_kernel::interlocking::{Phase, Refusal};
 use atc_layout::{Description, Errors};
 
 use super::ground::{Ground, Mask, bit, members};
@@ -62,6 +63,8 @@ pub struct Said {
     pub confirmed: Mask,
     /// Whether the request was carried out.
     pub done: bool,
+    /// Why it was not, if it was refused.
+    pub refused: Option<Refusal>,
 }
 
 /// The telegram of one circuit.
@@ -73,6 +76,8 @@ pub struct Telegram {
     pub code: u8,
     /// Whether it is for a train that faces right; `None` where it is for none.
     pub right: Option<bool>,
+    /// The last circuit that the train may enter.
+    pub stop: usize,
 }
 
 /// A device.
@@ -81,6 +86,8 @@ pub trait Device {
     fn cycle(&mut self, read: &Read) -> Said;
     /// The telegram that the circuit sends in this cycle.
     fn telegram(&self, circuit: usize) -> Telegram;
+    /// The routes that are held, and their phases.
+    fn phases(&self) -> Vec<(usize, Phase)>;
     /// A restart: what it remembered is lost.
     fn restart(&mut self);
 }
@@ -146,6 +153,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
             permits: output.permits.bits(),
             confirmed: Mask::from(output.confirmed.bits()),
             done: output.answer == Some(Ok(())),
+            refused: output.answer.and_then(Result::err),
         }
     }
 
@@ -155,10 +163,16 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
         let movement = telegram(&self.layout, self.table.as_ref(), self.begins, circuit);
         if movement.is_open() {
             let right = movement.heading.map(|heading| heading == Heading::Right);
-            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, right }
+            let stop = usize::from(movement.stop.number());
+            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, right, stop }
         } else {
             Telegram::default()
         }
+    }
+
+    fn phases(&self) -> Vec<(usize, Phase)> {
+        let held = self.state.routes.iter().enumerate().filter(|(_, route)| route.is_held());
+        held.map(|(number, route)| (number, route.phase)).collect()
     }
 
     fn restart(&mut self) {

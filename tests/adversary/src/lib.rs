@@ -7,6 +7,7 @@
 //!   keeps traffic going meanwhile.
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
+//!   [`trace`]: the same for `oracle explore`, which makes a film of it.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
 
 pub mod arsenal;
@@ -24,6 +25,7 @@ pub mod moves;
 pub mod neighbour;
 pub mod point;
 pub mod stations;
+pub mod trace;
 pub mod train;
 pub mod words;
 pub mod world;

@@ -112,6 +112,11 @@ impl<'a> World<'a> {
         self.said.done && matches!(self.read.ask, Some(Ask::Set(_)))
     }
 
+    /// What the device read in the last cycle.
+    pub const fn read(&self) -> &Read {
+        &self.read
+    }
+
     /// How many trains there have been.
     pub const fn arrived(&self) -> usize {
         self.next - 1

@@ -8,6 +8,7 @@ mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use atc_film::Film;
 use atc_kernel::interlocking::{
     self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Position, Positions, RouteId,
     SegmentId, SegmentSet, SpeedCode, Station,
@@ -22,6 +23,7 @@ pub use words::{Heading, Phase, Reason, Side, Travel};
 
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
+use crate::film::{self, Take};
 use crate::kmh::shorten;
 
 /// The state of the kernel's machine, with room for every station.
@@ -191,7 +193,7 @@ impl Interlocked {
     }
 
     /// The speed of a code; of one that the layout does not have, that of the next lower one.
-    fn speed(&self, code: SpeedCode) -> u16 {
+    pub(crate) fn speed(&self, code: SpeedCode) -> u16 {
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
@@ -268,5 +270,9 @@ impl Machine for Interlocked {
 
     fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
         chart::interlocking::scene(config, cycles)
+    }
+
+    fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
+        film::interlocking::put(take, film).map(|()| true)
     }
 }

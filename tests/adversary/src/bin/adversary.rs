@@ -1,10 +1,10 @@
 //! Hunts for accidents: see `atc_adversary`.
 //!
-//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N] [--small yes|no]`
+//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N] [--small yes|no] [--trace FILE]`
 //! `adversary --known`
 //!
 //! With `--fault` it hunts as the table in `known.rs` has it for that fault, but for what the options behind it say; without, with all weapons.
-//! The scenario is told as small as it gets, with `--small no` as it was found. `--known` lists the table.
+//! The scenario is told as small as it gets, with `--small no` as it was found. `--trace` also writes it for `oracle explore --as-recorded`. `--known` lists the table.
 //! Exit code 1 if an accident was found.
 
 use std::process::ExitCode;
@@ -13,13 +13,14 @@ use std::time::Instant;
 use atc_adversary::arsenal::Arsenal;
 use atc_adversary::hunt::{Hunt, hunt, minimise};
 use atc_adversary::judge::Family;
-use atc_adversary::{device, known, stations, words};
+use atc_adversary::{device, known, stations, trace, words};
 
 struct Wanted {
     layout: Option<String>,
     random: Option<u64>,
     hunt: Hunt,
     small: bool,
+    trace: Option<String>,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -30,7 +31,7 @@ fn wanted() -> Result<Wanted, String> {
         arsenal: Arsenal::ALL,
         sought: Family::ALL.to_vec(),
     };
-    let mut wanted = Wanted { layout: None, random: None, hunt, small: true };
+    let mut wanted = Wanted { layout: None, random: None, hunt, small: true, trace: None };
     let mut arguments = std::env::args().skip(1);
     while let Some(option) = arguments.next() {
         let value = arguments.next().ok_or(format!("{option} needs a value"))?;
@@ -50,6 +51,7 @@ fn wanted() -> Result<Wanted, String> {
                 wanted.layout = Some(format!("layouts/{}.toml", fault.layout));
             }
             "--small" => wanted.small = value != "no",
+            "--trace" => wanted.trace = Some(value),
             "--family" => {
                 let named = |name: &str| Family::ALL.into_iter().find(|family| family.name() == name);
                 let all: Option<Vec<Family>> = value.split(',').map(named).collect();
@@ -121,5 +123,9 @@ fn run() -> Result<ExitCode, String> {
     };
     println!("an accident after {} cycles; {what}:", find.after);
     print!("{}", words::tell(&mut *device, &ground, &small));
+    if let Some(file) = &wanted.trace {
+        let trace = trace::of(&mut *device, &ground, &description, &small)?;
+        std::fs::write(file, trace.to_string()).map_err(|error| format!("{file} cannot be written: {error}"))?;
+    }
     Ok(ExitCode::FAILURE)
 }
