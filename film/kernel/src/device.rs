@@ -124,9 +124,10 @@ const fn refused(refusal: Refusal) -> u64 {
         Refusal::OverlapHeld => 6,
         Refusal::PointLocked => 7,
         Refusal::Occupied => 8,
-        Refusal::Blocked => 9,
-        Refusal::PointUnderTrain => 10,
-        Refusal::Direction => 11,
-        Refusal::Waiting => 12,
+        Refusal::Unswept => 9,
+        Refusal::Blocked => 10,
+        Refusal::PointUnderTrain => 11,
+        Refusal::Direction => 12,
+        Refusal::Waiting => 13,
     }
 }
