@@ -324,6 +324,21 @@ pub struct Scene<const R: usize, const N: usize, const S: usize> {
     pub output: Output<R>,
 }
 
+/// Rules that who draws values would break with nearly all of them: conflicts go both ways, and a route continues another one or not.
+pub fn order<const R: usize, const N: usize, const S: usize>(plan: &mut Plan<R, LENGTH, N, S>) {
+    let drawn = plan.routes;
+    for (number, route) in (0..).zip(&mut plan.routes) {
+        let it = RouteSet::nth(number);
+        for (other, beside) in (0..).zip(&drawn) {
+            let there = RouteSet::nth(other);
+            let declared = if other < number { beside.conflicts.meets(it) } else { route.conflicts.meets(there) };
+            route.conflicts = route.conflicts.without(there).or(there.only_if(declared));
+            let continues = route.continuing.meets(there) && beside.entry == drawn[number].last();
+            route.continuing = route.continuing.without(there).or(there.only_if(continues));
+        }
+    }
+}
+
 /// Any cycle of a device and one train, of which the invariant holds; with what `beside` draws for the plan, and makes of it, and with any
 /// other route in a state that may be beside that of the train.
 pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: usize>(
@@ -336,18 +351,7 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
     own.approach = own.approach.or(own.entry);
     let slow = super::any_circuits(e, "slow line (bits)", 0..=0);
     plan.line = SpeedLimits::from_parts(core::array::from_fn(|code| slow.only_if(code == usize::from(SLOW))));
-    // Rules that who draws values would break with nearly all of them: conflicts go both ways, and a route continues another one or not.
-    let drawn = plan.routes;
-    for (number, route) in (0..).zip(&mut plan.routes) {
-        let it = RouteSet::nth(number);
-        for (other, beside) in (0..).zip(&drawn) {
-            let there = RouteSet::nth(other);
-            let declared = if other < number { beside.conflicts.meets(it) } else { route.conflicts.meets(there) };
-            route.conflicts = route.conflicts.without(there).or(there.only_if(declared));
-            let continues = route.continuing.meets(there) && beside.entry == drawn[number].last();
-            route.continuing = route.continuing.without(there).or(there.only_if(continues));
-        }
-    }
+    order(&mut plan);
     let beside = beside(e, &mut plan);
     let layout = Layout::with_what_proofs_need(plan).ok();
     e.assume(layout.is_some());

@@ -6,11 +6,12 @@
 //!
 //! The train is a ghost: the kernel sees nothing of it but the circuits in which it is reported, and any other may be reported at any time.
 
-use super::train::LENGTH;
-use super::{any_cycle, held, kept};
+use super::train::{LENGTH, order};
+use super::{any_input, any_plan, any_state, held, kept};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
-use atc_kernel::interlocking::{CircuitSet, Phase, Request, Route, RouteState, State};
+use atc_kernel::interlocking::{CircuitSet, Layout, Phase, Plan, Request, Route, RouteState, State};
+use atc_kernel::time::Ticks;
 
 /// That of the train, and another one.
 const ROUTES: usize = 2;
@@ -70,7 +71,7 @@ impl Train {
     }
 
     /// Whether this is a train that there can be. Beyond the path it is in the overlap, or on the line.
-    fn is_one(&self, ground: &Ground) -> bool {
+    fn is_one(self, ground: &Ground) -> bool {
         let beyond = ground.out || !ground.route.overlap.circuits.is_empty();
         let ordered = self.tail <= self.front && FIRST <= self.front && self.front <= ground.over;
         ordered
@@ -81,7 +82,7 @@ impl Train {
     }
 
     /// The first and the last position where it is reported.
-    const fn seen(&self) -> (u8, u8) {
+    const fn seen(self) -> (u8, u8) {
         if self.late == 0 {
             return (self.tail, self.front);
         }
@@ -89,7 +90,7 @@ impl Train {
         (if self.tail < behind { self.tail } else { behind }, behind)
     }
 
-    fn is_reported(&self, ground: &Ground, occupied: CircuitSet) -> bool {
+    fn is_reported(self, ground: &Ground, occupied: CircuitSet) -> bool {
         let (first, last) = self.seen();
         let there = |position: u8| first <= position && position <= last;
         let beyond = if ground.out { ground.line } else { ground.route.overlap.circuits };
@@ -128,19 +129,48 @@ impl Train {
     }
 
     /// Whether it may still come to a place of its path, or slide beyond it, or has and is not reported there yet.
-    const fn goes(&self, ground: &Ground) -> bool {
+    const fn goes(self, ground: &Ground) -> bool {
         let unseen = self.late > 0 && (!ground.out || self.front < ground.over);
         self.tail < ground.last || unseen || self.moving > 0 && !ground.out
     }
+}
 
-    /// Whether it is on its way out to the line, or on it.
-    const fn goes_out(&self, ground: &Ground, left: bool) -> bool {
-        ground.out && !left
+impl Ground {
+    fn of(plan: &Plan<ROUTES, LENGTH, 1, 1>) -> Self {
+        let (route, segment) = (plan.routes[0], plan.segments[0]);
+        let mut line = 0;
+        for (place, circuit) in (0..).zip(&segment.circuits) {
+            line |= if place < segment.length { circuit.bits() } else { 0 };
+        }
+        Self {
+            route,
+            last: route.length,
+            over: route.length.wrapping_add(1),
+            line: CircuitSet::from_bits(line),
+            out: route.to.bits() & 1 == 1,
+            loss: plan.loss,
+            standstill: plan.standstill.0,
+            start: plan.start.0,
+        }
+    }
+
+    /// The circuits of the path: a mask.
+    fn path(&self) -> u64 {
+        let mut path = 0;
+        for (place, element) in (0..).zip(&self.route.path) {
+            path |= if place < self.route.length { element.circuits.bits() } else { 0 };
+        }
+        path
+    }
+
+    /// Whether the train is on its way out to the line, or on it.
+    const fn goes_out(&self, left: bool) -> bool {
+        self.out && !left
     }
 }
 
 /// What the train still needs: circuits from its tail on, and points; the overlap with them.
-fn needed(train: &Train, ground: &Ground) -> (CircuitSet, u32) {
+fn needed(train: Train, ground: &Ground) -> (CircuitSet, u32) {
     let (mut circuits, mut points) = (0, 0);
     for (position, element) in (FIRST..).zip(&ground.route.path) {
         if train.goes(ground) && train.tail <= position && position <= ground.last {
@@ -156,7 +186,7 @@ fn needed(train: &Train, ground: &Ground) -> (CircuitSet, u32) {
 }
 
 /// The invariant of the train and what the device has not swept.
-fn holds<const S: usize>(train: &Train, ground: &Ground, device: &State<ROUTES, S>) -> bool {
+fn holds<const S: usize>(train: Train, ground: &Ground, device: &State<ROUTES, S>) -> bool {
     let unswept = device.unswept;
     let starting = device.started.0 < ground.start;
     let (late, moving) = (u32::from(train.late), u32::from(train.moving));
@@ -185,6 +215,40 @@ fn begins(route: &Route<LENGTH>, ground: &Ground, from: u8) -> bool {
         begins |= from <= position && position <= ground.last && element.circuits == route.entry;
     }
     begins && route.heading == ground.route.heading
+}
+
+/// Any layout and any valid state of it. What is drawn is made valid where who draws values would break it with nearly all of them.
+fn any_device<E: Engine + ?Sized>(e: &mut E) -> Option<(Layout<ROUTES, LENGTH, 1, 1>, State<ROUTES, 1>)> {
+    let mut plan = any_plan(e);
+    order(&mut plan);
+    let layout = Layout::with_what_proofs_need(plan).ok();
+    e.assume(layout.is_some());
+    let layout = layout?;
+    let plan = layout.plan();
+    let mut device: State<ROUTES, 1> = any_state(e);
+    device.works.confirmed = device.works.confirmed.and(device.works.blocked);
+    let directions = &mut device.directions;
+    directions.away = directions.away.without(directions.toward);
+    directions.came = directions.came.or(directions.toward).without(directions.away);
+    let time = directions.withdrawn[0];
+    let shorter = if time < plan.turn { time } else { plan.turn };
+    let (toward, away) = (directions.toward.bits() & 1 == 1, directions.away.bits() & 1 == 1);
+    directions.withdrawn[0] = if toward {
+        Ticks(0)
+    } else if away {
+        plan.turn
+    } else {
+        shorter
+    };
+    for number in 0..ROUTES {
+        let valid = device.routes[number].is_valid(&plan.routes[number]);
+        device.routes[number] = if valid { device.routes[number] } else { RouteState::IDLE };
+        let beside = number == 0 || device.compatible(&layout, number, 0);
+        device.routes[number] = if beside { device.routes[number] } else { RouteState::IDLE };
+    }
+    let valid = device.is_valid(&layout);
+    e.assume(valid);
+    valid.then_some((layout, device))
 }
 
 harness! {
@@ -219,28 +283,13 @@ harness! {
         Out: "the line is asked for from outside while the train is in the path of a route out",
     }
     {
-        let Some((layout, mut before, input)) = any_cycle::<E, ROUTES, LENGTH, 1, 1>(e) else { return };
+        let Some((layout, mut before)) = any_device(e) else { return };
+        let input = any_input(e);
         let plan = layout.plan();
         let (route, segment) = (plan.routes[0], plan.segments[0]);
-        let mut line = 0;
-        for (place, circuit) in (0..).zip(&segment.circuits) {
-            line |= if place < segment.length { circuit.bits() } else { 0 };
-        }
-        let ground = Ground {
-            route,
-            last: route.length,
-            over: route.length.wrapping_add(1),
-            line: CircuitSet::from_bits(line),
-            out: route.to.bits() & 1 == 1,
-            loss: plan.loss,
-            standstill: plan.standstill.0,
-            start: plan.start.0,
-        };
+        let ground = Ground::of(plan);
+        let path = ground.path();
         // Rules of engineering: LAY-2.
-        let mut path = 0;
-        for (place, element) in (0..).zip(&route.path) {
-            path |= if place < route.length { element.circuits.bits() } else { 0 };
-        }
         let apart = (path & route.overlap.circuits.bits() | (path | route.overlap.circuits.bits()) & route.entry.bits()) == 0;
         let engineered = route.exists() && !route.cab_signalled && route.entry.is_one() && apart
             && (!ground.out || segment.length > 0 && segment.throat == route.last() && route.overlap.circuits.is_empty());
@@ -252,22 +301,22 @@ harness! {
         }
         // Where nothing else is drawn, what the train needs is unswept.
         let whole = before.unswept.circuits == CircuitSet::ALL;
-        let (own, _) = needed(&earlier, &ground);
+        let (own, _) = needed(earlier, &ground);
         before.unswept.circuits = if whole { CircuitSet::ALL } else { before.unswept.circuits.or(own) };
         let left = any_flag(e, "the train has left the line (odd: yes)") && ground.out && earlier.tail >= ground.over;
-        let quiet = |device: &State<ROUTES, 1>, train: &Train, left: bool| {
+        let quiet = |device: &State<ROUTES, 1>, left: bool| {
             let directions = device.directions;
             let given = (directions.toward.bits() | directions.came.bits()) & 1 == 1;
-            !train.goes_out(&ground, left) || !given && !device.works.confirmed.meets(ground.line)
+            !ground.goes_out(left) || !given && !device.works.confirmed.meets(ground.line)
         };
-        let under = |train: &Train| {
+        let under = |train: Train| {
             let mut under = 0;
             for (position, element) in (FIRST..).zip(&ground.route.path) {
                 under |= if train.tail <= position && position <= train.front && position <= ground.last { element.circuits.bits() } else { 0 };
             }
             CircuitSet::from_bits(under)
         };
-        let free = |device: &State<ROUTES, 1>, train: &Train| {
+        let free = |device: &State<ROUTES, 1>, train: Train| {
             let (ahead, _) = needed(train, &ground);
             let mut free = !device.works.confirmed.meets(ahead.or(under(train)));
             for (number, state) in device.routes.iter().enumerate() {
@@ -277,7 +326,7 @@ harness! {
             }
             free
         };
-        let invariant = holds(&earlier, &ground, &before) && quiet(&before, &earlier, left) && free(&before, &earlier);
+        let invariant = holds(earlier, &ground, &before) && quiet(&before, left) && free(&before, earlier);
         e.assume(invariant);
         let starting = before.started.0 < ground.start;
         let train = earlier.moves(e, &ground);
@@ -290,8 +339,8 @@ harness! {
         e.suppose("start-outlasts-running", !unseen || ends);
 
         let (after, output) = layout.interlock(before, input);
-        e.claim(Claim::Holds as u32, holds(&train, &ground, &after) && train.is_one(&ground));
-        let (ahead, points) = needed(&train, &ground);
+        e.claim(Claim::Holds as u32, holds(train, &ground, &after) && train.is_one(&ground));
+        let (ahead, points) = needed(train, &ground);
         let done = output.answer == Some(Ok(()));
         let (mut set, mut declared, mut own) = (true, true, false);
         for (number, other) in plan.routes.iter().enumerate() {
@@ -313,14 +362,14 @@ harness! {
         for (other, grant) in plan.routes.iter().zip(&contents.grants) {
             granted |= grant.circuits.meets(ahead) && !begins(other, &ground, FIRST);
         }
-        e.claim(Claim::Apart as u32, free(&after, &train) && !granted);
+        e.claim(Claim::Apart as u32, free(&after, train) && !granted);
         let driven = output.drives.points().bits();
         let over = plan.points[0].detectors.meets(ahead);
         e.claim(Claim::Points as u32, driven & points == 0 && !(over && driven & 1 == 1));
-        e.claim(Claim::Staff as u32, !output.confirmed.meets(ahead.or(under(&train))));
-        let goes_out = train.goes_out(&ground, left);
+        e.claim(Claim::Staff as u32, !output.confirmed.meets(ahead.or(under(train))));
+        let goes_out = ground.goes_out(left);
         let taken = output.permits.bits() & 1 == 1 || output.confirmed.meets(ground.line);
-        e.claim(Claim::Line as u32, quiet(&after, &train, left) && !(goes_out && taken));
+        e.claim(Claim::Line as u32, quiet(&after, left) && !(goes_out && taken));
 
         let refused = output.answer == Some(Err(atc_kernel::interlocking::Refusal::Unswept));
         e.cover(Cover::Goes as u32, !starting && matches!(input.request, Some(Request::Set(_))) && refused && train.tail < ground.last);

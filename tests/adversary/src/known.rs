@@ -70,7 +70,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
         old_rule: &["ilk-release-without-rear"],
-        seed: 11,
+        seed: 142,
         model: "interlocking-loop-falsely-occupied",
     },
     Fault {
@@ -92,7 +92,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment],
         layout: LOOP,
         old_rule: &["point-settles-at-once"],
-        seed: 6,
+        seed: 4,
         model: "interlocking-loop-settling",
     },
     Fault {
@@ -147,7 +147,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment],
         layout: LOOP,
         old_rule: &["start-moves"],
-        seed: 5,
+        seed: 6,
         model: "interlocking-loop-start",
     },
     Fault {
