@@ -1,5 +1,6 @@
 "use strict";
-// The kernel in the page, where it was put in: a reader goes on from a step with other inputs, and the kernel itself answers.
+// The kernel in the page, where it was put in: a reader goes on from a step with other inputs, and the kernel itself
+// answers.
 const Inside = (() => {
   const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   const words = (text) => new BigUint64Array(bytes(text).buffer);
@@ -37,7 +38,8 @@ const Inside = (() => {
     return kind === 4 ? `turn ${segment[number]} ${which ? "away" : "toward"}` : ask[kind];
   };
 
-  // A frame as a film has it, from the words of an input and of what the kernel put out. `because` of a refusal is not in them.
+  // A frame as a film has it, from the words of an input and of what the kernel put out. `because` of a refusal is not
+  // in them.
   const frame = (kernel, input, out) => {
     const said = new Map();
     const say = (kind, name, what, text) => text && said.set(Logic.key(kind, name, what), text);

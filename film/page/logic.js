@@ -168,7 +168,8 @@ const Logic = (() => {
       return { piece: Number(piece), reverse: leg === "r", forward: way === "+" };
     });
 
-  // The same with the shares of each piece, from its first joint, that the train covers. `front` and `tail` are shares along its travel.
+  // The same with the shares of each piece, from its first joint, that the train covers. `front` and `tail` are shares
+  // along its travel.
   const covered = (text, front, tail) => {
     const list = pieces(text);
     return list.map((one, place) => {

@@ -36,7 +36,8 @@ impl Film {
         self.events.push(Event { at, class, text });
     }
 
-    /// Adds an event for each change, after the first frame, of the channels of a kind. `told` has the name and the new word.
+    /// Adds an event for each change, after the first frame, of the channels of a kind. `told` has the name and the new
+    /// word.
     pub fn happenings(
         &mut self,
         (kind, what): (&str, &str),

@@ -61,8 +61,8 @@ pub struct Clock {
     pub last: Option<u64>,
 }
 
-/// A drawing (SVG). Its elements say what they show: `data-circuit`, `data-piece`, `data-point` with `data-leg`, `data-signal`,
-/// `data-segment`.
+/// A drawing (SVG). Its elements say what they show: `data-circuit`, `data-piece`, `data-point` with `data-leg`,
+/// `data-signal`, `data-segment`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// What it shows.
@@ -119,8 +119,8 @@ pub struct Stretch {
     pub to_m: u32,
 }
 
-/// The kernel's interlocking as a WebAssembly module (`atc-film-kernel`), with what it needs to run the session again. Binary data
-/// are in base64; words of 64 bits are little-endian.
+/// The kernel's interlocking as a WebAssembly module (`atc-film-kernel`), with what it needs to run the session again.
+/// Binary data are in base64; words of 64 bits are little-endian.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Kernel {
     /// The module.
@@ -131,8 +131,8 @@ pub struct Kernel {
     pub inputs: Vec<String>,
     /// The number of the input of each step.
     pub steps: Vec<u32>,
-    /// The names of its numbers: `circuit`, `point`, `route`, `signal` (of each route), `segment`; and the words of its answers:
-    /// `phase`, `refusal`.
+    /// The names of its numbers: `circuit`, `point`, `route`, `signal` (of each route), `segment`; and the words of its
+    /// answers: `phase`, `refusal`.
     pub names: BTreeMap<String, Vec<String>>,
     /// The speed of each code, in km/h.
     pub speeds_kmh: Vec<u16>,

@@ -1,9 +1,10 @@
 //! A film: what a recorded session or a simulation looked like, frame by frame, and the page that plays it.
 //!
-//! * [`Film`] is the data: everything that changes is a [`Channel`] of words or a [`Curve`] of numbers, stored as changes. Any
-//!   frame is found without those before it.
+//! * [`Film`] is the data: everything that changes is a [`Channel`] of words or a [`Curve`] of numbers, stored as
+//!   changes. Any frame is found without those before it.
 //! * [`Film::page`] is one HTML file with everything in it. It opens from a file, without a network or a server.
-//! * [`Film::channel`], [`Film::curve`] and [`Film::happenings`] fill it; [`Film::word_at`] and [`Film::number_at`] read it back.
+//! * [`Film::channel`], [`Film::curve`] and [`Film::happenings`] fill it; [`Film::word_at`] and [`Film::number_at`]
+//!   read it back.
 //!
 //! The crate knows nothing of the kernel: who makes a film says what is in it.
 

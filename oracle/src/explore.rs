@@ -1,5 +1,6 @@
 //! `oracle explore`: a session, a trace of a model or a simulated line as a page that plays it.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -141,9 +142,10 @@ fn differs(record: &Record) -> bool {
 fn done(film: &Film, mut remarks: String, differs: bool) -> Done {
     let page = film.page();
     if page.len() > TOO_LONG {
-        remarks += &format!(
-            "the page has {} MB: browsers are slow with it; record less, or a shorter --time\n",
-            page.len() / 1_000_000
+        let megabytes = page.len() / 1_000_000;
+        let _ = writeln!(
+            remarks,
+            "the page has {megabytes} MB: browsers are slow with it; record less, or a shorter --time"
         );
     }
     Done { page, remarks, differs }

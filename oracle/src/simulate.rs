@@ -1,4 +1,5 @@
-//! `oracle simulate`: a line with trains, one run or a campaign of them, and the headline; the film of a run for `oracle explore`.
+//! `oracle simulate`: a line with trains, one run or a campaign of them, and the headline; the film of a run for
+//! `oracle explore`.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! A run as a film: the plan of every station with the trains on it, trains over time and distance, cabs, signals, events.
+//! A run as a film: the plan of every station with the trains on it, trains over time and distance, cabs, signals,
+//! events.
 //!
 //! Trains and points are shown as they truly are; what is reported, counted, held and told is what the devices say.
 

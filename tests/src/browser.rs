@@ -131,7 +131,8 @@ impl Browser {
         self.settle();
     }
 
-    /// Presses the mouse at one place of an element, moves it to another, and lets it go: places as shares of its width.
+    /// Presses the mouse at one place of an element, moves it to another, and lets it go: places as shares of its
+    /// width.
     ///
     /// # Panics
     /// If there is no such element.

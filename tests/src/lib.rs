@@ -1,6 +1,6 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
-//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the benchmarks;
-//! and a browser.
+//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the
+//! benchmarks; and a browser.
 
 pub mod approach;
 pub mod block_chart;

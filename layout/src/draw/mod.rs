@@ -21,7 +21,8 @@ pub fn svg(station: &Station, model: &Model) -> String {
     drawn(station, model, true)
 }
 
-/// The same with the left ends of the file on the left: so it lies beside its neighbours, and a train that is told to go right goes right.
+/// The same with the left ends of the file on the left: so it lies beside its neighbours, and a train that is told to
+/// go right goes right.
 pub fn svg_as_laid(station: &Station, model: &Model) -> String {
     drawn(station, model, false)
 }

@@ -1,4 +1,5 @@
-//! The film of an interlocking: a track plan with circuits, routes, signals and points, and what is asked, ordered and told.
+//! The film of an interlocking: a track plan with circuits, routes, signals and points, and what is asked, ordered and
+//! told.
 
 use atc_film::{Class, Film, Plan};
 use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet};

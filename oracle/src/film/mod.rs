@@ -1,7 +1,8 @@
-//! Films of recorded sessions and of the traces of models: [`film`] runs a case through the kernel and lays out its frames.
+//! Films of recorded sessions and of the traces of models: [`film`] runs a case through the kernel and lays out its
+//! frames.
 //!
-//! Every machine gets the rows of its chart and the values of each step. The interlocking gets a track plan: from the layout of
-//! its configuration, from one that is given, or a schematic after the paths of its routes.
+//! Every machine gets the rows of its chart and the values of each step. The interlocking gets a track plan: from the
+//! layout of its configuration, from one that is given, or a schematic after the paths of its routes.
 
 mod inside;
 pub(crate) mod interlocking;

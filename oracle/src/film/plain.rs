@@ -1,4 +1,5 @@
-//! The values of each step as they stand on the wire, for machines without a picture of their own; and where a record differs.
+//! The values of each step as they stand on the wire, for machines without a picture of their own; and where a record
+//! differs.
 
 use atc_film::{Class, Film};
 use serde_json::Value;
@@ -67,7 +68,8 @@ pub(super) fn text(value: &Value) -> String {
     }
 }
 
-/// Where the record says something else than the kernel: the film shows the record, and what the kernel says stands beside it.
+/// Where the record says something else than the kernel: the film shows the record, and what the kernel says stands
+/// beside it.
 pub(super) fn differences<M: Machine>(film: &mut Film, take: &Take<'_, M>) {
     let kernel: Vec<String> = take
         .cycles

@@ -1,5 +1,5 @@
-//! A schematic for a plan in the kernel's own terms, which says what follows what and nothing of places: circuits as bars, in
-//! columns from left to right after the paths of the routes.
+//! A schematic for a plan in the kernel's own terms, which says what follows what and nothing of places: circuits as
+//! bars, in columns from left to right after the paths of the routes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;

@@ -200,7 +200,8 @@ fn trains(film: &mut Film, values: &[&Value]) {
         film.trains.push(name);
     }
     let mut columns = vec![("place", "where"), ("front", "front in"), ("rear", "rear in"), ("heading", "heading")];
-    // What knows metres also says which pieces a train is on, and how far into the first and the last one, in thousandths.
+    // What knows metres also says which pieces a train is on, and how far into the first and the last one, in
+    // thousandths.
     let number =
         |value: &Value, train: usize, what: &str| value.get(train).and_then(|at| at.get(what)).and_then(Value::as_i64);
     if values.iter().any(|value| (0..most).any(|train| number(value, train, "front_share").is_some())) {

@@ -56,8 +56,8 @@ pub trait Machine: Sized + 'static {
     /// The timing chart of a case.
     fn chart(config: &Self::Config, cycles: &[Cycle<Self>]) -> Scene;
 
-    /// Puts into a film what the machine shows besides the rows of its chart; false: nothing, and the film tells the values of
-    /// each step as they stand on the wire.
+    /// Puts into a film what the machine shows besides the rows of its chart; false: nothing, and the film tells the
+    /// values of each step as they stand on the wire.
     ///
     /// # Errors
     /// Why what the film is to be made with does not fit.

@@ -1,5 +1,5 @@
-//! A find as a trace for `oracle explore --as-recorded`, in the form of the models' traces: what the device read and said in each cycle,
-//! and what was true on the ground.
+//! A find as a trace for `oracle explore --as-recorded`, in the form of the models' traces: what the device read and
+//! said in each cycle, and what was true on the ground.
 
 use atc_layout::Description;
 use serde_json::{Map, Value, json};

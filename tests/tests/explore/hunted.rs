@@ -1,5 +1,5 @@
-//! What the adversary finds is a film: what it says that the device read and answered is what the kernel reads and answers, and its
-//! trains are where they are.
+//! What the adversary finds is a film: what it says that the device read and answered is what the kernel reads and
+//! answers, and its trains are where they are.
 
 use atc_adversary::arsenal::Arsenal;
 use atc_adversary::attacker::Attacker;

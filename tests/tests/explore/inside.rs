@@ -1,5 +1,5 @@
-//! The kernel in the page: its words there and back; and in a browser, that it says what the film says, and what the kernel outside says
-//! to a reader's own inputs.
+//! The kernel in the page: its words there and back; and in a browser, that it says what the film says, and what the
+//! kernel outside says to a reader's own inputs.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

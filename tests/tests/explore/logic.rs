@@ -1,4 +1,5 @@
-//! What the page decides, without a browser: its logic run by Node, where there is one. What the data say is tested in Rust in any case.
+//! What the page decides, without a browser: its logic run by Node, where there is one. What the data say is tested in
+//! Rust in any case.
 
 use std::process::Command;
 

@@ -1,5 +1,5 @@
-//! Films: that each frame says what the machine answered in it; that the command makes whole pages or a clear error; and that the
-//! page plays, in a browser where there is one.
+//! Films: that each frame says what the machine answered in it; that the command makes whole pages or a clear error;
+//! and that the page plays, in a browser where there is one.
 
 mod command;
 mod data;

@@ -1,5 +1,7 @@
-//! The page in a headless Chromium: keys, clicks, drags and playing, with real input; what is on the plan; sizes; printing.
-//! Where there is no Chromium this says so and tests nothing: see `logic.rs` and `data.rs` for what is tested without one.
+//! The page in a headless Chromium: keys, clicks, drags and playing, with real input; what is on the plan; sizes;
+//! printing.
+//! Where there is no Chromium this says so and tests nothing: see `logic.rs` and `data.rs` for what is tested without
+//! one.
 
 use std::path::PathBuf;
 
@@ -98,7 +100,8 @@ fn the_plan_shows_the_frame() {
     assert!(table.as_str().is_some_and(|text| text.contains("W-1") && text.contains("proceed at W")), "{table}");
 }
 
-/// What must hold of the page at any size: no letter below 12 px, nothing wider than the window but what scrolls in itself.
+/// What must hold of the page at any size: no letter below 12 px, nothing wider than the window but what scrolls in
+/// itself.
 const READABLE: &str = "(() => {
   const small = [];
   for (const it of document.querySelectorAll('body *')) {

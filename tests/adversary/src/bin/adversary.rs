@@ -1,11 +1,11 @@
 //! Hunts for accidents: see `atc_adversary`.
 //!
-//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N] [--small yes|no] [--trace FILE]`
-//! `adversary --known`
+//! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N]
+//! [--small yes|no] [--trace FILE]` `adversary --known`
 //!
 //! With `--fault` it hunts as the table in `known.rs` has it for that fault, but for what the options behind it say; without, with all weapons.
-//! The scenario is told as small as it gets, with `--small no` as it was found. `--trace` also writes it for `oracle explore --as-recorded`. `--known` lists the table.
-//! Exit code 1 if an accident was found.
+//! The scenario is told as small as it gets, with `--small no` as it was found. `--trace` also writes it for `oracle
+//! explore --as-recorded`. `--known` lists the table. Exit code 1 if an accident was found.
 
 use std::process::ExitCode;
 use std::time::Instant;
