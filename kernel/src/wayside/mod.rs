@@ -8,12 +8,14 @@
 //! Requirements: `spec/wayside.md`, WAY-1 to WAY-23. Read in this order: [`Equipment`] and [`Wayside`] (parameters), [`Input`] and
 //! [`Output`], [`State`] with its `is_valid`, [`Wayside::read`] and [`Wayside::send`], of which a step is made.
 
+mod chain;
 mod consent;
 mod counters;
 mod join;
 mod signals;
 mod speech;
 
+pub use chain::{Chain, Place, Way};
 pub use consent::{Consent, Message, Permission, Session, Stamp, check_life};
 pub use counters::{Counters, Framed};
 pub use join::{Counted, Join, Spot};
