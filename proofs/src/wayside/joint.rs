@@ -279,3 +279,137 @@ harness! {
         e.cover(Cover::More as u32, matches!(made, Err(WaysideError::CircuitWithoutSection(_))));
     }
 }
+
+/// The metres of the circuit at `place` of the track, as a sum's part.
+fn metres(track: &Track, place: usize) -> u32 {
+    u32::from(track.lengths[place])
+}
+
+harness! {
+    /// Whatever circuits are given for the sections: if the joint is accepted, each metre of the line is on the section that reports the circuit which the layout has
+    /// there; behind a ghost train's front every metre under it is on the front's section, on one of the k behind it, or on a circuit
+    /// that is held before the entry, as far as the layout goes; and the circuit beyond the exit is looked at. So the scene of
+    /// `t_way_1` and `t_way_2` supposes nothing of an accepted joint.
+    t_way_1_joint(e)
+    theorem "T-WAY-1";
+    requirements ["WAY-1", "WAY-11", "WAY-12", "WAY-13", "WAY-14"];
+    assumptions ["parameters-are-the-lines", "hold-covers-train", "train-whole"];
+    built_in &[
+        ("parameters-are-the-lines", "the ground of a section is that of the circuit that is given for it"),
+        ("hold-covers-train", "the ghost is no longer than the longest train of the plan"),
+        ("train-whole", "the ghost ends its length behind its front"),
+    ];
+    bound BOUND;
+    cases CASES.len();
+    unwind 65 = 1 + LONGEST;
+    apart [0 1 2 3];
+    claims {
+        Circuit: "the section with the metre, by the line, is on the circuit with the metre, by the layout",
+        Held: "a metre of the line under the train is on the front's section or one of the k behind it",
+        Before: "a metre before the entry under the train is on a circuit of the places that are held, or beyond where the layout ends",
+        Beyond: "the circuit that begins where the line ends is one of those beyond the exit",
+        Others: "nothing is on a section that the line does not have",
+    }
+    covers {
+        Third: "the metre is on the third section",
+        Whole: "the train reaches over a whole section",
+        Across: "the train reaches over the entry, two places beyond it",
+        Out: "the train reaches out of what the layout knows",
+    }
+    {
+        let Some(line) = any_line(e) else { return };
+        let (track, chain) = any_track(e, line.travel);
+        let made = Counted::on(&chain, &line.join()).ok();
+        e.assume(made.is_some());
+        let Some(made) = made else { return };
+        // By the layout: where the circuit of the entry section begins.
+        let (block, section) = line.spot(0);
+        let first = line.given[block][section].map(CircuitId::number);
+        let mut begins = TRACK;
+        for place in 0..TRACK {
+            if first.is_some() && track.circuits[place] == first {
+                begins = place;
+            }
+        }
+        // The ghost's front, in metres from there, and a metre under the train, so far behind the front.
+        let front = u32::from(e.word("front beyond the entry (m)", 0..=12));
+        let behind = u32::from(e.word("a metre under the train, from its front (m)", 0..=7));
+        e.assume(behind == 0 || behind < u32::from(line.train));
+        // By the line: the sections' grounds follow each other from the entry.
+        let (mut front_on, mut on, mut end) = (None, None, 0_u32);
+        for passed in 0..MOST {
+            if passed < line.count() {
+                let (block, section) = line.spot(passed);
+                let its = line.given[block][section].map(CircuitId::number);
+                let mut length = 0;
+                for place in 0..TRACK {
+                    length = if its.is_some() && track.circuits[place] == its { metres(&track, place) } else { length };
+                }
+                let there = |metre: u32| metre >= end && metre < end + length;
+                front_on = if there(front) { Some(passed) } else { front_on };
+                on = if front >= behind && there(front - behind) { Some(passed) } else { on };
+                end += length;
+            }
+        }
+        e.assume(front_on.is_some());
+        let front_on = front_on.unwrap_or(0);
+        // By the layout: the place with the metre.
+        let (mut place_of, mut ahead) = (None, 0_u32);
+        for place in 0..TRACK {
+            if place >= begins {
+                let its = metres(&track, place);
+                let metre = front.wrapping_sub(behind);
+                place_of = if front >= behind && metre >= ahead && metre < ahead + its { Some(place) } else { place_of };
+                ahead += its;
+            }
+        }
+        let (mut back_of, mut passed_metres, mut known) = (None, 0_u32, true);
+        for place in (0..TRACK).rev() {
+            if place < begins && known {
+                known = track.circuits[place].is_some();
+                let its = metres(&track, place);
+                let metre = behind.wrapping_sub(front);
+                if known && behind > front && metre > passed_metres && metre <= passed_metres + its {
+                    (back_of, place_of) = (Some(begins - 1 - place), Some(place));
+                }
+                passed_metres += its;
+            }
+        }
+        let mut circuit = None;
+        for place in 0..TRACK {
+            circuit = if place_of == Some(place) { track.circuits[place] } else { circuit };
+        }
+        let bits = |circuit: Option<u8>| circuit.map_or(0, |number| 1_u64 << (number & 7));
+        let (mut reports, mut others) = (0, 0);
+        for passed in 0..MOST {
+            let (block, section) = if passed < line.count() { line.spot(passed) } else { (0, 0) };
+            if on == Some(passed) {
+                reports = made.sections()[block][section].bits();
+            }
+        }
+        for block in 0..2 {
+            for section in 0..MOST {
+                others |= if section < line.sizes[block] { 0 } else { made.sections()[block][section].bits() };
+            }
+        }
+        e.claim(Claim::Circuit as u32, on.is_none() || circuit.is_some() && reports == bits(circuit));
+        let hold = usize::from(line.hold);
+        e.claim(Claim::Held as u32, front < behind || on.is_some_and(|on| on <= front_on && front_on - on <= hold));
+        let mut held = false;
+        for back in 0..MOST {
+            let its = back_of == Some(back) && front_on + back < hold;
+            held |= its && circuit.is_some() && made.before()[back].bits() == bits(circuit);
+        }
+        e.claim(Claim::Before as u32, front >= behind || held || back_of.is_none());
+        let mut next = None;
+        for place in 0..TRACK {
+            next = if place == begins + line.count() { track.circuits[place] } else { next };
+        }
+        e.claim(Claim::Beyond as u32, next.is_some() && made.beyond().bits() & bits(next) != 0);
+        e.claim(Claim::Others as u32, others == 0);
+        e.cover(Cover::Third as u32, on == Some(2));
+        e.cover(Cover::Whole as u32, front >= behind && on.is_some_and(|on| on + 1 < front_on));
+        e.cover(Cover::Across as u32, back_of == Some(1));
+        e.cover(Cover::Out as u32, front < behind && back_of.is_none());
+    }
+}
