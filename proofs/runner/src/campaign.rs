@@ -178,6 +178,7 @@ pub const HARD: [&str; 13] = [
     "t_per_5_behind",
     "t_per_6_announced",
     "t_blk_4_geometry",
+    "way_join",
     "t_pos_1_levels",
     "t_pos_2",
 ];

@@ -71,7 +71,7 @@ fn wrong() -> Vec<Value> {
         change(|config| config["life_ms"] = 5000.into()),
         change(|config| config["counted"]["direction"] = "down".into()),
         change(|config| config["counted"]["travel"] = "away".into()),
-        change(|config| config["counted"]["train_m"] = 211.into()),
+        change(|config| config["counted"]["train_m"] = 221.into()),
         change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["W2"])),
         change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["E1"])),
         change(|config| config["counted"]["blocks"] = json!([])),
@@ -83,7 +83,15 @@ fn wrong() -> Vec<Value> {
             config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("E2"));
         }),
         away_to_the_end(),
+        away_with(211),
     ]
+}
+
+/// A counted line of trains of this length, whose hold at the entry is one circuit of 210 m.
+fn away_with(train_m: u64) -> Value {
+    let mut config = away(example());
+    config["counted"]["train_m"] = train_m.into();
+    config
 }
 
 /// A counted line beyond whose exit the layout has nothing.
