@@ -229,7 +229,7 @@ fn walk<const B: usize, const R: usize, const P: usize, const K: usize>(
     for block in 0..B {
         for section in 0..K {
             let spot = Spot { block: block.to_le_bytes()[0], section: section.to_le_bytes()[0] };
-            wrong = wrong.or(walk.go_on(chain, join, spot, &join.circuits[block][section]).err());
+            wrong = wrong.or(walk.go_on(chain, join, spot, join.circuits[block][section]).err());
             let there = spot.section < join.blocks[block].sections();
             walk.sections[block][section] = join.circuits[block][section].map_or(CircuitSet::EMPTY, CircuitId::alone);
             walk.count = walk.count.saturating_add(usize::from(there));
@@ -246,7 +246,7 @@ impl<const B: usize, const K: usize> Walk<B, K> {
         chain: &Chain<R, P, K>,
         join: &Join<B, K>,
         spot: Spot,
-        circuit: &Option<CircuitId>,
+        circuit: Option<CircuitId>,
     ) -> Result<(), WaysideError> {
         let sections = join.blocks.get(usize::from(spot.block)).map_or(0, |block| block.sections());
         //= spec/wayside.md#way-11-a-circuit-on-every-section
@@ -288,7 +288,7 @@ fn is_short<const B: usize, const K: usize>(before: &[Place; K], walk: &Walk<B, 
     // Behind a front that has just passed `passed` sections.
     for passed in 0..=K {
         let (mut metres, mut known) = (0_u32, passed <= walk.count && passed <= k);
-        for place in 0..K {
+        for (place, behind) in before.iter().enumerate() {
             if place < passed {
                 let from_low = match join.direction {
                     Direction::Up => place,
@@ -298,8 +298,8 @@ fn is_short<const B: usize, const K: usize>(before: &[Place; K], walk: &Walk<B, 
                 metres = metres.saturating_add(u32::from(length));
             }
             if passed.saturating_add(place) < k {
-                known &= !before[place].circuits.is_empty();
-                metres = metres.saturating_add(u32::from(before[place].length.0));
+                known &= !behind.circuits.is_empty();
+                metres = metres.saturating_add(u32::from(behind.length.0));
             }
         }
         short |= known && metres < u32::from(join.train.0);

@@ -143,11 +143,11 @@ pub fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideErro
     // The first error is kept, and the loop goes on: one way through it is what a prover unrolls.
     let mut wrong = None;
     let mut words = [None; MAX_CODES];
-    for number in 0..MAX_CODES {
-        if let Some(speed) = plan.speeds[number] {
-            let word = spell(&plan.aspects, &plan.codes, SpeedCode(number.to_le_bytes()[0]), speed);
-            wrong = wrong.or(word.err());
-            words[number] = word.ok();
+    for (number, (word, speed)) in (0_u8..).zip(words.iter_mut().zip(&plan.speeds)) {
+        if let Some(speed) = *speed {
+            let spelt = spell(&plan.aspects, &plan.codes, SpeedCode(number), speed);
+            wrong = wrong.or(spelt.err());
+            *word = spelt.ok();
         }
     }
     wrong.map_or(Ok(words), Err)
@@ -164,10 +164,10 @@ pub fn check_speeds(speeds: &[Option<KmhTenths>; MAX_CODES]) -> Result<(), Waysi
     let stops = speeds[0] == Some(KmhTenths(0));
     let mut wrong = if stops { None } else { Some(WaysideError::StopMoves) };
     let mut before = None;
-    for number in 0..MAX_CODES {
-        if let Some(speed) = speeds[number] {
+    for (number, speed) in (0_u8..).zip(speeds) {
+        if let Some(speed) = *speed {
             if before.is_some_and(|before| speed <= before) {
-                wrong = wrong.or(Some(WaysideError::SpeedsFall(SpeedCode(number.to_le_bytes()[0]))));
+                wrong = wrong.or(Some(WaysideError::SpeedsFall(SpeedCode(number))));
             }
             before = Some(speed);
         }

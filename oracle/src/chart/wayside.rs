@@ -80,26 +80,25 @@ pub(crate) fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
         let marks = bars(standing(None, moments.iter().map(counts)), |value| value);
         scene.lanes.push(row(format!("block {number}"), marks));
     }
-    for (number, name) in names.routes.iter().enumerate() {
+    for name in &names.routes {
         if moments.iter().any(|now| now.output.routes.contains_key(name)) {
             let proceed = standing(false, moments.iter().map(|now| now.output.proceed.contains(name)));
             let wave = spans(proceed).into_iter().filter(|span| span.2).map(|span| (span.0, span.1)).collect();
-            let signal = names.signals.get(number).map_or("", String::as_str);
-            scene.lanes.push(row(format!("proceed at {signal}, {name}"), vec![Mark::Wave(wave)]));
+            scene.lanes.push(row(format!("proceed, {name}"), vec![Mark::Wave(wave)]));
         }
     }
     for name in &names.segments {
         let marks = bars(moments.iter().map(|now| now.consent.contains(name)), |consent| {
             consent.then(|| (Tone::Signal, "permitted".to_owned()))
         });
-        scene.lanes.push(row(format!("neighbour at {name}"), marks));
+        scene.lanes.push(row(format!("consent of {name}"), marks));
         let permits = |now: &Moment| {
             now.output.messages.get(name).is_some_and(|message| message.permission == Permission::Granted)
         };
         let marks = bars(standing(false, moments.iter().map(permits)), |permits| {
             permits.then(|| (Tone::Blank, "permits".to_owned()))
         });
-        scene.lanes.push(row(format!("to the neighbour at {name}"), marks));
+        scene.lanes.push(row(format!("permits, {name}"), marks));
     }
     for name in &names.circuits {
         let sent = |now: &Moment| now.output.transmissions.get(name).and_then(open);

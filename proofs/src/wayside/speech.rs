@@ -1,5 +1,7 @@
 //! From movements to frames and codes (T-WAY-3, T-WAY-4), and what the constructor asks of the signals.
 
+#![allow(clippy::needless_range_loop, reason = "a code is a number in several arrays")]
+
 use super::{LONGEST, plan};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
@@ -493,11 +495,9 @@ harness! {
         NoPair: "a speed without a pair",
     }
     {
-        let mut likely = 0;
         let mut ranks = [KmhTenths(0); SPEEDS];
-        for rank in &mut ranks {
+        for (likely, rank) in (0_u16..).zip(&mut ranks) {
             *rank = KmhTenths(e.word("a speed (tenths of km/h)", likely..=likely));
-            likely += 1;
         }
         let mut named = [[None; PLACES]; PLACES];
         for row in 0..2 {

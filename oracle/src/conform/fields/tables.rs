@@ -192,7 +192,7 @@ const WAYSIDE: Table = Table {
                 output("left", Danger::Always, &["WAY-3", "WAY-4", "WAY-5", "WAY-6", "WAY-7"]),
                 output("right", Danger::Always, &["WAY-3", "WAY-4", "WAY-5", "WAY-6", "WAY-7"]),
             ]),
-            ..output("transmissions", Danger::More, &["WAY-3", "WAY-5", "ATC-1", "ATC-2"])
+            ..output("transmissions", Danger::More, &["WAY-3", "WAY-5", "WAY-8", "WAY-9", "ATC-1", "ATC-2"])
         },
         Field { shape: Shape::Entries(&[]), ..output("messages", Danger::Always, &["WAY-22", "ILK-25"]) },
         Field {

@@ -252,7 +252,7 @@ impl Ground {
         messages
     }
 
-    fn request(&self, random: &mut Random) -> Value {
+    fn request(random: &mut Random) -> Value {
         match random.below(12) {
             0..=4 => json!({"set": "in-out"}),
             5 => json!({"withdraw": "in-out"}),
@@ -292,7 +292,7 @@ impl Walk for Ground {
             "messages": self.messages(random),
         });
         if random.one_in(3) {
-            step["request"] = self.request(random);
+            step["request"] = Self::request(random);
         }
         if let Some(orders) = self.orders(random) {
             step["orders"] = orders;

@@ -17,8 +17,8 @@ impl Interlocked {
     }
 
     /// Goes on from this memory.
-    pub(in crate::machine) fn remember(&mut self, memory: Memory<64, 8>) {
-        *self.memory = memory;
+    pub(in crate::machine) fn remember(&mut self, memory: &Memory<64, 8>) {
+        *self.memory = *memory;
     }
 
     /// The segment of that name.

@@ -1,7 +1,7 @@
 //! The kernel's device, whose type has the number of its blocks, behind one face.
 
 use atc_kernel::Machine as _;
-use atc_kernel::block::{Detection, Hold, Output as Block};
+use atc_kernel::block::{Detection, Hold, Output as Block, SectionSet};
 use atc_kernel::interlocking::{self, CircuitSet, MAX_CIRCUITS, Memory, Orders, Positions, Refusal, Request, RouteSet};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Framed, Input, Message, Session, State, Transmission, Wayside, WaysideError};
@@ -68,7 +68,7 @@ impl<const B: usize> Device for Of<B> {
     fn step(&mut self, station: &Station, read: &Read) -> Result<Done, WaysideError> {
         let wayside = Wayside::new(station, &self.equipment)?;
         let mut blocks = read.blocks.iter().copied();
-        let none = Detection { low_check: false, high_check: false, present: Default::default(), reset: None };
+        let none = Detection { low_check: false, high_check: false, present: SectionSet::EMPTY, reset: None };
         let Read { occupied, detected, request, orders, messages, framed, .. } = read.clone();
         let blocks = core::array::from_fn(|_| blocks.next().unwrap_or(none));
         let input = Input { blocks, occupied, detected, request, orders, messages, framed };

@@ -143,7 +143,7 @@ impl Ground {
             self.device.restart(layout, session).map_err(again)?;
         }
         let done = self.device.step(layout, &read).map_err(again)?;
-        self.station.remember(done.memory);
+        self.station.remember(&done.memory);
         Ok(done)
     }
 }
