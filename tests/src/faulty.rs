@@ -96,6 +96,7 @@ const PATTERN: &str = "braking-pattern";
 const PERMITTED: &str = "permitted-speed";
 const POSITION: &str = "train-position";
 const INTERLOCKING: &str = "interlocking";
+const WAYSIDE: &str = "wayside";
 
 /// Every fault.
 pub const FAULTS: &[Fault] = &[
@@ -275,6 +276,42 @@ pub const FAULTS: &[Fault] = &[
     output("heading-turned", INTERLOCKING, "ATC-10", |_, output| {
         for telegram in output.get_mut("telegrams").and_then(Value::as_object_mut).into_iter().flatten() {
             swap(&mut telegram.1["heading"], "left", "right");
+        }
+    }),
+    step("answers-never-age", WAYSIDE, "WAY-8", |memory, step| {
+        for (name, message) in step.get_mut("messages").and_then(Value::as_object_mut).into_iter().flatten() {
+            let own = memory.output["messages"][name]["sent"].clone();
+            if own["session"] == message["echo"]["session"] {
+                message["echo"] = own;
+            }
+        }
+    }),
+    step("withheld-is-granted", WAYSIDE, "WAY-9", |_, step| {
+        for (_, message) in step.get_mut("messages").and_then(Value::as_object_mut).into_iter().flatten() {
+            message["permission"] = "granted".into();
+        }
+    }),
+    step("restart-ignored", WAYSIDE, "WAY-22", |_, step| {
+        step.as_object_mut().map(|step| step.remove("restart"));
+    }),
+    step("frames-always-taken", WAYSIDE, "WAY-7", |_, step| {
+        step.as_object_mut().map(|step| step.remove("framed"));
+    }),
+    output("line-turned", WAYSIDE, "WAY-10", |memory, output| {
+        if output["answer"]["refused"] == "direction" && memory.step["request"].get("turn").is_some() {
+            output["answer"] = "accepted".into();
+        }
+    }),
+    output("both-directions", WAYSIDE, "WAY-3", |_, output| {
+        for (_, sent) in output.get_mut("transmissions").and_then(Value::as_object_mut).into_iter().flatten() {
+            sent["left"]["main"]["beyond_exit_m"] = sent["right"]["main"]["beyond_exit_m"].clone();
+        }
+    }),
+    output("one-rank-up", WAYSIDE, "WAY-4", |_, output| {
+        for (_, sent) in output.get_mut("transmissions").and_then(Value::as_object_mut).into_iter().flatten() {
+            if let Some(rank) = sent["right"]["main"]["speed_rank"].as_u64().filter(|rank| *rank > 0) {
+                sent["right"]["main"]["speed_rank"] = (rank + 1).into();
+            }
         }
     }),
 ];

@@ -163,6 +163,7 @@ fn the_examples_are_drawn_and_the_files_are_whole() {
         "speed-pattern",
         "train-position",
         "train",
+        "wayside",
     ] {
         let trace = examples().join(format!("{name}.jsonl"));
         // The requests alone, and with the replies of a session in which they were sent ahead.

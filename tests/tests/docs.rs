@@ -47,6 +47,12 @@ fn the_picture_of_the_frames_is_current() {
 }
 
 #[test]
+fn the_picture_of_the_ground_is_current() {
+    let title = "A train over a counted line, through a station and out; a missed detection; a restart";
+    check("oracle/examples/wayside.jsonl", title, None, "docs/wayside.svg");
+}
+
+#[test]
 fn the_picture_of_the_interlocking_is_current() {
     let title = "A train through a passing loop";
     check("oracle/examples/interlocking.jsonl", title, None, "docs/interlocking.svg");

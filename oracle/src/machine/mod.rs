@@ -9,6 +9,7 @@ pub mod position;
 pub mod supervision;
 pub mod telegram;
 pub mod train;
+pub mod wayside;
 
 use atc_film::Film;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -141,6 +142,7 @@ pub const KINDS: &[Kind] = &[
     kind::<position::Positioned>(),
     kind::<interlocking::Interlocked>(),
     kind::<train::OnBoard>(),
+    kind::<wayside::Ground>(),
 ];
 
 /// The machine of that name.

@@ -120,8 +120,16 @@ const LISTED: &[(&str, &str, &str)] = &[
     (
         "wayside/occupancy.rs",
         "!known || held >= u32::from(self.train)",
-        "what the constructor must guarantee (WAY-14); not proved",
+        "what the constructor guarantees (WAY-14, `way_join`)",
     ),
+    ("wayside/joint.rs", "(1..=PLACES).contains(&outer)", "a range: a segment has one circuit at least"),
+    ("wayside/joint.rs", "made.is_some()", "a joint that the constructor accepts"),
+    (
+        "wayside/joint.rs",
+        "behind == 0 || behind < u32::from(line.train)",
+        "the metres under the train, which the claim is about",
+    ),
+    ("wayside/joint.rs", "front_on.is_some()", "the front is on the line: what the claim is about"),
     ("wayside/occupancy.rs", "head >= line.entry", CASE),
     ("wayside/occupancy.rs", "u32::from(into) < own", "the front is in its circuit"),
     ("wayside/occupancy.rs", "under < head", "the circuits that the claim is about"),
