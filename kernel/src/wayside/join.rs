@@ -5,19 +5,18 @@
 //! is proven.
 
 use super::WaysideError;
+use super::chain::{Chain, Place, SECTIONS};
 use crate::Machine;
 use crate::block::{
-    Beyond, Block, Detection, Direction, Hold, Line, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS, MAX_SECTIONS,
+    Beyond, Block, Detection, Direction, Hold, Line, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS,
 };
 use crate::distance::Metres;
 use crate::interlocking::{CircuitId, CircuitSet, Layout, Refusal, Request, SegmentId, SegmentSet, Travel};
 
-/// The most sections of a block.
-const SECTIONS: usize = MAX_SECTIONS as usize;
-
-/// A counted line as a plan gives it: its blocks from the low end, and which circuits are on them. Not checked.
+/// A counted line as a plan gives it: its blocks from the low end, and which circuits are on them. Not checked. `K` is the most sections of a
+/// block, and the most places of a hold: smaller only in proofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Join<const B: usize> {
+pub struct Join<const B: usize, const K: usize = SECTIONS> {
     /// The blocks, from the low end. The lengths of their sections are those of the circuits.
     pub blocks: [Block; B],
     /// The direction of travel along the blocks.
@@ -29,7 +28,7 @@ pub struct Join<const B: usize> {
     /// The direction of travel that the segment has, for ever.
     pub travel: Travel,
     /// The circuit on each section of each block, from the low end.
-    pub circuits: [[Option<CircuitId>; SECTIONS]; B],
+    pub circuits: [[Option<CircuitId>; K]; B],
 }
 
 /// A section of a counted line: block and section are numbered from 0 at the low end.
@@ -41,21 +40,21 @@ pub struct Spot {
     pub section: u8,
 }
 
-/// A counted line, checked against the layout.
+/// A counted line, checked against the layout. `K` as in [`Join`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counted<const B: usize> {
+pub struct Counted<const B: usize, const K: usize = SECTIONS> {
     line: Line<B>,
     segment: SegmentId,
     travel: Travel,
     /// The circuit on each section; none beyond the sections of a block.
-    sections: [[CircuitSet; SECTIONS]; B],
+    sections: [[CircuitSet; K]; B],
     /// The circuits before the entry, the nearest first; where tracks join, there are several in one place.
-    before: [CircuitSet; SECTIONS],
+    before: [CircuitSet; K],
     /// The circuits that adjoin the exit.
     beyond: CircuitSet,
 }
 
-impl<const B: usize> Counted<B> {
+impl<const B: usize, const K: usize> Counted<B, K> {
     /// Checks `join` against `layout`.
     ///
     /// # Errors
@@ -63,12 +62,9 @@ impl<const B: usize> Counted<B> {
     #[inline]
     pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
-        join: &Join<B>,
+        join: &Join<B, K>,
     ) -> Result<Self, WaysideError> {
-        let chain = Chain { layout, segment: join.segment, travel: join.travel };
-        if !chain.exists() {
-            return Err(WaysideError::NoSuchSegment);
-        }
+        let Some(chain) = Chain::of(layout, join.segment) else { return Err(WaysideError::NoSuchSegment) };
         //= spec/wayside.md#way-15-no-route-against-the-line
         //# The constructor MUST reject a layout with a route that needs the counted segment in the other direction of travel.
         for (number, route) in (0_u8..).zip(&layout.plan().routes) {
@@ -80,7 +76,16 @@ impl<const B: usize> Counted<B> {
                 return Err(WaysideError::RouteAgainstTheLine(number));
             }
         }
-        let walk = walk(&chain, join)?;
+        Self::on(&chain, join)
+    }
+
+    /// The same on the track of the segment, without WAY-15.
+    ///
+    /// # Errors
+    /// The first rule of WAY-11 to WAY-14 that is broken.
+    #[inline]
+    pub fn on<const R: usize, const P: usize>(chain: &Chain<R, P, K>, join: &Join<B, K>) -> Result<Self, WaysideError> {
+        let walk = walk(chain, join)?;
         let lengths = walk.lengths.get(..walk.count).unwrap_or(&walk.lengths);
         let line = Line::new(join.blocks, lengths, join.train, join.direction).map_err(WaysideError::Line)?;
         let (entry, exit) = match join.direction {
@@ -89,24 +94,24 @@ impl<const B: usize> Counted<B> {
         };
         //= spec/wayside.md#way-13-the-exit
         //# The constructor MUST reject a counted line beyond whose exit the layout has no circuit.
-        let beyond = chain.beyond(exit);
+        let beyond = chain.beyond(join.travel, exit);
         if beyond.is_empty() {
             return Err(WaysideError::NothingBeyondTheExit);
         }
-        let before = chain.before(entry);
-        if chain.is_short(&before, &walk, join) {
+        let before = chain.before(join.travel, entry);
+        if is_short(&before, &walk, join) {
             return Err(WaysideError::HoldTooShortAtTheEntry);
         }
         let Join { segment, travel, .. } = *join;
-        Ok(Self { line, segment, travel, sections: walk.sections, before, beyond })
+        Ok(Self { line, segment, travel, sections: walk.sections, before: before.map(|place| place.circuits), beyond })
     }
 
     /// A joint as it is given, for proofs: nothing of it is checked.
     pub const fn from_parts(
         line: Line<B>,
         (segment, travel): (SegmentId, Travel),
-        sections: [[CircuitSet; SECTIONS]; B],
-        (before, beyond): ([CircuitSet; SECTIONS], CircuitSet),
+        sections: [[CircuitSet; K]; B],
+        (before, beyond): ([CircuitSet; K], CircuitSet),
     ) -> Self {
         Self { line, segment, travel, sections, before, beyond }
     }
@@ -122,12 +127,12 @@ impl<const B: usize> Counted<B> {
     }
 
     /// The circuit on each section of each block, from the low end; none beyond the sections of a block.
-    pub const fn sections(&self) -> &[[CircuitSet; SECTIONS]; B] {
+    pub const fn sections(&self) -> &[[CircuitSet; K]; B] {
         &self.sections
     }
 
     /// The circuits before the entry that are held for trains whose heads are on the line, the nearest first.
-    pub const fn before(&self) -> &[CircuitSet; SECTIONS] {
+    pub const fn before(&self) -> &[CircuitSet; K] {
         &self.before
     }
 
@@ -197,8 +202,8 @@ impl<const B: usize> Counted<B> {
 }
 
 /// What is found on the way along the sections, from the low end.
-struct Walk<const B: usize> {
-    sections: [[CircuitSet; SECTIONS]; B],
+struct Walk<const B: usize, const K: usize> {
+    sections: [[CircuitSet; K]; B],
     lengths: [Metres; MAX_LINE_SECTIONS],
     count: usize,
     /// The places of the first and the last section in the chain.
@@ -208,190 +213,96 @@ struct Walk<const B: usize> {
 
 /// Finds the circuit of every section.
 #[inline]
-fn walk<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize>(
-    chain: &Chain<'_, R, P, N, S>,
-    join: &Join<B>,
-) -> Result<Walk<B>, WaysideError> {
-    // Up is outwards if trains run away.
-    let rising = (join.direction == Direction::Up) == (join.travel == Travel::Away);
+fn walk<const B: usize, const R: usize, const P: usize, const K: usize>(
+    chain: &Chain<R, P, K>,
+    join: &Join<B, K>,
+) -> Result<Walk<B, K>, WaysideError> {
     let mut walk = Walk {
-        sections: [[CircuitSet::EMPTY; SECTIONS]; B],
+        sections: [[CircuitSet::EMPTY; K]; B],
         lengths: [Metres(0); MAX_LINE_SECTIONS],
         count: 0,
         first: 0,
         last: 0,
     };
-    for (number, ((block, circuits), kept)) in
-        (0_u8..).zip(join.blocks.iter().zip(&join.circuits).zip(&mut walk.sections))
-    {
-        for (section, (circuit, kept)) in (0_u8..).zip(circuits.iter().zip(kept)) {
-            let spot = Spot { block: number, section };
-            //= spec/wayside.md#way-11-a-circuit-on-every-section
-            //# The constructor MUST reject a counted line with a section without a circuit, or with a circuit for a section that it does not have.
-            let circuit = match (circuit, section < block.sections()) {
-                (Some(circuit), true) => circuit.alone(),
-                (None, false) => continue,
-                (Some(_), false) => return Err(WaysideError::CircuitWithoutSection(spot)),
-                (None, true) => return Err(WaysideError::SectionWithoutCircuit(spot)),
-            };
-            //= spec/wayside.md#way-12-the-order-of-the-circuits
-            //# The constructor MUST reject a counted line whose sections are not on circuits of its segment, or of the segment and its throat, that follow each other in the layout as the sections do along the line.
-            let Some(place) = chain.place(circuit) else { return Err(WaysideError::SectionElsewhere(spot)) };
-            let follows = if rising { place == walk.last.wrapping_add(1) } else { place.wrapping_add(1) == walk.last };
-            if walk.count > 0 && !follows {
-                return Err(WaysideError::SectionsOutOfOrder(spot));
-            }
-            if walk.count == 0 {
-                walk.first = place;
-            }
-            walk.last = place;
-            *kept = circuit;
-            if let Some(length) = walk.lengths.get_mut(walk.count) {
-                *length = chain.shortest(circuit);
-            }
-            walk.count = walk.count.saturating_add(1);
+    // The first error is kept, and the loop goes on: one way through it is what a prover unrolls.
+    let mut wrong = None;
+    for block in 0..B {
+        for section in 0..K {
+            let spot = Spot { block: block.to_le_bytes()[0], section: section.to_le_bytes()[0] };
+            wrong = wrong.or(walk.go_on(chain, join, spot, &join.circuits[block][section]).err());
+            let there = spot.section < join.blocks[block].sections();
+            walk.sections[block][section] = join.circuits[block][section].map_or(CircuitSet::EMPTY, CircuitId::alone);
+            walk.count = walk.count.saturating_add(usize::from(there));
         }
     }
-    Ok(walk)
+    wrong.map_or(Ok(walk), Err)
 }
 
-/// The throat of a segment (place 0) and its circuits (from place 1 on), as the layout has them.
-struct Chain<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: &'a Layout<R, P, N, S>,
-    segment: SegmentId,
-    travel: Travel,
+impl<const B: usize, const K: usize> Walk<B, K> {
+    /// To the next section.
+    #[inline]
+    fn go_on<const R: usize, const P: usize>(
+        &mut self,
+        chain: &Chain<R, P, K>,
+        join: &Join<B, K>,
+        spot: Spot,
+        circuit: &Option<CircuitId>,
+    ) -> Result<(), WaysideError> {
+        let sections = join.blocks.get(usize::from(spot.block)).map_or(0, |block| block.sections());
+        //= spec/wayside.md#way-11-a-circuit-on-every-section
+        //# The constructor MUST reject a counted line with a section without a circuit, or with a circuit for a section that it does not have.
+        let circuit = match (circuit, spot.section < sections) {
+            (Some(circuit), true) => circuit.alone(),
+            (None, false) => return Ok(()),
+            (Some(_), false) => return Err(WaysideError::CircuitWithoutSection(spot)),
+            (None, true) => return Err(WaysideError::SectionWithoutCircuit(spot)),
+        };
+        // Up is outwards if trains run away.
+        let rising = (join.direction == Direction::Up) == (join.travel == Travel::Away);
+        //= spec/wayside.md#way-12-the-order-of-the-circuits
+        //# The constructor MUST reject a counted line whose sections are not on circuits of its segment, or of the segment and its throat, that follow each other in the layout as the sections do along the line.
+        let Some(place) = chain.place(circuit) else { return Err(WaysideError::SectionElsewhere(spot)) };
+        let follows = if rising { place == self.last.wrapping_add(1) } else { place.wrapping_add(1) == self.last };
+        if self.count > 0 && !follows {
+            return Err(WaysideError::SectionsOutOfOrder(spot));
+        }
+        if self.count == 0 {
+            self.first = place;
+        }
+        self.last = place;
+        if let Some(length) = self.lengths.get_mut(self.count) {
+            *length = chain.at(place).length;
+        }
+        Ok(())
+    }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Chain<'_, R, P, N, S> {
-    fn exists(&self) -> bool {
-        let segment = self.layout.plan().segments.get(usize::from(self.segment.number()));
-        segment.is_some_and(|segment| segment.length > 0)
-    }
-
-    /// The circuit at a place; none where there is none.
-    #[inline]
-    fn at(&self, place: usize) -> CircuitSet {
-        let mut circuit = CircuitSet::EMPTY;
-        for (number, segment) in self.layout.plan().segments.iter().enumerate() {
-            if number == usize::from(self.segment.number()) {
-                circuit = circuit.or(segment.throat.only_if(place == 0));
-                for (back, it) in (1_usize..).zip(&segment.circuits) {
-                    circuit = circuit.or(it.only_if(back == place && back <= usize::from(segment.length)));
-                }
+/// Whether somewhere at the entry the places that are held behind a head are together shorter than the longest train.
+#[inline]
+fn is_short<const B: usize, const K: usize>(before: &[Place; K], walk: &Walk<B, K>, join: &Join<B, K>) -> bool {
+    //= spec/wayside.md#way-14-the-hold-at-the-entry
+    //# The constructor MUST reject a counted line where k consecutive places, of sections and of the k circuits before the entry, are together shorter than the longest train.
+    let hold = join.blocks.first().map_or(Hold::NONE, |block| block.hold());
+    let k = usize::from(hold.sections());
+    let mut short = false;
+    // Behind a front that has just passed `passed` sections.
+    for passed in 0..=K {
+        let (mut metres, mut known) = (0_u32, passed <= walk.count && passed <= k);
+        for place in 0..K {
+            if place < passed {
+                let from_low = match join.direction {
+                    Direction::Up => place,
+                    Direction::Down => walk.count.wrapping_sub(place + 1),
+                };
+                let length = walk.lengths.get(from_low).map_or(0, |length| length.0);
+                metres = metres.saturating_add(u32::from(length));
+            }
+            if passed.saturating_add(place) < k {
+                known &= !before[place].circuits.is_empty();
+                metres = metres.saturating_add(u32::from(before[place].length.0));
             }
         }
-        circuit
+        short |= known && metres < u32::from(join.train.0);
     }
-
-    /// The place of a circuit.
-    #[inline]
-    fn place(&self, circuit: CircuitSet) -> Option<usize> {
-        let mut found = None;
-        for place in 0..=P {
-            if self.at(place) == circuit {
-                found = Some(place);
-            }
-        }
-        found
-    }
-
-    /// The length of a circuit; of several, the shortest.
-    #[inline]
-    fn shortest(&self, circuits: CircuitSet) -> Metres {
-        let mut shortest = Metres(u16::MAX);
-        for (number, length) in self.layout.plan().lengths.iter().enumerate() {
-            if circuits.meets(CircuitSet::nth(number)) {
-                shortest = shortest.min(*length);
-            }
-        }
-        shortest
-    }
-
-    /// The circuits that adjoin the exit, which is the end of the circuit at `exit`.
-    #[inline]
-    fn beyond(&self, exit: usize) -> CircuitSet {
-        match self.travel {
-            Travel::Away => self.at(exit.wrapping_add(1)),
-            Travel::Toward => {
-                let mut beyond = if exit == 0 { CircuitSet::EMPTY } else { self.at(exit - 1) };
-                // Also where the ways into the station do not begin in the throat.
-                for route in &self.layout.plan().routes {
-                    let begins = route.exists() && route.entry == self.at(exit);
-                    beyond = beyond.or(route.circuit_at(0).only_if(begins));
-                }
-                beyond
-            }
-        }
-    }
-
-    /// The circuits before the entry, which is the beginning of the circuit at `entry`: of the segment, and behind its throat of the routes
-    /// that lead out to it.
-    #[inline]
-    fn before(&self, entry: usize) -> [CircuitSet; SECTIONS] {
-        let mut before = [CircuitSet::EMPTY; SECTIONS];
-        for (back, circuits) in (1_usize..).zip(&mut before) {
-            *circuits = match self.travel {
-                Travel::Toward => self.at(entry.wrapping_add(back)),
-                Travel::Away if back <= entry => self.at(entry - back),
-                Travel::Away => self.behind_the_throat(back - entry),
-            };
-        }
-        // Behind a place without a circuit nothing is known.
-        let mut known = true;
-        for circuits in &mut before {
-            known &= !circuits.is_empty();
-            *circuits = circuits.only_if(known);
-        }
-        before
-    }
-
-    /// The circuits that are so many places behind the throat on the routes out to the segment, their entries included.
-    #[inline]
-    fn behind_the_throat(&self, back: usize) -> CircuitSet {
-        let mut circuits = CircuitSet::EMPTY;
-        for route in &self.layout.plan().routes {
-            let length = usize::from(route.length);
-            if route.exists() && route.to.has(self.segment) {
-                circuits = circuits.or(route.entry.only_if(length == back));
-                for (place, element) in route.path.iter().enumerate() {
-                    let there = place < length && place.wrapping_add(back).wrapping_add(1) == length;
-                    circuits = circuits.or(element.circuits.only_if(there));
-                }
-            }
-        }
-        circuits
-    }
-
-    /// Whether somewhere at the entry the places that are held behind a head are together shorter than the longest train.
-    #[inline]
-    fn is_short<const B: usize>(&self, before: &[CircuitSet; SECTIONS], walk: &Walk<B>, join: &Join<B>) -> bool {
-        //= spec/wayside.md#way-14-the-hold-at-the-entry
-        //# The constructor MUST reject a counted line where k consecutive places, of sections and of the k circuits before the entry, are together shorter than the longest train.
-        let hold = join.blocks.first().map_or(Hold::NONE, |block| block.hold());
-        let k = usize::from(hold.sections());
-        // The metres of the places before the entry, and of the sections from there on, added up.
-        let (mut metres_before, mut metres_on) = ([0_u32; SECTIONS + 1], [0_u32; SECTIONS + 1]);
-        let mut known = 0;
-        for place in 0..SECTIONS {
-            let circuits = before[place];
-            let its = if circuits.is_empty() { 0 } else { u32::from(self.shortest(circuits).0) };
-            metres_before[place + 1] = metres_before[place].saturating_add(its);
-            known += usize::from(!circuits.is_empty());
-            let from_low = match join.direction {
-                Direction::Up => place,
-                Direction::Down => walk.count.wrapping_sub(place + 1),
-            };
-            let on = if place < walk.count { walk.lengths.get(from_low).map_or(0, |length| length.0) } else { 0 };
-            metres_on[place + 1] = metres_on[place].saturating_add(u32::from(on));
-        }
-        // A front that has just passed `passed` sections.
-        let mut short = false;
-        for (passed, on) in metres_on.iter().enumerate() {
-            for (back, before) in metres_before.iter().enumerate() {
-                let held = passed + back == k && passed <= walk.count && back <= known;
-                short |= held && on.saturating_add(*before) < u32::from(join.train.0);
-            }
-        }
-        short
-    }
+    short
 }

@@ -8,16 +8,18 @@
 //! Requirements: `spec/wayside.md`, WAY-1 to WAY-23. Read in this order: [`Equipment`] and [`Wayside`] (parameters), [`Input`] and
 //! [`Output`], [`State`] with its `is_valid`, [`Wayside::read`] and [`Wayside::send`], of which a step is made.
 
+mod chain;
 mod consent;
 mod counters;
 mod join;
 mod signals;
 mod speech;
 
+pub use chain::{Chain, Place, Way};
 pub use consent::{Consent, Message, Permission, Session, Stamp, check_life};
 pub use counters::{Counters, Framed};
 pub use join::{Counted, Join, Spot};
-pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word, check_codes, circuits, words};
+pub use signals::{Codes, Facing, Fixed, SignalPlan, Signals, Word, check_codes, check_speeds, circuits, spell, words};
 pub use speech::{Feed, Saying, Speech, Transmission};
 
 use crate::Machine;
@@ -255,27 +257,6 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         (state, Reading { input, line, refused: request.err() })
     }
 
-    /// What is to be said in each circuit: what its train is told, with what the device remembers.
-    #[inline]
-    #[must_use]
-    pub fn sayings(
-        state: &State<B, R, S>,
-        telegrams: &[Option<interlocking::Movement>; MAX_CIRCUITS],
-    ) -> [Option<Saying>; MAX_CIRCUITS] {
-        let restrictions = state.device.interlocking.works.restrictions;
-        let mut sayings = [None; MAX_CIRCUITS];
-        let known = telegrams.iter().zip(&state.counters);
-        for (number, (saying, (movement, counters))) in sayings.iter_mut().zip(known).enumerate() {
-            let it = CircuitSet::nth(number);
-            //= spec/wayside.md#way-21-silence
-            //# A device MUST send nothing in a circuit in which its ATC is silent.
-            if let (Some(movement), Some(circuit)) = (*movement, it.first()) {
-                *saying = Some(Saying { circuit, movement, restrictions, counters: *counters });
-            }
-        }
-        sayings
-    }
-
     /// The last part of a cycle: what leaves the device. `state` has the memory that interlocking and ATC have after `commands`.
     #[inline]
     #[must_use]
@@ -288,12 +269,13 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         let Commands { interlocking, telegrams } = commands;
         let mut transmissions = [None; MAX_CIRCUITS];
         state.sent = CircuitSet::EMPTY;
-        let sayings = Self::sayings(&state, telegrams);
-        for (number, (transmission, saying)) in transmissions.iter_mut().zip(&sayings).enumerate() {
-            if let Some(saying) = *saying {
-                *transmission = self.signals.transmission(&self.layout.plan().lengths, saying);
-                state.sent = state.sent.or(CircuitSet::nth(number).only_if(transmission.is_some()));
-            }
+        let lengths = &self.layout.plan().lengths;
+        let restrictions = state.device.interlocking.works.restrictions;
+        let known = telegrams.iter().zip(&state.counters);
+        for (number, (transmission, (movement, counters))) in (0_u8..).zip(transmissions.iter_mut().zip(known)) {
+            let Some(circuit) = CircuitId::new(number) else { continue };
+            *transmission = self.signals.sent(lengths, circuit, *movement, restrictions, *counters);
+            state.sent = state.sent.or(circuit.alone().only_if(transmission.is_some()));
         }
         let answer = reading.refused.map(Err).or(interlocking.answer);
         let output = Output {

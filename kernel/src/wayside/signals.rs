@@ -139,25 +139,56 @@ impl Signals {
 /// The first rule of WAY-16 that is broken.
 #[inline(never)]
 pub fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
+    check_speeds(&plan.speeds)?;
+    // The first error is kept, and the loop goes on: one way through it is what a prover unrolls.
+    let mut wrong = None;
+    let mut words = [None; MAX_CODES];
+    for number in 0..MAX_CODES {
+        if let Some(speed) = plan.speeds[number] {
+            let word = spell(&plan.aspects, &plan.codes, SpeedCode(number.to_le_bytes()[0]), speed);
+            wrong = wrong.or(word.err());
+            words[number] = word.ok();
+        }
+    }
+    wrong.map_or(Ok(words), Err)
+}
+
+/// Whether code 0 is of speed 0, and the speeds rise with the codes.
+///
+/// # Errors
+/// [`WaysideError::StopMoves`] or [`WaysideError::SpeedsFall`].
+#[inline]
+pub fn check_speeds(speeds: &[Option<KmhTenths>; MAX_CODES]) -> Result<(), WaysideError> {
     //= spec/wayside.md#way-16-the-codes
     //# The constructor MUST reject signals whose code 0 is not of speed 0, whose speeds do not rise with the codes, or with a speed that is not in the trains' table of speeds or has no pair of codes.
-    if plan.speeds.first().copied().flatten() != Some(KmhTenths(0)) {
-        return Err(WaysideError::StopMoves);
-    }
-    let mut words = [None; MAX_CODES];
+    let stops = speeds[0] == Some(KmhTenths(0));
+    let mut wrong = if stops { None } else { Some(WaysideError::StopMoves) };
     let mut before = None;
-    for (number, (word, speed)) in (0_u8..).zip(words.iter_mut().zip(&plan.speeds)) {
-        let Some(speed) = *speed else { continue };
-        let code = SpeedCode(number);
-        if before.is_some_and(|before| speed <= before) {
-            return Err(WaysideError::SpeedsFall(code));
+    for number in 0..MAX_CODES {
+        if let Some(speed) = speeds[number] {
+            if before.is_some_and(|before| speed <= before) {
+                wrong = wrong.or(Some(WaysideError::SpeedsFall(SpeedCode(number.to_le_bytes()[0]))));
+            }
+            before = Some(speed);
         }
-        before = Some(speed);
-        let rank = plan.aspects.aspect(speed).ok_or(WaysideError::NoRank(code))?;
-        let codes = pair(&plan.codes, speed).ok_or(WaysideError::NoPair(code))?;
-        *word = Some(Word { rank, codes });
     }
-    Ok(words)
+    wrong.map_or(Ok(()), Err)
+}
+
+/// How trains hear `speed`, that of `code`.
+///
+/// # Errors
+/// [`WaysideError::NoRank`] or [`WaysideError::NoPair`], of `code`.
+#[inline]
+pub fn spell(
+    aspects: &AspectTable,
+    codes: &CodeTable,
+    code: SpeedCode,
+    speed: KmhTenths,
+) -> Result<Word, WaysideError> {
+    let rank = aspects.aspect(speed).ok_or(WaysideError::NoRank(code))?;
+    let codes = pair(codes, speed).ok_or(WaysideError::NoPair(code))?;
+    Ok(Word { rank, codes })
 }
 
 /// The first pair of codes that names exactly this speed.

@@ -72,6 +72,22 @@ pub struct Saying {
 }
 
 impl Signals {
+    /// What is sent in a circuit whose train is told `movement`; none where the ATC is silent, and where there is nothing to be said of the circuit.
+    #[inline]
+    #[must_use]
+    pub fn sent(
+        &self,
+        lengths: &[Metres; MAX_CIRCUITS],
+        circuit: CircuitId,
+        movement: Option<Movement>,
+        restrictions: SpeedLimits,
+        counters: Counters,
+    ) -> Option<Transmission> {
+        //= spec/wayside.md#way-21-silence
+        //# A device MUST send nothing in a circuit in which its ATC is silent.
+        self.transmission(lengths, Saying { circuit, movement: movement?, restrictions, counters })
+    }
+
     /// What a circuit's transmitter sends; none if there is nothing to be said of the circuit. `lengths` are those of the layout.
     #[inline]
     #[must_use]

@@ -19,6 +19,7 @@ pub mod telegram;
 pub mod train;
 mod value;
 mod wave;
+pub mod wayside;
 
 use crate::decimal::Metres;
 use crate::trace::{Replies, Trace, TraceError};

@@ -9,6 +9,7 @@ pub mod position;
 pub mod supervision;
 pub mod telegram;
 pub mod train;
+pub mod wayside;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
@@ -128,6 +129,7 @@ pub const KINDS: &[Kind] = &[
     kind::<position::Positioned>(),
     kind::<interlocking::Interlocked>(),
     kind::<train::OnBoard>(),
+    kind::<wayside::Ground>(),
 ];
 
 /// The machine of that name.

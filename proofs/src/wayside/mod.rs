@@ -6,6 +6,7 @@
 mod consent;
 mod counter;
 mod direction;
+mod joint;
 mod occupancy;
 mod speech;
 
@@ -18,6 +19,7 @@ use atc_kernel::time::Ticks;
 #[cfg(not(chosen))]
 pub const ALL: &[Harness] = &[
     occupancy::t_way_1::HARNESS,
+    joint::t_way_1_joint::HARNESS,
     occupancy::t_way_2::HARNESS,
     speech::t_way_3::HARNESS,
     speech::t_way_3_train::HARNESS,
@@ -28,8 +30,14 @@ pub const ALL: &[Harness] = &[
     consent::way_life::HARNESS,
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
+    joint::way_join::HARNESS,
     speech::way_signals::HARNESS,
     speech::way_codes::HARNESS,
+    speech::way_speeds::HARNESS,
+    speech::way_words::HARNESS,
+    speech::way_word::HARNESS,
+    speech::t_way_8_sent::HARNESS,
+    speech::way_safe::HARNESS,
 ];
 
 /// The longest loop: over what there is for each circuit.

@@ -79,7 +79,7 @@ impl Case {
         }
     }
 
-    /// The joint, as the constructor is meant to make it: a line that is accepted, and holds that are long enough at the entry. `lengths` are those of
+    /// The joint, as the constructor makes it (`way_join`, `t_way_1_joint`): a line that is accepted, and holds that are long enough at the entry. `lengths` are those of
     /// the track's circuits.
     fn counted<E: Engine + ?Sized>(&self, e: &mut E, lengths: &[u16; TRACK]) -> Option<Counted<2>> {
         let mut sections = [[CircuitSet::EMPTY; 16]; 2];

@@ -4,6 +4,7 @@ use super::{LONGEST, plan};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use crate::interlocking::any_heading;
+use atc_kernel::Machine;
 use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::code::{Code, CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};
 use atc_kernel::distance::Metres;
@@ -14,7 +15,8 @@ use atc_kernel::interlocking::{
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Length, Route, SectionId};
 use atc_kernel::wayside::{
-    Codes, Counters, Facing, Fixed, Saying, SignalPlan, Signals, Speech, WaysideError, Word, check_codes, circuits,
+    Codes, Counters, Facing, Fixed, Saying, SignalPlan, Signals, Speech, Wayside, WaysideError, Word, check_codes,
+    check_speeds, circuits, spell, words,
 };
 
 /// The circuits with a length: the own one, number 0, and three ahead.
@@ -23,6 +25,9 @@ const CIRCUITS: usize = 4;
 const SPEEDS: usize = 3;
 
 const BOUND: &str = "4 circuits, 3 speed codes";
+const BOUND_WORDS: &str = "2 speed codes of 8, 4 speeds and 3 pairs of codes";
+const BOUND_TABLES: &str = "3 speeds, 2 code frequencies of each carrier";
+const BOUND_SAFE: &str = "2 blocks, 2 routes, 2 segments";
 const BOUND_SIGNALS: &str = "2 circuits described, 4 used or with a length, 3 speeds";
 
 /// Any lengths of the circuits.
@@ -35,7 +40,7 @@ fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
 }
 
 fn any_rank<E: Engine + ?Sized>(e: &mut E) -> Option<AspectId> {
-    let rank = AspectId::new(any_byte(e, "curve limit (rank)", 0..=2));
+    let rank = AspectId::new(any_byte(e, "curve limit (rank)", 0..=3));
     e.assume(rank.is_some());
     rank
 }
@@ -83,7 +88,7 @@ impl Said {
     }
 }
 
-/// Any signals as the constructor makes them (`way_signals`; the words as it is meant to make them): code 0 is there and stops, and a circuit has two numbers.
+/// Any signals as the constructor makes them (`way_signals`, `way_words`): code 0 is there and stops, and a circuit has two numbers.
 fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIRCUITS]) -> Option<Said> {
     let stop = any_word(e, 0)?;
     let mut words = [None; MAX_CODES];
@@ -101,9 +106,9 @@ fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIRCUITS]) -> 
     Some(Said { signals: Signals::from_parts(circuits, words, stop), fixed, words, stop })
 }
 
-/// Tables of three speeds, 0, 15 and 30 km/h, and signals with nothing else.
+/// Tables of four speeds, 0, 15, 30 and 45 km/h, the last one without a pair of codes, and signals with nothing else.
 fn fixed_tables() -> Option<SignalPlan> {
-    let speeds = [KmhTenths(0), KmhTenths(150), KmhTenths(300)];
+    let speeds = [KmhTenths(0), KmhTenths(150), KmhTenths(300), KmhTenths(450)];
     let aspects = AspectTable::new(&speeds).ok()?;
     let frequencies = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok()?;
     let mut named = [[None; PLACES]; PLACES];
@@ -351,6 +356,278 @@ harness! {
 }
 
 harness! {
+    /// Speeds of codes rise from 0 if and only if code 0 is of speed 0, and of any two codes with a speed the higher code has the higher speed.
+    way_speeds(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-16"];
+    assumptions [];
+    bound "";
+    cases 1;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Exact: "accepted if and only if every rule is kept",
+        Told: "the error names a rule that is broken, and a code at which it is",
+    }
+    covers {
+        Accepted: "three speeds are accepted",
+        Falls: "a speed that does not rise over one that is two codes below",
+        Moves: "code 0 is of another speed",
+    }
+    {
+        let mut speeds = [None; MAX_CODES];
+        for (number, speed) in (0_u16..).zip(speeds.iter_mut()) {
+            let its = KmhTenths(e.word("speed of a code (tenths of km/h)", number..=number + number / 6));
+            *speed = if e.word("there is such a code (odd: yes)", 0..=1) & 1 == 1 { Some(its) } else { None };
+        }
+        let made = check_speeds(&speeds);
+        let stops = speeds[0] == Some(KmhTenths(0));
+        let (mut rises, mut gap, mut named) = (true, false, false);
+        let at = match made {
+            Err(WaysideError::SpeedsFall(code)) => usize::from(code.0),
+            _ => 0,
+        };
+        for higher in 1..MAX_CODES {
+            for lower in 0..MAX_CODES {
+                let falls = match (speeds[lower], speeds[higher]) {
+                    (Some(low), Some(high)) => lower < higher && high.0 <= low.0,
+                    _ => false,
+                };
+                rises &= !falls;
+                gap |= falls && lower + 2 == higher && speeds[lower + 1].is_none();
+                named |= falls && higher == at;
+            }
+        }
+        e.claim(Claim::Exact as u32, made.is_ok() == (stops && rises));
+        let told = match made {
+            Ok(()) => true,
+            Err(WaysideError::SpeedsFall(_)) => named,
+            Err(error) => error == WaysideError::StopMoves && !stops,
+        };
+        e.claim(Claim::Told as u32, told);
+        e.cover(Cover::Accepted as u32, made.is_ok() && speeds[1].is_some() && speeds[7].is_some());
+        e.cover(Cover::Falls as u32, made.is_err() && gap);
+        e.cover(Cover::Moves as u32, made == Err(WaysideError::StopMoves) && speeds[0].is_some());
+    }
+}
+
+/// The codes that `way_words` takes besides code 0, one after the other.
+const OTHERS: [usize; 2] = [1, MAX_CODES - 1];
+
+harness! {
+    /// Each code with a speed has the word of that speed (`way_word`), no other code has one, and without a word the speeds are refused.
+    way_words(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-16"];
+    assumptions [];
+    bound BOUND_WORDS;
+    cases OTHERS.len();
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Exact: "accepted if and only if code 0 is of speed 0, the other is higher, and both have a word",
+        Words: "each code with a speed has the rank and the pair of codes of that speed, and no other code has a word",
+    }
+    covers {
+        Accepted: "two speeds are accepted",
+        NoRank: "a speed that is not in the table of speeds",
+        NoPair: "a speed without a pair of codes",
+    }
+    {
+        let Some(mut signals) = fixed_tables() else { return };
+        let case = e.choose("the code besides 0", OTHERS.len());
+        let mut other = OTHERS[0];
+        for (place, each) in OTHERS.iter().enumerate() {
+            other = if place == case { *each } else { other };
+        }
+        let zero = KmhTenths(e.word("speed of code 0 (tenths of km/h)", 0..=0));
+        let high = KmhTenths(e.word("speed of the other code (150, 300 or 450: it has a rank)", 300..=300));
+        signals.speeds[0] = if e.word("there is code 0 (odd: yes)", 1..=1) & 1 == 1 { Some(zero) } else { None };
+        let there = e.word("there is the other code (odd: yes)", 1..=1) & 1 == 1;
+        for number in 1..MAX_CODES {
+            signals.speeds[number] = if number == other && there { Some(high) } else { None };
+        }
+        let made = words(&signals);
+        let stops = signals.speeds[0] == Some(KmhTenths(0));
+        // 150 and 300 have a rank and a pair, 450 a rank alone.
+        let spelt = matches!(high.0, 150 | 300);
+        e.claim(Claim::Exact as u32, made.is_ok() == (stops && (!there || spelt)));
+        let mut named = true;
+        if let Ok(words) = &made {
+            for code in 0..MAX_CODES {
+                let speed = if code == 0 { Some(0) } else if code == other && there { Some(high.0) } else { None };
+                named &= match (words[code], speed) {
+                    (Some(word), Some(speed)) => {
+                        let (main, sub) = (word.codes.main.place(), word.codes.sub.place());
+                        matches!((speed, word.rank.rank(), main, sub), (0, 0, 0, 0) | (150, 1, 0, 1) | (300, 2, 1, 0))
+                    }
+                    (None, None) => true,
+                    _ => false,
+                };
+            }
+        }
+        e.claim(Claim::Words as u32, named);
+        e.cover(Cover::Accepted as u32, made.is_ok() && there);
+        e.cover(Cover::NoRank as u32, matches!(made, Err(WaysideError::NoRank(_))));
+        e.cover(Cover::NoPair as u32, matches!(made, Err(WaysideError::NoPair(_))));
+    }
+}
+
+harness! {
+    /// With any tables of the trains: a speed has a word if and only if it has a rank and a pair of codes, and by those tables rank and pair name that very speed.
+    way_word(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-4", "WAY-16"];
+    assumptions [];
+    bound BOUND_TABLES;
+    cases 1;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Exact: "there is a word if and only if the speed is in both tables",
+        Told: "the error names the table in which it is not",
+        Rank: "the rank is that of the speed",
+        Pair: "the pair of codes names the speed",
+    }
+    covers {
+        Spelt: "a speed of rank 2 is spelt by the last pair",
+        Twice: "two pairs name the speed",
+        NoRank: "a speed without a rank that has a pair",
+        NoPair: "a speed without a pair",
+    }
+    {
+        let mut likely = 0;
+        let mut ranks = [KmhTenths(0); SPEEDS];
+        for rank in &mut ranks {
+            *rank = KmhTenths(e.word("a speed (tenths of km/h)", likely..=likely));
+            likely += 1;
+        }
+        let mut named = [[None; PLACES]; PLACES];
+        for row in 0..2 {
+            for column in 0..2 {
+                let its = KmhTenths(e.word("speed of a pair of codes (tenths of km/h)", 0..=3));
+                named[row][column] = if e.word("the pair names a speed (odd: yes)", 0..=1) & 1 == 1 { Some(its) } else { None };
+            }
+        }
+        let aspects = AspectTable::new(&ranks).ok();
+        let frequencies = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok();
+        let codes = frequencies.and_then(|its| CodeTable::new(its, its, named).ok());
+        e.assume(aspects.is_some() && codes.is_some());
+        let (Some(aspects), Some(codes)) = (aspects, codes) else { return };
+        let speed = KmhTenths(e.word("the speed (tenths of km/h)", 0..=3));
+        let made = spell(&aspects, &codes, SpeedCode(1), speed);
+        let (mut ranked, mut paired, mut twice) = (false, false, false);
+        let (mut rank_is, mut pair_is) = (false, false);
+        for rank in 0..SPEEDS {
+            let its = ranks[rank] == speed;
+            ranked |= its;
+            rank_is |= its && made.is_ok_and(|word| usize::from(word.rank.rank()) == rank);
+        }
+        for row in 0..2 {
+            for column in 0..2 {
+                let its = named[row][column] == Some(speed);
+                twice |= its && paired;
+                paired |= its;
+                let at = |codes: Codes| (usize::from(codes.main.place()), usize::from(codes.sub.place())) == (row, column);
+                pair_is |= its && made.is_ok_and(|word| at(word.codes));
+            }
+        }
+        e.claim(Claim::Exact as u32, made.is_ok() == (ranked && paired));
+        let told = match made {
+            Ok(_) => true,
+            Err(WaysideError::NoRank(code)) => !ranked && code == SpeedCode(1),
+            Err(error) => error == WaysideError::NoPair(SpeedCode(1)) && !paired,
+        };
+        e.claim(Claim::Told as u32, told);
+        e.claim(Claim::Rank as u32, made.is_err() || rank_is);
+        e.claim(Claim::Pair as u32, made.is_err() || pair_is);
+        e.cover(Cover::Spelt as u32, made.is_ok_and(|word| word.rank.rank() == 2 && word.codes.main.place() == 1));
+        e.cover(Cover::Twice as u32, made.is_ok() && twice);
+        e.cover(Cover::NoRank as u32, made.is_err() && paired);
+        e.cover(Cover::NoPair as u32, made == Err(WaysideError::NoPair(SpeedCode(1))));
+    }
+}
+
+harness! {
+    /// A circuit in which the ATC is silent gets nothing, whatever is remembered of it; any other that is described gets frames and codes for both directions of travel.
+    t_way_8_sent(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-21"];
+    assumptions [];
+    bound BOUND;
+    cases 1;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Silent: "where the ATC is silent nothing is sent",
+        Sent: "where it is not, something is sent if and only if the circuit is described",
+        Codes: "the codes that are sent are those of what is said to each direction of travel",
+    }
+    covers {
+        Silent: "the ATC is silent in a circuit that is described",
+        Sent: "the ATC speaks there",
+        Elsewhere: "it speaks in a circuit that is not described",
+    }
+    {
+        let lengths = any_lengths(e);
+        let Some(said) = any_said(e, &lengths) else { return };
+        let movement = any_movement(e);
+        let movement = if any_flag(e, "the ATC is silent (odd: yes)") { None } else { Some(movement) };
+        let circuit = CircuitId::new(any_byte(e, "the circuit (number)", 0..=1));
+        e.assume(circuit.is_some());
+        let Some(circuit) = circuit else { return };
+        let counters = Counters { main: Counter(any_byte(e, "number", 0..=255)), sub: Counter(0) };
+        let restrictions = SpeedLimits::NONE;
+        let sent = said.signals.sent(&lengths, circuit, movement, restrictions, counters);
+        e.claim(Claim::Silent as u32, movement.is_some() || sent.is_none());
+        let described = circuit.number() == 0;
+        e.claim(Claim::Sent as u32, movement.is_none() || sent.is_some() == described);
+        let mut codes = true;
+        if let (Some(sent), Some(movement)) = (sent, movement) {
+            for heading in [Heading::Left, Heading::Right] {
+                let goes = movement.heading == Some(heading);
+                let word = if goes { said.word(movement.speed) } else { said.stop };
+                let its = if heading == Heading::Left { sent.left } else { sent.right };
+                codes &= its.codes == word.codes;
+            }
+        }
+        e.claim(Claim::Codes as u32, codes);
+        e.cover(Cover::Silent as u32, movement.is_none() && described);
+        e.cover(Cover::Sent as u32, sent.is_some());
+        e.cover(Cover::Elsewhere as u32, movement.is_some() && !described);
+    }
+}
+
+harness! {
+    /// The safe output is stop at every signal, no drive, no permission, no confirmed block and silence in every circuit.
+    way_safe(e)
+    theorem "T-WAY-8";
+    requirements ["WAY-23"];
+    assumptions [];
+    bound BOUND_SAFE;
+    cases 1;
+    unwind 65 = 1 + LONGEST;
+    claims {
+        Signals: "no signal shows proceed, no point is driven, no block is confirmed, and no request is answered",
+        Neighbours: "no neighbour is told anything",
+        Silence: "nothing is sent in any circuit",
+    }
+    covers {
+        Any: "there is one",
+    }
+    {
+        let safe = <Wayside<'_, 2, 2, 1, 1, 2> as Machine>::SAFE;
+        let still = safe.proceed.is_empty() && safe.drives.is_empty() && safe.confirmed.is_empty();
+        e.claim(Claim::Signals as u32, still && safe.answer.is_none() && safe.line.is_none());
+        e.claim(Claim::Neighbours as u32, safe.messages[0].is_none() && safe.messages[1].is_none());
+        // Any one of them stands for all.
+        let number = usize::from(e.word("a circuit (number)", 0..=63) & 63);
+        let mut silent = true;
+        for (its, sent) in safe.transmissions.iter().enumerate() {
+            silent &= its != number || sent.is_none();
+        }
+        e.claim(Claim::Silence as u32, silent);
+        e.cover(Cover::Any as u32, number == 63);
+    }
+}
+
+harness! {
     /// The circuits' data are accepted if and only if every circuit in which trains may be is described and has a length, curves are in the trains' table, and no section
     /// number stands twice. The error names a rule that is broken. What is kept is what was given, with the layout's lengths.
     way_signals(e)
@@ -390,7 +667,7 @@ harness! {
         }
         let described = used.bits() < 4;
         let long = lengths[0].0 > 0 && lengths[1].0 > 0;
-        let known = |rank: AspectId| usize::from(rank.rank()) < SPEEDS;
+        let known = |rank: AspectId| usize::from(rank.rank()) <= SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
         e.claim(Claim::Exact as u32, made.is_ok() == (described && long && curves && !twice));
         let told = match made.as_ref().err() {

@@ -31,7 +31,8 @@ fn there(output: &Value, name: &str, word: &str) -> Option<Value> {
 }
 
 /// Every table, in the order of the machines.
-pub const TABLES: &[Table] = &[ASPECT, SUPERVISION, BLOCK, TELEGRAM, PATTERN, PERMITTED, POSITION, INTERLOCKING];
+pub const TABLES: &[Table] =
+    &[ASPECT, SUPERVISION, BLOCK, TELEGRAM, PATTERN, PERMITTED, POSITION, INTERLOCKING, WAYSIDE];
 
 const ASPECT: Table = Table {
     machine: "aspect-acceptance",
@@ -177,5 +178,45 @@ const INTERLOCKING: Table = Table {
             |output| output.get("answer")?.get("refused").cloned(),
             &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24", "ILK-28", "ILK-29", "ILK-30"],
         ),
+    ],
+};
+
+const WAYSIDE: Table = Table {
+    machine: "wayside",
+    start: &["WAY-12", "WAY-13", "WAY-14", "WAY-15", "WAY-16", "WAY-17", "WAY-18", "WAY-19", "WAY-20", "LAY-1"],
+    cycles: &["WAY-20", "TRK-1", "ILK-19"],
+    fields: &[
+        set("proceed", Danger::More, &["WAY-1", "WAY-2", "WAY-8", "WAY-9", "ILK-6", "ILK-26"]),
+        Field {
+            shape: Shape::Entries(&[
+                output("left", Danger::Always, &["WAY-3", "WAY-4", "WAY-5", "WAY-6", "WAY-7"]),
+                output("right", Danger::Always, &["WAY-3", "WAY-4", "WAY-5", "WAY-6", "WAY-7"]),
+            ]),
+            ..output("transmissions", Danger::More, &["WAY-3", "WAY-5", "ATC-1", "ATC-2"])
+        },
+        Field { shape: Shape::Entries(&[]), ..output("messages", Danger::Always, &["WAY-22", "ILK-25"]) },
+        Field {
+            get: Some(|output| {
+                let mut line = output.get("line")?.clone();
+                // Whether the count is in force may be left out.
+                for block in line["blocks"].as_array_mut().into_iter().flatten() {
+                    block.as_object_mut()?.remove("counting");
+                }
+                Some(line)
+            }),
+            ..output("line", Danger::Always, &["WAY-2", "BLK-1", "BLK-2", "BLK-5", "BLK-10", "BLK-11"])
+        },
+        Field { shape: Shape::Entries(&[]), ..output("drives", Danger::More, &["ILK-3", "ILK-8", "ILK-23"]) },
+        set("confirmed", Danger::More, &["WAY-1", "ILK-16", "ILK-24"]),
+        Field { absent: Absent::Empty, ..set("silent", Danger::Fewer, &["WAY-21"]) },
+        Field {
+            get: Some(|output| {
+                let answer = output.get("answer")?;
+                Some(if answer.get("refused").is_some() { "refused".into() } else { answer.clone() })
+            }),
+            ..output("answer", Danger::Appears, &["WAY-1", "WAY-8", "WAY-9", "WAY-10", "ILK-1", "ILK-4"])
+        },
+        Field { shape: Shape::Entries(&[]), ..output("routes", Danger::No, &["WAY-1", "ILK-9", "ILK-10"]) },
+        reason("answer reason", |output| output.get("answer")?.get("refused").cloned(), &["WAY-10", "ILK-1"]),
     ],
 };

@@ -14,6 +14,7 @@ mod position;
 mod station;
 mod supervision;
 mod telegram;
+mod wayside;
 
 use std::sync::OnceLock;
 
@@ -57,6 +58,7 @@ pub const SOURCES: &[Source] = &[
     permitted::SOURCE,
     position::SOURCE,
     interlocking::SOURCE,
+    wayside::SOURCE,
 ];
 
 /// The configurations of a source, made once: a layout takes its time.

@@ -19,6 +19,7 @@ const SESSIONS: &[(&str, &str)] = &[
     ("speed-pattern", include_str!("../../../examples/speed-pattern.jsonl")),
     ("train-position", include_str!("../../../examples/train-position.jsonl")),
     ("train", include_str!("../../../examples/train.jsonl")),
+    ("wayside", include_str!("../../../examples/wayside.jsonl")),
     ("interlocking", include_str!("../../../examples/interlocking.jsonl")),
 ];
 

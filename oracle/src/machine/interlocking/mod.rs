@@ -3,14 +3,15 @@
 mod because;
 mod config;
 mod forms;
+mod part;
 mod plan;
 mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Position, Positions, RouteId,
-    SegmentId, SegmentSet, SpeedCode, Station,
+    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
+    SegmentSet, SpeedCode, Station,
 };
 use atc_layout::Names;
 
@@ -210,32 +211,16 @@ impl Interlocked {
             let heading = movement.heading.map(Heading);
             Some((name.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
         });
-        let held = self.names.routes.iter().zip(&self.memory.interlocking.routes).filter(|(_, route)| route.is_held());
-        let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
-            let point = PointSet::nth(number);
-            let side = |position| Some((name.clone(), Side(position)));
-            match (output.drives.normal.meets(point), output.drives.reverse.meets(point)) {
-                (true, _) => side(Position::Normal),
-                (false, true) => side(Position::Reverse),
-                (false, false) => None,
-            }
-        });
-        let answer = output.answer.map(|answer| match answer {
-            Ok(()) => Answer::Accepted(Accepted::Accepted),
-            Err(refusal) => {
-                let occupied = Self::occupied(&output.table, self.memory.cycle);
-                Answer::Refused(Refused { refused: Reason(refusal), because: self.because(input, occupied, refusal) })
-            }
-        });
+        let occupied = Self::occupied(&output.table, self.memory.cycle);
         Output {
             silent,
-            routes: held.map(|(name, route)| (name.clone(), Phase(route.phase))).collect(),
-            proceed: named(&self.names.routes, |number| output.proceed.meets(kernel::RouteSet::nth(number))),
-            drives: drives.collect(),
+            routes: self.phases(),
+            proceed: self.names_of_routes(output.proceed),
+            drives: self.sides(output.drives),
             telegrams: telegrams.collect::<BTreeMap<_, _>>(),
             permits: self.segments_of(output.permits),
             confirmed: self.circuits_of(output.confirmed),
-            answer,
+            answer: self.answer(input, occupied, output.answer),
         }
     }
 }

@@ -111,7 +111,7 @@ impl Codes {
     ///
     /// # Errors
     /// The rule that it breaks, in a sentence.
-    fn table(&self) -> Result<CodeTable, String> {
+    pub(in crate::machine) fn table(&self) -> Result<CodeTable, String> {
         let tolerance = millihertz("codes.tolerance_hz", self.tolerance_hz)?;
         let (mut of_main, mut of_sub) = (Vec::new(), Vec::new());
         let mut pairs = Vec::with_capacity(self.pairs.len());

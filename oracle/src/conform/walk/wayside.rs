@@ -1,0 +1,306 @@
+//! Walks of `wayside`: a train from one end of the line through the station to the other, with detections that are late or missed and
+//! false occupancy; messages that echo a stamp about as old as the life, or of another start; requests of every kind; restarts; frames
+//! that are taken or not.
+
+use serde_json::{Value, json};
+
+use super::mutate::examples;
+use super::{Source, Walk, cycles};
+use crate::conform::random::Random;
+
+pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200) };
+
+/// The circuits of the station in the direction of travel.
+const TRACK: [&str; 6] = ["W2", "W1", "A", "B", "E1", "E2"];
+
+/// The example's configuration.
+fn example() -> Value {
+    examples("wayside").into_iter().next().map(|(_, case)| case.config).unwrap_or_default()
+}
+
+/// With these times in cycles.
+fn timed(mut config: Value, life: u64, turn: u64, clear: u64, start: u64) -> Value {
+    let cycle = config["layout"]["plan"]["cycle_ms"].as_u64().unwrap_or(1);
+    config["life_ms"] = (life * cycle).into();
+    let plan = &mut config["layout"]["plan"];
+    (plan["turn_cycles"], plan["clear_cycles"], plan["start_cycles"]) = (turn.into(), clear.into(), start.into());
+    for (name, value) in [("drive_cycles", 2), ("release_cycles", 3), ("stay_cycles", 2)] {
+        plan["routes"][0][name] = value.into();
+    }
+    config
+}
+
+/// The line of the trains that leave, counted away from the station, with its low end outside.
+fn away(mut config: Value) -> Value {
+    config["counted"] = json!({
+        "segment": "East", "travel": "away", "direction": "down", "train_m": 200,
+        "blocks": [{"circuits": ["E1", "B"], "max_trains": 2, "tail_hold_sections": 1, "pass_ms": 3000}],
+    });
+    config
+}
+
+/// Without a counted line.
+fn plain(mut config: Value) -> Value {
+    config["counted"] = Value::Null;
+    config
+}
+
+fn small() -> Vec<Value> {
+    let example = example();
+    vec![
+        timed(example.clone(), 1, 2, 1, 0),
+        timed(example.clone(), 3, 4, 2, 1),
+        timed(away(example.clone()), 2, 3, 1, 0),
+        timed(plain(example.clone()), 2, 5, 1, 2),
+    ]
+}
+
+fn large() -> Vec<Value> {
+    let example = example();
+    vec![example.clone(), away(example.clone()), plain(example)]
+}
+
+fn wrong() -> Vec<Value> {
+    let change = |change: fn(&mut Value)| {
+        let mut config = example();
+        change(&mut config);
+        config
+    };
+    vec![
+        change(|config| config["life_ms"] = 0.into()),
+        change(|config| config["life_ms"] = 5000.into()),
+        change(|config| config["counted"]["direction"] = "down".into()),
+        change(|config| config["counted"]["travel"] = "away".into()),
+        change(|config| config["counted"]["train_m"] = 211.into()),
+        change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["W2"])),
+        change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["E1"])),
+        change(|config| config["counted"]["blocks"] = json!([])),
+        change(|config| config["signals"]["speeds_km_h"] = json!([0, 15, 25, 75])),
+        change(|config| config["signals"]["codes"]["pairs"][3]["speed_km_h"] = 74.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 203.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 100.into()),
+        change(|config| {
+            config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("E2"));
+        }),
+        away_to_the_end(),
+    ]
+}
+
+/// A counted line beyond whose exit the layout has nothing.
+fn away_to_the_end() -> Value {
+    let mut config = away(example());
+    config["counted"]["blocks"][0]["circuits"] = json!(["E2", "E1"]);
+    config
+}
+
+/// A block of the counted line.
+struct Block {
+    /// The places of its sections on the track, from the low end.
+    places: Vec<usize>,
+}
+
+struct Ground {
+    blocks: Vec<Block>,
+    /// Whether the low end of the blocks is their entry.
+    up: bool,
+    life: i64,
+    session: i64,
+    /// The head's place on the track, and the cycles until it moves; none: no train.
+    train: Option<(usize, i64)>,
+    /// Places whose head has just gone on: their tail is still there.
+    tail: Option<usize>,
+    /// The place that the head entered in this cycle.
+    entered: Option<usize>,
+    /// What the device has told each neighbour so far.
+    heard: [Vec<Value>; 2],
+    permits: [bool; 2],
+    /// How late the neighbours answer, in cycles.
+    late: i64,
+    sent: i64,
+    begun: bool,
+    /// How often something goes wrong: once in so many times; 0 for never.
+    wrong: u64,
+}
+
+fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
+    let blocks = config["counted"]["blocks"].as_array().into_iter().flatten().map(|block| {
+        let circuits = block["circuits"].as_array().into_iter().flatten();
+        let place = |circuit: &Value| TRACK.iter().position(|name| circuit == name);
+        Block { places: circuits.filter_map(place).collect() }
+    });
+    let life = cycles(started, "life");
+    Box::new(Ground {
+        blocks: blocks.collect(),
+        up: config["counted"]["direction"] != "down",
+        life,
+        session: config["session"].as_i64().unwrap_or(0),
+        train: None,
+        tail: None,
+        entered: None,
+        heard: [Vec::new(), Vec::new()],
+        permits: [!random.one_in(6), !random.one_in(6)],
+        // A neighbour answers at once, or about as late as the life.
+        late: random.one_of(&[1, 1, 1, life - 1, life, life + 1]).max(1),
+        sent: 0,
+        begun: random.one_in(10),
+        wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
+    })
+}
+
+impl Ground {
+    fn goes_wrong(&self, random: &mut Random) -> bool {
+        self.wrong > 0 && random.one_in(self.wrong)
+    }
+
+    fn move_train(&mut self, random: &mut Random) {
+        self.entered = None;
+        self.tail = None;
+        let dwell = random.between(0, 3);
+        match &mut self.train {
+            None if random.one_in(6) => {
+                let first = if random.one_in(4) { random.below(TRACK.len()) } else { 0 };
+                self.train = Some((first, dwell));
+                self.entered = Some(first);
+            }
+            None => {}
+            Some((_, left)) if *left > 0 => *left -= 1,
+            Some((place, left)) => {
+                self.tail = Some(*place);
+                (*place, *left) = (*place + 1, dwell);
+                self.entered = Some(*place);
+                if *place >= TRACK.len() {
+                    self.train = None;
+                }
+            }
+        }
+    }
+
+    fn detections(&self, random: &mut Random) -> Vec<Value> {
+        let detection = |block: &Block, random: &mut Random| {
+            let head = self.train.map(|(place, _)| place);
+            let mut present: Vec<_> = (0..block.places.len()).filter(|at| Some(block.places[*at]) == head).collect();
+            if self.goes_wrong(random) {
+                // Missed, or heard where nothing is.
+                present = if present.is_empty() { vec![0] } else { Vec::new() };
+            }
+            let (low, high) = (block.places.first().copied(), block.places.last().copied());
+            let (entry, exit) = if self.up { (low, high) } else { (high, low) };
+            let check_in = self.entered.is_some() && self.entered == entry;
+            let check_out = self.tail.is_some() && self.tail == exit;
+            let (low, high) = if self.up { (check_in, check_out) } else { (check_out, check_in) };
+            let flip = |check: bool, random: &mut Random| check != self.goes_wrong(random);
+            let reset = if random.one_in(14) {
+                let heard = i64::try_from(present.len()).unwrap_or(0);
+                random.one_of(&[heard, heard, heard, heard + 1, 0, 255]).into()
+            } else {
+                Value::Null
+            };
+            json!({"low_check": flip(low, random), "high_check": flip(high, random), "present": present, "reset": reset})
+        };
+        self.blocks.iter().map(|block| detection(block, random)).collect()
+    }
+
+    fn occupied(&self, random: &mut Random) -> Vec<&'static str> {
+        let counted: Vec<_> = self.blocks.iter().flat_map(|block| block.places.iter().copied()).collect();
+        let at = |place: usize| self.train.map(|(head, _)| head) == Some(place) || self.tail == Some(place);
+        let places = (0..TRACK.len()).filter(|place| {
+            let its = !counted.contains(place) && at(*place);
+            its != (self.wrong > 0 && random.one_in(4 * self.wrong))
+        });
+        places.map(|place| TRACK[place]).collect()
+    }
+
+    /// What the neighbours say in this cycle.
+    fn messages(&mut self, random: &mut Random) -> Value {
+        let mut messages = json!({});
+        self.sent += 1;
+        for (number, name) in ["West", "East"].into_iter().enumerate() {
+            if random.one_in(12) {
+                self.permits[number] = !self.permits[number];
+            }
+            if random.one_in(24) {
+                self.late = random.one_of(&[1, 1, self.life - 1, self.life, self.life + 1]).max(1);
+            }
+            if random.one_in(8) {
+                continue;
+            }
+            let late = if random.one_in(6) { random.between(1, self.life + 3) } else { self.late };
+            let heard = &self.heard[number];
+            let back = usize::try_from(late).ok().and_then(|late| heard.len().checked_sub(late));
+            let mut echo = back.map_or(Value::Null, |back| heard[back].clone());
+            match random.below(30) {
+                0 => echo = Value::Null,
+                1 => echo["session"] = json!((self.session + 1) % 65536),
+                2 => echo = json!({"session": self.session, "cycle": 4_294_967_295_u32}),
+                _ => {}
+            }
+            if echo.is_object() && !echo["cycle"].is_u64() {
+                echo = Value::Null;
+            }
+            let permission = if self.permits[number] { "granted" } else { "withheld" };
+            let sent = json!({"session": 40 + number, "cycle": self.sent});
+            messages[name] = json!({"permission": permission, "sent": sent, "echo": echo});
+        }
+        messages
+    }
+
+    fn request(&self, random: &mut Random) -> Value {
+        match random.below(12) {
+            0..=4 => json!({"set": "in-out"}),
+            5 => json!({"withdraw": "in-out"}),
+            6 => json!({"drive": "P", "to": if random.one_in(2) { "normal" } else { "reverse" }}),
+            7 | 8 => json!({"turn": "West", "to": if random.one_in(4) { "away" } else { "toward" }}),
+            _ => json!({"turn": "East", "to": if random.one_in(4) { "toward" } else { "away" }}),
+        }
+    }
+
+    fn orders(&mut self, random: &mut Random) -> Option<Value> {
+        if !self.begun {
+            self.begun = true;
+            return Some(json!({"unblock": TRACK, "lift": TRACK}));
+        }
+        let one = TRACK[random.below(TRACK.len())];
+        match random.below(40) {
+            0 => Some(json!({"block": [one]})),
+            1 | 2 => Some(json!({"unblock": TRACK})),
+            3 => Some(json!({"restrict": {one: random.one_of(&[0, 24, 25, 26, 45, 75, 65_535])}})),
+            4 => Some(json!({"lift": TRACK})),
+            _ => None,
+        }
+    }
+}
+
+impl Walk for Ground {
+    fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value {
+        for (number, name) in ["West", "East"].into_iter().enumerate() {
+            if let Some(stamp) = last.and_then(|last| last["messages"].get(name)).map(|message| &message["sent"]) {
+                self.heard[number].push(stamp.clone());
+            }
+        }
+        self.move_train(random);
+        let detected = if self.goes_wrong(random) { json!({}) } else { json!({"P": "normal"}) };
+        let mut step = json!({
+            "occupied": self.occupied(random), "detected": detected, "blocks": self.detections(random),
+            "messages": self.messages(random),
+        });
+        if random.one_in(3) {
+            step["request"] = self.request(random);
+        }
+        if let Some(orders) = self.orders(random) {
+            step["orders"] = orders;
+        }
+        if random.one_in(4) {
+            let some = |random: &mut Random| -> Vec<&str> { TRACK.into_iter().filter(|_| random.one_in(2)).collect() };
+            step["framed"] = json!({"main": some(random), "sub": some(random)});
+        }
+        if random.one_in(48) {
+            self.session = (self.session + 1) % 65536;
+            self.begun = random.one_in(10);
+            step["restart"] = self.session.into();
+        }
+        if random.one_in(3) {
+            step["all_telegrams"] = true.into();
+        }
+        step
+    }
+}

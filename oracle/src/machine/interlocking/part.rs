@@ -1,0 +1,85 @@
+//! The interlocking as a part of the ground's device: its names, and what is remembered there.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use atc_kernel::interlocking::{
+    self as kernel, CircuitId, CircuitSet, Input, Memory, PointSet, Position, Positions, Refusal, RouteSet, SegmentId,
+};
+
+use super::forms::{Accepted, Answer, Refused};
+use super::words::{Phase, Reason, Side};
+use super::{Interlocked, named, place};
+
+impl Interlocked {
+    /// The speeds of the codes in km/h; 0 where there is no such code.
+    pub(in crate::machine) fn speeds_kmh(&self) -> [u16; kernel::MAX_CODES] {
+        self.speeds_kmh
+    }
+
+    /// Goes on from this memory.
+    pub(in crate::machine) fn remember(&mut self, memory: Memory<64, 8>) {
+        *self.memory = memory;
+    }
+
+    /// The segment of that name.
+    pub(in crate::machine) fn segment(&self, name: &str, field: &str) -> Result<SegmentId, String> {
+        let number = place(&self.names.segments, name, field, "segment")?;
+        SegmentId::new(number).ok_or_else(|| format!("segment {number} has no place"))
+    }
+
+    /// The circuit of that name.
+    pub(in crate::machine) fn circuit(&self, name: &str, field: &str) -> Result<CircuitId, String> {
+        let number = place(&self.names.circuits, name, field, "circuit")?;
+        CircuitId::new(number).ok_or_else(|| format!("circuit {number} has no place"))
+    }
+
+    /// The circuits of those names, each once.
+    pub(in crate::machine) fn circuits_named(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
+        self.circuits(list, field)
+    }
+
+    /// The names of circuits.
+    pub(in crate::machine) fn names_of_circuits(&self, set: CircuitSet) -> BTreeSet<String> {
+        self.circuits_of(set)
+    }
+
+    /// The phase of every route that is not idle.
+    pub(in crate::machine) fn phases(&self) -> BTreeMap<String, Phase> {
+        let held = self.names.routes.iter().zip(&self.memory.interlocking.routes).filter(|(_, route)| route.is_held());
+        held.map(|(name, route)| (name.clone(), Phase(route.phase))).collect()
+    }
+
+    /// The names of routes.
+    pub(in crate::machine) fn names_of_routes(&self, set: RouteSet) -> BTreeSet<String> {
+        named(&self.names.routes, |number| set.meets(RouteSet::nth(number)))
+    }
+
+    /// The points that are driven, and whereto.
+    pub(in crate::machine) fn sides(&self, drives: Positions) -> BTreeMap<String, Side> {
+        let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
+            let point = PointSet::nth(number);
+            let side = |position| Some((name.clone(), Side(position)));
+            match (drives.normal.meets(point), drives.reverse.meets(point)) {
+                (true, _) => side(Position::Normal),
+                (false, true) => side(Position::Reverse),
+                (false, false) => None,
+            }
+        });
+        drives.collect()
+    }
+
+    /// What became of the request, with what is in the way. `occupied` are the circuits that count as occupied.
+    pub(in crate::machine) fn answer(
+        &self,
+        input: Input,
+        occupied: CircuitSet,
+        answer: Option<Result<(), Refusal>>,
+    ) -> Option<Answer> {
+        answer.map(|answer| match answer {
+            Ok(()) => Answer::Accepted(Accepted::Accepted),
+            Err(refusal) => {
+                Answer::Refused(Refused { refused: Reason(refusal), because: self.because(input, occupied, refusal) })
+            }
+        })
+    }
+}

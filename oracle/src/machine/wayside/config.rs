@@ -1,0 +1,353 @@
+//! The configuration of the ground's device: a layout, the counted line, and what the transmitters say.
+
+use std::collections::BTreeMap;
+
+use atc_kernel::aspect::{AspectId, AspectTable};
+use atc_kernel::block::{self as kernel, Block, LineError};
+use atc_kernel::interlocking::{CircuitId, MAX_CIRCUITS, MAX_CODES, SpeedCode};
+use atc_kernel::speed::KmhTenths;
+use atc_kernel::telegram::SectionId;
+use atc_kernel::time::{Cycle as Clock, Millis, Ticks};
+use atc_kernel::wayside::{Equipment, Fixed, Join, Session, SignalPlan, Spot, WaysideError};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use atc_line::refusal::{Refusal, fit, gradient, metres, tenths};
+
+use crate::kmh::Kmh;
+use crate::machine::block;
+use crate::machine::interlocking::{self, Interlocked, Travel};
+use crate::machine::train::Codes;
+use crate::names::{self, Named};
+
+/// The configuration.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "WaysideConfig")]
+pub struct Config {
+    /// The layout, with the cycle and the speeds of its codes: a configuration of `interlocking`.
+    pub layout: interlocking::Config,
+    /// The counted line; null or absent: there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counted: Option<CountedLine>,
+    /// What the transmitters say.
+    pub signals: Signals,
+    /// For how long the neighbour's permission counts, from the own cycle that its message answers. Rounded down to cycles; less than
+    /// the layout's turn time.
+    pub life_ms: u32,
+    /// The number of this start of the device, 0 to 65535, never the same twice.
+    #[serde(default)]
+    #[schemars(range(max = 65535))]
+    pub session: u32,
+}
+
+/// Along the blocks: from their low end or towards it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(rename = "LineDirection")]
+pub enum Direction {
+    /// From the low end to the high end.
+    Up,
+    /// From the high end to the low end.
+    Down,
+}
+
+impl Named for Direction {
+    const WHAT: &'static str = "direction along the line";
+    const EVERY: &'static [Self] = &[Self::Up, Self::Down];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Up => "up",
+            Self::Down => "down",
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        names::read(deserializer)
+    }
+}
+
+/// A counted line on the circuits of a segment.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CountedLine {
+    /// The segment that is counted.
+    pub segment: String,
+    /// The direction of travel that it has, for ever.
+    pub travel: Travel,
+    /// The same along the blocks, whose low end is where the list begins.
+    pub direction: Direction,
+    /// The length of the longest train, in whole metres.
+    pub train_m: u32,
+    /// The blocks, from the low end: 1 to 8.
+    pub blocks: Vec<CountedBlock>,
+}
+
+/// One block of a counted line. Its fields are those of `block-count`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CountedBlock {
+    /// The circuit on each of its sections, from the low end: 1 to 16.
+    pub circuits: Vec<String>,
+    /// The most trains that may be in it: 1 to the number of its sections.
+    pub max_trains: u32,
+    /// How many sections are held occupied behind every head: 0 to 16, the same for all blocks.
+    pub tail_hold_sections: u32,
+    /// The longest that a passing train keeps the check-in on. Rounded down to cycles.
+    #[serde(default = "default_pass")]
+    pub pass_ms: u32,
+}
+
+const fn default_pass() -> u32 {
+    10_000
+}
+
+/// What the transmitters say. The speeds of the codes are those of the layout; each needs a rank and a pair, also 0.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "WaysideSignals")]
+pub struct Signals {
+    /// The line's speeds as trains have them, the lowest first: their places are the ranks in telegrams.
+    pub speeds_km_h: Vec<Kmh>,
+    /// The pairs of code frequencies as trains have them.
+    pub codes: Codes,
+    /// What is said of each circuit; nothing is sent in one that is not here.
+    pub circuits: BTreeMap<String, CircuitSignals>,
+}
+
+/// What trains are told of a circuit. Its length is the layout's.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitSignals {
+    /// Those that travel towards the left.
+    pub left: FacingSignals,
+    /// Those that travel towards the right.
+    pub right: FacingSignals,
+}
+
+/// What trains of one direction of travel are told of a circuit.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FacingSignals {
+    /// The number by which they know it, 0 to 65535. Trains of the other direction know it by another one.
+    #[schemars(range(max = 65535))]
+    pub section: u32,
+    /// The least favourable gradient in thousandths, positive where the train climbs: -128 to 127.
+    #[schemars(range(min = -128, max = 127))]
+    pub gradient_permille: i32,
+    /// The limit by curves and points: one of the line's speeds.
+    pub curve_km_h: Kmh,
+}
+
+/// What a device is made of, checked part by part.
+pub(super) struct Parts {
+    pub(super) blocks: Vec<Block>,
+    /// The blocks' circuits, from the low end.
+    circuits: Vec<[Option<CircuitId>; 16]>,
+    pub(super) signals: SignalPlan,
+    pub(super) life: Ticks,
+    pub(super) session: Session,
+}
+
+/// A number of a start.
+pub(super) fn session(field: &str, number: u32) -> Result<Session, Refusal> {
+    fit(field, number, "0 to 65535").map(Session)
+}
+
+impl Config {
+    /// The parts.
+    ///
+    /// # Errors
+    /// The first that breaks a rule of its own, in a sentence.
+    pub(super) fn parts(&self, station: &Interlocked) -> Result<Parts, String> {
+        let cycle = Millis(station.cycle_ms());
+        let (mut blocks, mut circuits) = (Vec::new(), Vec::new());
+        for (number, block) in self.counted.iter().flat_map(|counted| &counted.blocks).enumerate() {
+            let field = format!("counted.blocks[{number}]");
+            let sections = u32::try_from(block.circuits.len()).unwrap_or(u32::MAX);
+            let &CountedBlock { max_trains, tail_hold_sections, pass_ms, .. } = block;
+            let its = block::Config { sections, max_trains, tail_hold_sections, cycle_ms: cycle.0, pass_ms };
+            blocks.push(its.block().map_err(|refusal| format!("{field}.{}", refusal.what))?);
+            let mut row = [None; 16];
+            for (place, (name, circuit)) in block.circuits.iter().zip(&mut row).enumerate() {
+                *circuit = Some(station.circuit(name, &format!("{field}.circuits[{place}]"))?);
+            }
+            circuits.push(row);
+        }
+        let life = Clock::new(cycle).and_then(|cycle| cycle.at_most(Millis(self.life_ms)));
+        let life = life.ok_or_else(|| format!("life_ms is {} ms; it must be at most 60000 cycles", self.life_ms))?;
+        let signals = self.signals.plan(station)?;
+        Ok(Parts { blocks, circuits, signals, life, session: session("session", self.session)? })
+    }
+
+    /// The equipment of a device with `B` blocks.
+    ///
+    /// # Errors
+    /// What the layout does not have, in a sentence.
+    pub(super) fn equipment<const B: usize>(
+        &self,
+        station: &Interlocked,
+        parts: &Parts,
+    ) -> Result<Equipment<B>, String> {
+        let mut counted = None;
+        if let Some(line) = &self.counted {
+            let few = || format!("counted.blocks has {} blocks; a line has 1 to 8", parts.blocks.len());
+            counted = Some(Join {
+                blocks: parts.blocks.clone().try_into().map_err(|_| few())?,
+                direction: match line.direction {
+                    Direction::Up => kernel::Direction::Up,
+                    Direction::Down => kernel::Direction::Down,
+                },
+                train: metres("counted.train_m", line.train_m)?,
+                segment: station.segment(&line.segment, "counted.segment")?,
+                travel: line.travel.0,
+                circuits: parts.circuits.clone().try_into().map_err(|_| few())?,
+            });
+        }
+        Ok(Equipment { counted, signals: parts.signals, life: parts.life, session: parts.session })
+    }
+
+    /// Which rule the parts break together.
+    pub(super) fn explain(&self, station: &Interlocked, error: WaysideError) -> String {
+        let circuit =
+            |id: CircuitId| station.names().circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
+        let speed = |code: SpeedCode| station.speeds_kmh().get(usize::from(code.0)).copied().unwrap_or(0);
+        let segment = self.counted.as_ref().map_or("", |counted| &counted.segment);
+        let at = |spot: Spot| format!("counted.blocks[{}].circuits[{}]", spot.block, spot.section);
+        let on = |spot: Spot| {
+            let block = self.counted.as_ref().and_then(|counted| counted.blocks.get(usize::from(spot.block)));
+            block.and_then(|block| block.circuits.get(usize::from(spot.section))).cloned().unwrap_or_default()
+        };
+        match error {
+            WaysideError::NoSuchSegment => format!("counted.segment is {segment}; the layout has no such segment"),
+            WaysideError::RouteAgainstTheLine(route) => format!(
+                "route {} needs segment {segment} against counted.travel; a counted line has one direction of travel",
+                station.names().routes.get(usize::from(route)).map_or("", String::as_str)
+            ),
+            WaysideError::SectionWithoutCircuit(spot) | WaysideError::CircuitWithoutSection(spot) => {
+                format!("{} has not one circuit; every section has one", at(spot))
+            }
+            WaysideError::SectionElsewhere(spot) => {
+                format!("{} is {}; it must be a circuit of segment {segment} or its throat", at(spot), on(spot))
+            }
+            WaysideError::SectionsOutOfOrder(spot) => format!(
+                "{} is {}; it must be the circuit that follows the one before it, in counted.direction and counted.travel",
+                at(spot),
+                on(spot)
+            ),
+            WaysideError::Line(error) => explain_line(error),
+            WaysideError::NothingBeyondTheExit => {
+                "counted.blocks reach to the end of the layout; a circuit must be beyond the line's exit".to_owned()
+            }
+            WaysideError::HoldTooShortAtTheEntry => format!(
+                "tail_hold_sections is too small at the line's entry; the places that are held must be as long as counted.train_m, {} m",
+                self.counted.as_ref().map_or(0, |counted| counted.train_m)
+            ),
+            WaysideError::StopMoves => "code 0 of the layout is of another speed than 0 km/h".to_owned(),
+            WaysideError::SpeedsFall(code) => {
+                format!(
+                    "code {} of the layout is of {} km/h; it must be faster than the codes below it",
+                    code.0,
+                    speed(code)
+                )
+            }
+            WaysideError::NoRank(code) => {
+                format!("signals.speeds_km_h has not {} km/h, which code {} of the layout has", speed(code), code.0)
+            }
+            WaysideError::NoPair(code) => {
+                format!(
+                    "signals.codes.pairs has no pair for {} km/h, which code {} of the layout has",
+                    speed(code),
+                    code.0
+                )
+            }
+            WaysideError::CodeWithoutSpeed(code) => {
+                format!("code {} of the layout has a braking distance and no speed", code.0)
+            }
+            WaysideError::CircuitWithoutSignals(id) => {
+                format!(
+                    "signals.circuits has not {}; it must have every circuit of a path, an entry or a segment",
+                    circuit(id)
+                )
+            }
+            WaysideError::NoLength(id) => format!("signals.circuits.{} has no length in the layout", circuit(id)),
+            WaysideError::UnknownCurve(id) => {
+                format!("signals.circuits.{}.curve_km_h is not in signals.speeds_km_h", circuit(id))
+            }
+            WaysideError::SectionNumberTwice(id) => format!(
+                "signals.circuits.{} has a section number that stands for another circuit, or for both directions of travel",
+                circuit(id)
+            ),
+            WaysideError::NoLife => format!("life_ms is {} ms; it must be one cycle at least", self.life_ms),
+            WaysideError::LifeOutlastsTurn => {
+                format!(
+                    "life_ms is {} ms; it must be less than the layout's turn time and at most 60000 cycles",
+                    self.life_ms
+                )
+            }
+        }
+    }
+}
+
+fn explain_line(error: LineError) -> String {
+    match error {
+        LineError::NoBlocks => "counted.blocks is empty; a line has 1 to 8 blocks".to_owned(),
+        LineError::TooManySections => "counted.blocks have more than 64 sections together".to_owned(),
+        LineError::LengthsDoNotMatch => "counted.blocks have not as many circuits as sections".to_owned(),
+        LineError::NoLength(section) => format!("the circuit of section {section} of the counted line has no length"),
+        LineError::HoldsDiffer(block) => {
+            format!(
+                "counted.blocks[{block}].tail_hold_sections is not that of counted.blocks[0]; they must be the same"
+            )
+        }
+        LineError::HoldTooShort(section) => format!(
+            "tail_hold_sections is too small: what is held from section {section} on is shorter than counted.train_m"
+        ),
+        LineError::TrainTooLong => "counted.train_m needs more than 16 sections held".to_owned(),
+    }
+}
+
+impl Signals {
+    fn plan(&self, station: &Interlocked) -> Result<SignalPlan, String> {
+        let mut ranks = Vec::new();
+        for (place, speed) in self.speeds_km_h.iter().enumerate() {
+            ranks.push(tenths(&format!("signals.speeds_km_h[{place}]"), *speed)?);
+        }
+        let aspects = AspectTable::new(&ranks).map_err(|_| {
+            "signals.speeds_km_h must have 1 to 16 speeds, each higher than the one before it".to_owned()
+        })?;
+        let mut circuits = [None; MAX_CIRCUITS];
+        for (name, its) in &self.circuits {
+            let field = format!("signals.circuits.{name}");
+            let number = usize::from(station.circuit(name, "signals.circuits")?.number());
+            let left = its.left.kernel(&format!("{field}.left"), &aspects)?;
+            let right = its.right.kernel(&format!("{field}.right"), &aspects)?;
+            if let Some(place) = circuits.get_mut(number) {
+                *place = Some(Fixed { left, right });
+            }
+        }
+        let mut speeds = [None; MAX_CODES];
+        for (code, (speed, kmh)) in speeds.iter_mut().zip(station.speeds_kmh()).enumerate() {
+            // A layout has the speeds of its codes in whole km/h; 0 stands for a code that it has not, and for code 0.
+            *speed = (code == 0 || kmh > 0).then(|| KmhTenths(kmh.saturating_mul(10)));
+        }
+        let codes = self.codes.table().map_err(|what| format!("signals.{what}"))?;
+        Ok(SignalPlan { circuits, speeds, aspects, codes })
+    }
+}
+
+impl FacingSignals {
+    fn kernel(&self, field: &str, aspects: &AspectTable) -> Result<atc_kernel::wayside::Facing, String> {
+        let speed = tenths(&format!("{field}.curve_km_h"), self.curve_km_h)?;
+        let curve: Option<AspectId> = aspects.aspect(speed);
+        let unknown = || format!("{field}.curve_km_h is {}; it must be one of signals.speeds_km_h", self.curve_km_h);
+        Ok(atc_kernel::wayside::Facing {
+            section: SectionId(fit(&format!("{field}.section"), self.section, "0 to 65535")?),
+            gradient: gradient(&format!("{field}.gradient_permille"), self.gradient_permille)?,
+            curve: curve.ok_or_else(unknown)?,
+        })
+    }
+}
