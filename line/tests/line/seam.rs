@@ -235,7 +235,16 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
             line,
         ),
         ("train-length", &[(east, "longest_train_m = 200", "longest_train_m = 199")], east, line),
-        ("shunt-loss", &[(line, "shunt_loss_ms = 1000", "shunt_loss_ms = 1001")], west, line),
+        (
+            "shunt-loss",
+            &[
+                (line, "shunt_loss_ms = 1000", "shunt_loss_ms = 1001"),
+                (west, "clear_ms = 2000", "clear_ms = 2100"),
+                (east, "clear_ms = 2000", "clear_ms = 2100"),
+            ],
+            west,
+            line,
+        ),
         // Twice a loss of one cycle is two cycles; the line asks for one more.
         ("loss-within-clear", &SHORT_LOSS, east, line),
         (
@@ -278,7 +287,7 @@ fn a_mapping_of_codes_that_is_never_faster() {
 
 #[test]
 fn a_station_that_is_refused_hides_nothing_and_passes_nothing() {
-    let mut changes = vec![("westham.toml", "turn_ms = 47000", "turn_ms = 46000")];
+    let mut changes = vec![("westham.toml", "turn_ms = 47000", "turn_ms = 45000")];
     changes.extend(SHORT_LOSS);
     let (rules, _) = broken(&changes);
     assert_eq!(rules, ["station", "loss-within-clear"].map(String::from).into());
