@@ -107,7 +107,7 @@ fn a_station_has_a_case_of_its_own_and_a_broken_rule_ends_it_badly() {
     std::fs::write(&bad, format!("{good}\n[times]\nclear_ms = 1000\n")).expect("written");
     let run = bare(&out, &["--layout", bad.to_str().expect("a path")]);
     assert_eq!(run.status.code(), Some(1), "{}", text(&run));
-    assert!(text(&run).contains("clear_ms must be more than 1000"), "{}", text(&run));
+    assert!(text(&run).contains("clear_ms must be at least 2000"), "{}", text(&run));
     let reasons = json(&out)["status"]["reasons"].to_string();
     assert_eq!(reasons.matches("[clear-under-shunt]").count(), 1, "{reasons}");
     assert_eq!(json(&out)["station"]["theorems"], serde_json::json!([]));

@@ -199,11 +199,12 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
         wrong(what, right);
     }
     let clear = values.ms(Ticks(values.clear.into()));
-    if clear <= loss.value {
+    let least = loss.value.saturating_mul(2);
+    if clear < least {
         let what = format!(
             "in {station} a circuit counts as clear after {clear} ms, and a train of {neighbour} may be lost for {loss} ms"
         );
-        wrong(what, format!("clear_ms of {station} must be more than {loss}"));
+        wrong(what, format!("clear_ms of {station} must be at least {least}: twice that"));
     }
 }
 

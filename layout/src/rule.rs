@@ -125,7 +125,7 @@ impl Rule {
             Self::NoFlank => "a track from which a vehicle can run into the path is kept off, or the file says why not",
             Self::OverlapTooShort => "the overlap is as long as the least one, or the file says why not",
             Self::FoulingNotHeld => "a route over one of two circuits that foul each other goes over the other, too",
-            Self::ClearUnderShunt => "T_clear is longer than the longest tolerated loss of shunt",
+            Self::ClearUnderShunt => "T_clear is at least twice the longest tolerated loss of shunt",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
             Self::TurnUnderRun => "plain line turns only after a train that was sent before has run out",
             Self::StartTooShort => {
@@ -158,7 +158,7 @@ const fn of_plan(rule: Kernel) -> &'static str {
     match rule {
         Kernel::PathTooLong => "a path or a segment has no more circuits than there is room for",
         Kernel::NoTime => "every time is one cycle or more",
-        Kernel::ClearShort => "T_clear is longer than the longest tolerated loss of shunt",
+        Kernel::ClearShort => "T_clear is at least twice the longest tolerated loss of shunt",
         Kernel::ReleaseShort => "the release time covers the residual running and the longest loss of shunt",
         Kernel::StayShort => "the stay time covers the standstill time, the longest loss of shunt and a cycle",
         Kernel::PointBothWays => "a route needs no point both ways, over path, flank and overlap together",
@@ -204,7 +204,7 @@ pub const fn remedy(rule: Kernel) -> &'static str {
     match rule {
         Kernel::PathTooLong => "divide it",
         Kernel::NoTime => "give a longer time or a shorter cycle",
-        Kernel::ClearShort => "give a longer clear_ms: by a whole cycle more than shunt_loss_ms",
+        Kernel::ClearShort => "give a longer clear_ms: in whole cycles at least twice shunt_loss_ms",
         Kernel::ReleaseShort => "give a release time of at least residual_ms and shunt_loss_ms",
         Kernel::StayShort => "give a stay time of more than standstill_ms and shunt_loss_ms",
         Kernel::PointBothWays => {

@@ -11,7 +11,7 @@ use crate::at::At;
 pub struct Times {
     /// The length of a logic cycle.
     pub cycle_ms: At<u32>,
-    /// How long a circuit must be reported clear before it counts as clear: longer than `shunt_loss_ms`, at most 255 cycles.
+    /// How long a circuit must be reported clear before it counts as clear: at least twice `shunt_loss_ms`, at most 255 cycles.
     pub clear_ms: At<u32>,
     /// The longest time for which the shunt of a train may be lost.
     pub shunt_loss_ms: At<u32>,

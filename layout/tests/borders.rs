@@ -151,13 +151,13 @@ fn times_of_the_neighbours_trains() {
     alike.station.braking = weak.station.braking.clone();
     assert!(held(&alike, &weak).is_ok());
     let mut lossy = other.clone();
-    (lossy.station.times.shunt_loss_ms.value, lossy.station.times.clear_ms.value) = (3000, 4000);
+    (lossy.station.times.shunt_loss_ms.value, lossy.station.times.clear_ms.value) = (3000, 6000);
     for (one, other) in [(&one, &lossy), (&lossy, &one)] {
         refused(
             one,
             other,
-            "in One a circuit counts as clear after 2000 ms, and a train of Neighbour may be lost for 3000 ms; clear_ms of One must be more \
-             than 3000",
+            "in One a circuit counts as clear after 2000 ms, and a train of Neighbour may be lost for 3000 ms; clear_ms of One must be at \
+             least 6000: twice that",
         );
     }
 }

@@ -239,7 +239,9 @@ fn more_than_any_station_has() {
 
 #[test]
 fn clear_under_shunt() {
-    breaks(&format!("{LOOP}\n[times]\nclear_ms = 1000\n"), Rule::ClearUnderShunt, "clear_ms must be more than 1000");
+    breaks(&format!("{LOOP}\n[times]\nclear_ms = 1000\n"), Rule::ClearUnderShunt, "clear_ms must be at least 2000");
+    // Two cycles more than a loss are not enough: a train may be lost at both sides of a joint.
+    breaks(&format!("{LOOP}\n[times]\nclear_ms = 1200\n"), Rule::ClearUnderShunt, "clear_ms must be at least 2000");
 }
 
 #[test]
@@ -262,7 +264,7 @@ fn turn_under_run() {
         Description::from_toml("loop", &text).unwrap().compile().unwrap().plan.turn.0
     };
     assert_eq!((turn("turn_ms = 34250"), turn("")), (343, 343), "in cycles of 100 ms, up");
-    assert_eq!(turn("residual_ms = 40000\nshunt_loss_ms = 1500"), 425, "40 s, 1 s and 1.5 s");
+    assert_eq!(turn("residual_ms = 40000\nshunt_loss_ms = 1500\nclear_ms = 3000"), 425, "40 s, 1 s and 1.5 s");
 }
 
 /// The accident: the overlap is given up, and another train is let in over it, while one that has come into a long platform still runs to its end.
@@ -499,10 +501,10 @@ fn what_derives_from_the_tracks() {
 
 #[test]
 fn distances_round_up_and_times_as_is_safe() {
-    let text = format!("{LOOP}\n[times]\ncycle_ms = 70\nclear_ms = 1051\n");
+    let text = format!("{LOOP}\n[times]\ncycle_ms = 70\nclear_ms = 2031\n");
     let compiled = Description::from_toml("loop", &text).unwrap().compile().unwrap();
     let plan = &compiled.plan;
-    assert_eq!(plan.clear, 16, "1051 ms at 70 ms, up");
+    assert_eq!(plan.clear, 30, "2031 ms at 70 ms, up");
     assert_eq!(plan.routes[0].drive.0, 142, "10 000 ms at 70 ms, down: it restricts");
     assert_eq!(plan.routes[0].release.0, 858, "60 000 ms at 70 ms, up: it permits");
     // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m, up; and 12.5 m in the second for which a telegram lives, up.

@@ -66,7 +66,7 @@ rules! {
     TurnPromised, "turn-promised", Engineering, "Plain line turns after no less than the line promises its trains.";
     Brake, "brake", Engineering, "The ground counts on no harder braking than trains do.";
     ShuntLoss, "shunt-loss", Engineering, "A train's shunt is lost for no longer than the ground counts on.";
-    LossWithinClear, "loss-within-clear", Engineering, "T_clear exceeds the longest loss of a train's shunt by two cycles.";
+    LossWithinClear, "loss-within-clear", Engineering, "T_clear is at least twice the longest loss of a train's shunt, and exceeds it by two cycles.";
     Gradient, "gradient", Engineering, "No circuit is steeper than what trains assume.";
     RankMissing, "rank-missing", Engineering, "Every speed code of a station has a speed in the line's table.";
     RankFaster, "rank-faster", Engineering, "A telegram names no higher speed than the station's code.";

@@ -116,6 +116,11 @@ fn times_that_do_not_cover_a_train() {
         plan.routes.iter_mut().for_each(|route| route.stay = Ticks(1 + u16::from(plan.clear)));
         plan.routes.iter_mut().for_each(|route| route.release = Ticks(u16::from(plan.clear)));
     });
+    // Two cycles more than the loss, but less than the losses of two circuits in turn.
+    breaks(Rule::ClearShort, &[Place::Plan], |plan| {
+        (plan.loss, plan.clear) = (6, 8);
+        plan.routes.iter_mut().for_each(|route| (route.stay, route.release) = (Ticks(60), Ticks(60)));
+    });
 }
 
 #[test]

@@ -9,8 +9,8 @@ use atc_kernel::block::{
 use atc_kernel::code::{Code, CodeFrequencies, CodeTable, Millihertz};
 use atc_kernel::duplex::Duplex;
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Heading, Layout, MAX_CIRCUITS, Memory, Orders, Position,
-    Positions, Refusal, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, Travel,
+    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Heading, Layout, MAX_CIRCUITS, Memory, Orders, Plan,
+    Position, Positions, Refusal, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, Travel,
 };
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
@@ -529,6 +529,10 @@ fn a_list_in_the_wrong_order_is_refused() {
     let reversed = refused(&|it| it.counted.as_mut().expect("a line").direction = Direction::Down);
     assert!(matches!(reversed, WaysideError::SectionsOutOfOrder(_)), "{reversed:?}");
     assert_eq!(refused(&|it| it.life = Ticks(5)), WaysideError::LifeOutlastsTurn);
+    // A train that is sent at the end of a permission runs on.
+    let slow = Station::new(Plan { residual: Ticks(2), loss: 1, ..*station.plan() }).expect("a station");
+    let made = |life| Wayside::new(&slow, &Equipment { life, ..equipment() }).map(|_| ());
+    assert_eq!((made(Ticks(3)), made(Ticks(2))), (Err(WaysideError::LifeOutlastsTurn), Ok(())));
     assert_eq!(refused(&|it| it.signals.speeds[1] = Some(KmhTenths(260))), WaysideError::NoRank(SpeedCode(1)));
     let twice = refused(&|it| {
         let fixed = it.signals.circuits[0];

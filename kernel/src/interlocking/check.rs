@@ -43,7 +43,7 @@ pub enum Rule {
     PathTooLong,
     /// Needed: every time is one cycle or more.
     NoTime,
-    /// Engineering: a circuit counts as clear only after more cycles than a train may be lost for.
+    /// Engineering: a circuit counts as clear only after more cycles than a train may be lost for, and as many as in two circuits in turn.
     ClearShort,
     /// Needed: the release time covers the residual running and the longest loss.
     ReleaseShort,
@@ -210,7 +210,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
     pub fn check_engineering(&self, report: &mut impl FnMut(Broken)) {
         //= spec/interlocking.md#lay-2-what-engineering-asks-for
         //# The constructor MUST reject a layout in which a rule of engineering is broken that its data can show.
-        require(report, self.clear == 0 || self.clear > self.loss, Rule::ClearShort, Place::Plan);
+        // At a joint a train may be lost in the circuit that it leaves, and then in the one that it enters.
+        let (clear, loss) = (u16::from(self.clear), u16::from(self.loss));
+        require(report, clear == 0 || clear > loss && clear >= 2 * loss, Rule::ClearShort, Place::Plan);
         let mut there = (RouteSet::EMPTY, SegmentSet::EMPTY);
         for (number, route) in self.routes.iter().enumerate() {
             there.0 = there.0.or(RouteSet::nth(number).only_if(route.exists()));

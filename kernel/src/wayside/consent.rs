@@ -99,16 +99,18 @@ impl Consent {
     }
 }
 
-/// Whether a permission may count for `life`, on a line with this turn time.
+/// Whether a permission may count for `life`, on a line with this turn time, where a train runs on for `residual` and may be lost for `loss` cycles.
 ///
 /// # Errors
 /// [`WaysideError::NoLife`] or [`WaysideError::LifeOutlastsTurn`].
-pub const fn check_life(life: Ticks, turn: Ticks) -> Result<(), WaysideError> {
+pub const fn check_life(life: Ticks, turn: Ticks, residual: Ticks, loss: u8) -> Result<(), WaysideError> {
     //= spec/wayside.md#way-20-the-life-of-consent
-    //# The constructor MUST reject a life of the neighbour's permission that is 0, over 60 000 cycles, or not under the layout's turn time.
+    //# The constructor MUST reject a life of the neighbour's permission that is 0, over 60 000 cycles, not under the layout's turn time, or, with the residual running and the longest loss of shunt, over it.
+    // A train that was sent on the last cycle of a permission.
+    let seen = life.0 as u32 + residual.0 as u32 + loss as u32;
     if life.0 == 0 {
         Err(WaysideError::NoLife)
-    } else if life.0 > MAX_TICKS || life.0 >= turn.0 {
+    } else if life.0 > MAX_TICKS || life.0 >= turn.0 || seen > turn.0 as u32 {
         Err(WaysideError::LifeOutlastsTurn)
     } else {
         Ok(())

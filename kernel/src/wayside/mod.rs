@@ -37,8 +37,8 @@ pub struct Equipment<const B: usize> {
     pub counted: Option<Join<B>>,
     /// What the transmitters say of the line.
     pub signals: SignalPlan,
-    /// For how many cycles the neighbour's permission counts, from the own cycle that its message answers: 1 or more, and less than
-    /// the layout's turn time.
+    /// For how many cycles the neighbour's permission counts, from the own cycle that its message answers: 1 or more, less than
+    /// the layout's turn time, and with its residual running and loss no more than that.
     pub life: Ticks,
     /// The number of this start of the device, never the same twice.
     pub session: Session,
@@ -95,7 +95,7 @@ pub enum WaysideError {
     SectionNumberTwice(CircuitId),
     /// The neighbour's permission would never count.
     NoLife,
-    /// The neighbour's permission counts for as long as the turn time, or longer.
+    /// The neighbour's permission counts for as long as the turn time, or a train that is sent at its end runs on for longer.
     LifeOutlastsTurn,
 }
 
@@ -105,7 +105,8 @@ impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S
     /// # Errors
     /// The first rule that is broken.
     pub fn new(layout: &'a Layout<R, P, N, S>, equipment: &Equipment<B>) -> Result<Self, WaysideError> {
-        consent::check_life(equipment.life, layout.plan().turn)?;
+        let plan = layout.plan();
+        consent::check_life(equipment.life, plan.turn, plan.residual, plan.loss)?;
         let counted = match &equipment.counted {
             Some(join) => Some(Counted::new(layout, join)?),
             None => None,

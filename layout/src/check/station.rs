@@ -17,12 +17,13 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     let times = &station.times;
     let values = &model.values;
     let clear = values.ms(Ticks(values.clear.into()));
-    if clear <= times.shunt_loss_ms.value {
+    let least = times.shunt_loss_ms.value.saturating_mul(2);
+    if clear < least {
         let what = format!(
-            "a circuit counts as clear after {clear} ms, but a shunt may be lost for {} ms",
+            "a circuit counts as clear after {clear} ms, but a shunt may be lost for {} ms, at a joint in one circuit after the other",
             times.shunt_loss_ms
         );
-        let right = format!("clear_ms must be more than {}", times.shunt_loss_ms);
+        let right = format!("clear_ms must be at least {least}");
         problems.push(Problem::new(Rule::ClearUnderShunt, &times.clear_ms.span, what, right));
     }
     let (turn, least) = (values.ms(values.turn), values.least_turn_ms);

@@ -175,13 +175,13 @@ fn shunt_loss(line: &Line, one: Sound<'_>, loss: u32) -> Vec<Finding> {
 fn clear(line: &Line, one: Sound<'_>, loss: u32) -> Vec<Finding> {
     let values = &one.model.values;
     let clear = u32::from(values.clear) * values.cycle_ms;
-    let least = loss.saturating_add(2 * values.cycle_ms);
+    let least = loss.saturating_add(2 * values.cycle_ms).max(loss.saturating_mul(2));
     if clear >= least {
         return Vec::new();
     }
     let what =
         format!("in {} a circuit counts as clear after {clear} ms, and a train may be lost for {loss} ms", one.name());
-    let right = format!("clear_ms must be at least {least}: two cycles of {} ms more", values.cycle_ms);
+    let right = format!("clear_ms must be at least {least}: twice that, and two cycles of {} ms more", values.cycle_ms);
     let at = one.station.at(&one.station.description().station.times.clear_ms.span);
     vec![finding(at, line.places().at("train.shunt_loss_ms"), what, right)]
 }

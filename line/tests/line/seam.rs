@@ -10,6 +10,13 @@ const FILES: [(&str, &str); 3] = [
     ("eastham.toml", include_str!("../../examples/eastham.toml")),
 ];
 
+/// A train is lost for one cycle at most, and Eastham counts to two.
+const SHORT_LOSS: [(&str, &str, &str); 3] = [
+    ("line.toml", "shunt_loss_ms = 1000", "shunt_loss_ms = 100"),
+    ("westham.toml", "shunt_loss_ms = 1000", "shunt_loss_ms = 100"),
+    ("eastham.toml", "shunt_loss_ms = 1000\nclear_ms = 2000", "shunt_loss_ms = 100\nclear_ms = 200"),
+];
+
 /// One change: the file, what stands there, and what is put in its place.
 type Change<'a> = (&'a str, &'a str, &'a str);
 
@@ -228,8 +235,18 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
             line,
         ),
         ("train-length", &[(east, "longest_train_m = 200", "longest_train_m = 199")], east, line),
-        ("shunt-loss", &[(line, "shunt_loss_ms = 1000", "shunt_loss_ms = 1001")], west, line),
-        ("loss-within-clear", &[(east, "clear_ms = 2000", "clear_ms = 1100")], east, line),
+        (
+            "shunt-loss",
+            &[
+                (line, "shunt_loss_ms = 1000", "shunt_loss_ms = 1001"),
+                (west, "clear_ms = 2000", "clear_ms = 2100"),
+                (east, "clear_ms = 2000", "clear_ms = 2100"),
+            ],
+            west,
+            line,
+        ),
+        // Twice a loss of one cycle is two cycles; the line asks for one more.
+        ("loss-within-clear", &SHORT_LOSS, east, line),
         (
             "gradient",
             &[(line, said, ""), (line, "worst_gradient_permille = -35", "worst_gradient_permille = -9")],
@@ -270,10 +287,9 @@ fn a_mapping_of_codes_that_is_never_faster() {
 
 #[test]
 fn a_station_that_is_refused_hides_nothing_and_passes_nothing() {
-    let (rules, _) = broken(&[
-        ("westham.toml", "turn_ms = 47000", "turn_ms = 46500"),
-        ("eastham.toml", "clear_ms = 2000", "clear_ms = 1100"),
-    ]);
+    let mut changes = vec![("westham.toml", "turn_ms = 47000", "turn_ms = 45000")];
+    changes.extend(SHORT_LOSS);
+    let (rules, _) = broken(&changes);
     assert_eq!(rules, ["station", "loss-within-clear"].map(String::from).into());
     // What was not looked at in the refused station is not called met.
     let folder = changed(&[("westham.toml", "turn_ms = 47000", "turn_ms = 46500")]);

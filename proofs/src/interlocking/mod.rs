@@ -91,6 +91,7 @@ pub const ALL: &[Harness] = &[
     signal::t_atc_1_overlap::HARNESS,
     track::t_trk_1::HARNESS,
     track::t_trk_1_shared::HARNESS,
+    track::t_trk_1_joint::HARNESS,
     table::t_atc_3::HARNESS,
     table::t_atc_3_stale::HARNESS,
     table::t_atc_3_damaged::HARNESS,

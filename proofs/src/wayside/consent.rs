@@ -1,7 +1,7 @@
 //! Consent (T-WAY-5): never older than its life, whatever comes late, twice or out of order.
 
 use crate::Engine;
-use crate::engine::{any_flag, any_u32};
+use crate::engine::{any_byte, any_flag, any_u32};
 use atc_kernel::interlocking::Epoch;
 use atc_kernel::time::{MAX_TICKS, Ticks};
 use atc_kernel::wayside::{Consent, Message, Permission, Session, Stamp, WaysideError, check_life};
@@ -130,8 +130,8 @@ harness! {
 }
 
 harness! {
-    /// A life is accepted if and only if it is one cycle at least, 60 000 at most, and under the turn time: a permission that was withdrawn for the turn time
-    /// is older than the life.
+    /// A life is accepted if and only if it is one cycle at least, 60 000 at most, and under the turn time, which covers the residual running and the loss
+    /// of shunt besides: a permission that was withdrawn for the turn time is older than the life, and who was sent by it is seen, or stands.
     way_life(e)
     theorem "T-WAY-8";
     requirements ["WAY-20"];
@@ -140,24 +140,29 @@ harness! {
     cases 1;
     unwind 2 = 2;
     claims {
-        Exact: "accepted if and only if it is 1 to 60 000 cycles and under the turn time",
+        Exact: "accepted if and only if it is 1 to 60 000 cycles, and the turn time is longer and covers what a train runs after it, unseen at the last",
         Told: "the error says which",
     }
     covers {
         Accepted: "a life is accepted",
         Long: "a life as long as the turn time",
+        RunsOn: "a life under the turn time, and a train would run on for longer",
     }
     {
         let (life, turn) = (e.word("life (cycles)", 0..=3), e.word("turn time (cycles)", 0..=4));
-        let made = check_life(Ticks(life), Ticks(turn));
-        e.claim(Claim::Exact as u32, made.is_ok() == (life >= 1 && life < turn && life <= 60_000));
+        let (residual, loss) = (e.word("residual running (cycles)", 0..=1), any_byte(e, "longest loss (cycles)", 0..=1));
+        let made = check_life(Ticks(life), Ticks(turn), Ticks(residual), loss);
+        let left = u32::from(turn).checked_sub(u32::from(life));
+        let covered = left.is_some_and(|left| left > 0 && left >= u32::from(residual) + u32::from(loss));
+        e.claim(Claim::Exact as u32, made.is_ok() == (life >= 1 && covered && life <= 60_000));
         let told = match made {
             Err(WaysideError::NoLife) => life == 0,
-            Err(error) => error == WaysideError::LifeOutlastsTurn && (life >= turn || life > 60_000),
+            Err(error) => error == WaysideError::LifeOutlastsTurn && (!covered || life > 60_000),
             Ok(()) => true,
         };
         e.claim(Claim::Told as u32, told);
         e.cover(Cover::Accepted as u32, made.is_ok());
         e.cover(Cover::Long as u32, life > 0 && life == turn);
+        e.cover(Cover::RunsOn as u32, life > 0 && life < turn && !covered);
     }
 }

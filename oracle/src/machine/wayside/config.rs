@@ -284,7 +284,8 @@ impl Config {
             WaysideError::NoLife => format!("life_ms is {} ms; it must be one cycle at least", self.life_ms),
             WaysideError::LifeOutlastsTurn => {
                 format!(
-                    "life_ms is {} ms; it must be less than the layout's turn time and at most 60000 cycles",
+                    "life_ms is {} ms; it must be less than the layout's turn time, and no more with the residual running and the loss of shunt, and at most \
+                     60000 cycles",
                     self.life_ms
                 )
             }
