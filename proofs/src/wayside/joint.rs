@@ -5,13 +5,12 @@
 
 #![allow(clippy::needless_range_loop, reason = "a place is a number in several arrays")]
 
-use super::{CIRCUITS, LONGEST};
+use super::LONGEST;
 use crate::Engine;
 use crate::engine::any_flag;
-use crate::interlocking::any_plan;
 use atc_kernel::block::{Block, Direction, Hold, LineError};
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitId, CircuitSet, Layout, SegmentId, Travel};
+use atc_kernel::interlocking::{CircuitId, CircuitSet, SegmentId, Travel};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Chain, Counted, Join, Place, Way, WaysideError};
 
@@ -418,90 +417,5 @@ harness! {
         e.cover(Cover::Whole as u32, front >= behind && on.is_some_and(|on| on + 1 < front_on));
         e.cover(Cover::Across as u32, back_of == Some(1));
         e.cover(Cover::Out as u32, front < behind && back_of.is_none());
-    }
-}
-
-/// The places of a path and of a segment where the track is read off a layout.
-const PATH: usize = 2;
-
-harness! {
-    /// The track of a segment is that of the layout: its throat, its circuits in their order, and behind the throat the places of the route that goes out,
-    /// backwards, to the circuit where its train waits. Each place is as long as the shortest of its circuits. The ways are where the routes
-    /// begin. Without a segment there is no track.
-    way_chain(e)
-    theorem "T-WAY-8";
-    requirements ["WAY-11", "WAY-12", "WAY-13", "WAY-14"];
-    assumptions [];
-    bound "1 route of up to 2 circuits, 1 segment of up to 2, 32 circuits, 16 of them with a length";
-    cases 1;
-    unwind 65 = 1 + LONGEST;
-    claims {
-        Exists: "there is a track if and only if there is the segment",
-        Segment: "throat and circuits are those of the segment, and no others",
-        Behind: "behind the throat are the places of the route out, backwards, and then its entry",
-        Ways: "where the route begins is its entry, with the first circuit of its path",
-        Shortest: "a place is as long as the shortest of its circuits",
-    }
-    covers {
-        Out: "a route of two circuits leads out, and its entry is known",
-        In: "a route leads in",
-        Two: "a segment of two circuits",
-        None: "no segment",
-    }
-    {
-        let mut plan = any_plan::<E, 1, PATH, 0, 1>(e);
-        for length in plan.lengths.iter_mut().take(CIRCUITS) {
-            *length = Metres(e.word("length of a circuit (m)", 1..=300));
-        }
-        let layout = Layout::with_what_proofs_need(plan).ok();
-        e.assume(layout.is_some());
-        let Some(layout) = layout else { return };
-        let (route, segment) = (&layout.plan().routes[0], &layout.plan().segments[0]);
-        let chain = Chain::<1, PATH, MOST>::of(&layout, SegmentId::ZERO);
-        e.claim(Claim::Exists as u32, chain.is_some() == (segment.length > 0));
-        let Some(chain) = chain else { return e.cover(Cover::None as u32, true) };
-        let mut its = chain.throat.circuits == segment.throat;
-        for place in 0..PATH {
-            let there = place < usize::from(segment.length);
-            its &= chain.circuits[place].circuits.bits() == if there { segment.circuits[place].bits() } else { 0 };
-        }
-        e.claim(Claim::Segment as u32, its);
-        let out = route.length > 0 && route.to.bits() & 1 == 1;
-        // The last place of the path is the throat itself; one more back each time.
-        let mut behind = true;
-        for back in 0..MOST {
-            let its = match (route.length, back) {
-                _ if !out => 0,
-                (2, 0) => route.path[0].circuits.bits(),
-                (2, 1) | (1, 0) => route.entry.bits(),
-                _ => 0,
-            };
-            behind &= chain.behind[back].circuits.bits() == its;
-        }
-        e.claim(Claim::Behind as u32, behind);
-        let way = chain.ways[0];
-        let begins = way.entry == route.entry && way.first == route.path[0].circuits;
-        e.claim(Claim::Ways as u32, if route.length > 0 { begins } else { way == Way::NONE });
-        // Any place stands for all, and any circuit of it.
-        let number = usize::from(e.word("a place", 0..=5));
-        let place = match number {
-            0 => chain.throat,
-            1 => chain.circuits[0],
-            2 => chain.circuits[1],
-            3 => chain.behind[0],
-            4 => chain.behind[1],
-            _ => chain.behind[2],
-        };
-        let (mut least, mut named) = (true, place.circuits.is_empty() && place.length.0 == 0);
-        for circuit in 0..2 * CIRCUITS {
-            if place.circuits.bits() >> circuit & 1 == 1 {
-                least &= place.length.0 <= layout.plan().lengths[circuit].0;
-                named |= place.length == layout.plan().lengths[circuit];
-            }
-        }
-        e.claim(Claim::Shortest as u32, least && named);
-        e.cover(Cover::Out as u32, out && route.length == 2 && !route.entry.is_empty());
-        e.cover(Cover::In as u32, route.length > 0 && route.from.bits() & 1 == 1);
-        e.cover(Cover::Two as u32, segment.length == 2);
     }
 }

@@ -30,7 +30,6 @@ pub const ALL: &[Harness] = &[
     consent::way_life::HARNESS,
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
-    joint::way_chain::HARNESS,
     joint::way_join::HARNESS,
     speech::way_signals::HARNESS,
     speech::way_codes::HARNESS,
