@@ -204,7 +204,7 @@ impl Crossing {
     }
 
     /// The invariant: what there can be of a train that is lost nowhere for longer than `loss`.
-    fn holds(&self, loss: u8) -> bool {
+    fn holds(self, loss: u8) -> bool {
         let (gone, lost) = (u16::from(self.gone), (u16::from(self.lost.0), u16::from(self.lost.1)));
         let mut holds = (self.behind || self.ahead) && self.lost.0 <= loss && self.lost.1 <= loss;
         holds &= if self.ahead { self.seen || lost.1 > 0 } else { !self.seen && lost.1 == 0 };
