@@ -107,6 +107,9 @@ fn a_list_that_is_too_short_or_too_long_is_found() {
 /// What plain `assume` may say besides the forms that [`is_validity`] knows: file, text, and why it says nothing about the world. The text is that
 /// of the condition; of what has no value, or of the branch, where the condition is `false`.
 const LISTED: &[(&str, &str, &str)] = &[
+    ("interlocking/track.rs", "before.counts.0 <= clear", "a range: no count is over T_clear"),
+    ("interlocking/track.rs", "before.counts.1 <= clear", "a range: no count is over T_clear"),
+    ("interlocking/track.rs", "before.holds(loss)", AGAIN),
     ("wayside/counter.rs", "ghost.wrapping_add(since.to_le_bytes()[0]) == main.0", AGAIN),
     ("wayside/consent.rs", "life.0 <= MAX_TICKS", "a range: a time that the constructor accepts"),
     ("wayside/consent.rs", "!granted || sent <= u32::from(before.age.0)", AGAIN),

@@ -126,7 +126,7 @@ harness! {
     theorem "T-TRK-1";
     requirements ["TRK-1", "LAY-2"];
     assumptions ["loss-of-shunt-within-clear"];
-    bound "a layout without routes";
+    bound "a layout without routes, T_clear up to 4 cycles, losses up to 2";
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {

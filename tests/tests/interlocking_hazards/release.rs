@@ -56,7 +56,7 @@ fn flashes_in_the_order_of_a_train_release_nothing_in_front_of_one() {
 #[test]
 fn a_bobbing_circuit_gives_the_point_to_nobody() {
     for bob in 1..6 {
-        let mut session = Session::new("[times]\ncycle_ms = 500\nclear_ms = 1500");
+        let mut session = Session::new("[times]\ncycle_ms = 500\nclear_ms = 2000");
         session.wait(11, &[]);
         session.consent = atc_kernel::interlocking::SegmentSet::ALL;
         let away = session.turn("West", Travel::Away);
@@ -142,7 +142,7 @@ fn an_ordinary_train_is_not_delayed() {
     assert!(session.holds("P1T"), "T_clear");
     session.wait(1, &["1T"]);
     assert!(!session.holds("P1T"));
-    session.wait(28, &["1T"]);
+    session.wait(40, &["1T"]);
     assert!(session.holds("P2T"));
     session.wait(1, &["1T"]);
     assert!(!session.holds("P2T"), "the stay time has passed since the train is wholly in 1T");

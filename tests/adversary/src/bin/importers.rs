@@ -135,6 +135,8 @@ fn line(model: &Model, route: &Route) -> String {
         format!("{} {:?} within {} ms", point.name, passed.position, point.throw_ms)
     });
     let overlap: Vec<String> = route.overlap.iter().map(|number| circuit(*number)).collect();
+    // Where nothing is held beyond the end, nothing is given up.
+    let stay = if overlap.is_empty() { 0 } else { route.stay.0 };
     format!(
         "at {} from {} by {} over {} to {}, {}; overlap {}; {} km/h; release {}, stay {}",
         route.signal,
@@ -146,6 +148,6 @@ fn line(model: &Model, route: &Route) -> String {
         overlap.join(", "),
         model.values.speeds_kmh[usize::from(route.speed.0)],
         route.release.0,
-        route.stay.0,
+        stay,
     )
 }
