@@ -125,7 +125,6 @@ const LISTED: &[(&str, &str, &str)] = &[
         "!known || held >= u32::from(self.train)",
         "what the constructor guarantees (WAY-14, `way_join`)",
     ),
-    ("wayside/joint.rs", "(1..=PLACES).contains(&outer)", "a range: a segment has one circuit at least"),
     ("wayside/joint.rs", "made.is_some()", "a joint that the constructor accepts"),
     (
         "wayside/joint.rs",
