@@ -70,7 +70,7 @@ pub const KNOWN: &[Fault] = &[
         ends_in: &[Family::Derailment, Family::Collision, Family::Authority],
         layout: LOOP,
         old_rule: &["ilk-release-without-rear"],
-        seed: 142,
+        seed: 68,
         model: "interlocking-loop-falsely-occupied",
     },
     Fault {
