@@ -64,7 +64,7 @@ pub fn mentions(root: &Path, ids: &[String]) -> Result<Vec<(String, String)>, Fa
     for folder in ["tests", "kernel/tests", "oracle/tests", "models/tests"] {
         for path in requirements::tree(&root.join(folder), "rs")? {
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            for (line, text) in read(&path)?.lines().enumerate() {
+            for (line, text) in read(&path)?.lines().enumerate().filter(|(_, text)| may_name(text)) {
                 for id in ids.iter().filter(|id| names(text, id)) {
                     found.push((id.clone(), format!("{name}:{}", line + 1)));
                 }
@@ -72,6 +72,11 @@ pub fn mentions(root: &Path, ids: &[String]) -> Result<Vec<(String, String)>, Fa
         }
     }
     Ok(found)
+}
+
+/// Whether a line may name any id: each has a hyphen before a digit.
+fn may_name(text: &str) -> bool {
+    text.as_bytes().windows(2).any(|pair| pair[0] == b'-' && pair[1].is_ascii_digit())
 }
 
 /// Whether a line names this id and not a longer one (ACC-1 in "ACC-1," but not in "T-ACC-1" or "ACC-12").
@@ -85,11 +90,12 @@ fn names(text: &str, id: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::names;
+    use super::{may_name, names};
 
     #[test]
     fn an_id_is_a_whole_word() {
         assert!(names("// ACC-1, operate", "ACC-1") && names("ACC-1", "ACC-1"));
         assert!(!names("T-ACC-1", "ACC-1") && !names("ACC-12", "ACC-1"));
+        assert!(may_name("// ACC-1") && !may_name("a -> b - 1"));
     }
 }

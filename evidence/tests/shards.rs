@@ -30,7 +30,7 @@ fn run(out: &Path, more: &[&str]) -> Output {
         "--jobs",
         "1",
         "--native-runs",
-        "400",
+        "60",
         "--no-provers",
         "--no-models",
         "--no-measurements",

@@ -147,7 +147,7 @@ fn second(json: Option<&Path>, jobs: usize, require: bool, names: &[String]) -> 
     }
     entries.retain(|entry| entry.twin.is_some());
     println!("{:<40} {:>10} {:>10} {:>8}  verdict", "model", "states", "spin", "seconds");
-    let opinions = opinions_on(&entries, jobs, |(outcome, second)| {
+    let opinions = opinions_on(&entries, &[], jobs, |(outcome, second)| {
         let states = second.states.map_or_else(|| "-".to_owned(), |states| states.to_string());
         let verdict = match second.verdict {
             Agreement::Agrees => "agrees",

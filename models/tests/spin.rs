@@ -36,7 +36,7 @@ fn every_twin_is_asked_about() {
 fn spin_agrees_on_the_twins() {
     let here = Spin::find().is_ok();
     let asked: Vec<_> = ASKED.iter().map(|name| entry(name)).collect();
-    for second in opinions_on(&asked, 2, |_| {}) {
+    for second in opinions_on(&asked, &[], 2, |_| {}) {
         let expected = if here { Agreement::Agrees } else { Agreement::NotRun };
         assert_eq!(second.verdict, expected, "{}: {:?}", second.model, second.reason);
         assert_eq!(second.states.is_some(), here, "{}", second.model);

@@ -19,7 +19,7 @@ use crate::prover;
 use crate::scope::{Chosen, Scope, Tests};
 use crate::times::Watch;
 use atc_models::spin::opinions_on;
-use atc_models::{Entry, Limits};
+use atc_models::{Entry, Limits, Outcome};
 use atc_prover::Options;
 use atc_prover::report::{Campaign, HarnessResult, Mutants, Provenance, SCHEMA};
 use std::convert::Infallible;
@@ -66,6 +66,8 @@ pub struct Engines<'a> {
     pub sources: &'a str,
     /// What an earlier run has concluded.
     pub kept: &'a Kept,
+    /// What the tests have found of models.
+    pub outcomes: &'a [Outcome],
     /// The time that it has.
     pub budget: Budget,
 }
@@ -182,6 +184,8 @@ impl Engines<'_> {
     fn entries(&self, kind: &str) -> Vec<Entry> {
         let mut entries = atc_models::catalogue();
         entries.retain(|entry| self.chosen.has(&format!("model:{}", entry.name)));
+        let given = |entry: &Entry| self.outcomes.iter().any(|outcome| outcome.model == entry.name);
+        entries.retain(|entry| kind != "model" || !given(entry));
         entries.retain(|entry| !self.kept.has(&format!("{kind}:{}", entry.name)));
         entries
     }
@@ -306,25 +310,26 @@ impl Engines<'_> {
         })
     }
 
-    /// Searches every model, one after the other, each with all cores; then asks another checker.
+    /// Searches every model, the largest first, as many at a time as there are cores; then asks another checker.
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
         let cost = |entry: &Entry| self.plan.data.costs.of(&format!("model:{}", entry.name));
-        let entries = self.budget.affordable(self.entries("model"), self.jobs, cost);
+        let mut entries = self.budget.affordable(self.entries("model"), self.jobs, cost);
+        entries.sort_by(|one, other| cost(other).total_cmp(&cost(one)));
         let limits = Limits { time: Duration::from_secs(self.options.time_limit), ..Limits::default() };
         let beside = self.is_beside();
         let searched = || {
-            let mut outcomes = live.with(|results| results.outcomes.clone());
             let items = std::thread::scope(|scope| {
                 let measured = beside.then(|| scope.spawn(|| self.measure(live, &|_| ())));
-                let mut items = Vec::new();
-                for entry in &entries {
+                let search = |entry: &Entry| {
                     live.progress.running(entry.name);
-                    let outcome = atc_models::check_within(entry, self.jobs, limits);
-                    live.progress.done(entry.name);
-                    items.push((entry.name.to_owned(), outcome.seconds));
+                    atc_models::check_within(entry, 1, limits)
+                };
+                let searched = |outcome: &Outcome| {
+                    live.progress.done(&outcome.model);
                     live.with(|results| results.outcomes.push(outcome.clone()));
-                    outcomes.push(outcome);
-                }
+                };
+                let found = atc_models::in_parallel(&entries, self.jobs, search, searched);
+                let mut items: Items = found.into_iter().map(|outcome| (outcome.model, outcome.seconds)).collect();
                 if measured.is_some() {
                     live.progress.running(BENCH);
                 }
@@ -332,7 +337,7 @@ impl Engines<'_> {
                 items
             });
             let requirements: Vec<_> = self.plan.requirements.iter().map(|one| one.id.clone()).collect();
-            faults::check(&outcomes, &self.plan.data.assumptions, &requirements)?;
+            faults::check(&live.with(|results| results.outcomes.clone()), &self.plan.data.assumptions, &requirements)?;
             Ok::<_, Vec<Fault>>(items)
         };
         if !entries.is_empty() {
@@ -345,7 +350,9 @@ impl Engines<'_> {
         }
         Self::phase(live, SPIN, || {
             let said = |(_, one): &(atc_models::Outcome, atc_models::SecondOpinion)| live.progress.done(&one.model);
-            let found: Vec<_> = opinions_on(&entries, self.jobs, said).into_iter().map(Opinion::from).collect();
+            let known = live.with(|results| results.outcomes.clone());
+            let found = opinions_on(&entries, &known, self.jobs, said);
+            let found: Vec<_> = found.into_iter().map(Opinion::from).collect();
             let before = live.with(|results| results.opinions.clone());
             second::check(&[before, found.clone()].concat(), &names)?;
             let items = found.iter().map(|one| (one.model.clone(), one.seconds)).collect();

@@ -135,6 +135,9 @@ pub struct Run {
     /// What `cargo test` printed (both streams in one file), instead of running it.
     #[arg(long, conflicts_with = "no_tests")]
     test_results: Option<PathBuf>,
+    /// What `models check --json` has written, instead of searching those models again.
+    #[arg(long)]
+    outcomes: Option<PathBuf>,
     /// A campaign of another engine or machine (JSON); may be given more than once.
     #[arg(long)]
     import: Vec<PathBuf>,

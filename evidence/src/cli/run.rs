@@ -8,13 +8,16 @@ use crate::build::{Results, build};
 use crate::case::Provenance;
 use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
-use crate::inputs::provenance;
+use crate::inputs::{faults, provenance};
 use crate::live::Live;
 use crate::output::{Folder, PAGE};
+use crate::plan::Plan;
 use crate::progress::Progress;
 use crate::scope::{Chosen, Scope};
 use crate::{prover, results, stale, terminal};
+use atc_models::Outcome;
 use atc_prover::report::{Campaign, SCHEMA};
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -35,6 +38,9 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         options.import.iter().map(|path| import(path, &sources)).collect::<Result<Vec<_>, _>>().map_err(one)?;
     let mut provenance = provenance::collect(&root, sources.clone()).map_err(one)?;
     provenance.aspects = atc_proofs::ASPECTS;
+    let outcomes = options.outcomes.as_deref().map_or(Ok(Vec::new()), |path| outcomes(path, &plan)).map_err(one)?;
+    let requirements: Vec<_> = plan.requirements.iter().map(|one| one.id.clone()).collect();
+    faults::check(&outcomes, &plan.data.assumptions, &requirements)?;
     let before = provenance.clone();
 
     let out = options.out.clone().unwrap_or_else(|| root.join("target/safety-case"));
@@ -52,13 +58,14 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         jobs,
         sources: &sources,
         kept: &kept,
+        outcomes: &outcomes,
         budget: Budget::new(options.limit(), start),
     };
     if kept.count() > 0 {
         eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.count());
     }
     let progress = Progress::new(engines.works(), jobs);
-    let nothing = beginning(nothing(provenance), &scope, &kept, campaigns);
+    let nothing = beginning(nothing(provenance), &scope, &kept, (campaigns, outcomes.clone()));
     let live = Live::begin(&plan, required(options.require), &folder, progress, nothing).map_err(one)?;
     eprintln!("the page, incomplete until the end: {}", out.join(PAGE).display());
     ticking(&live, || engines.run(&live))?;
@@ -104,7 +111,12 @@ fn nothing(provenance: Provenance) -> Results {
 }
 
 /// The results at the start of a run: what stands of an earlier one, and what was imported.
-fn beginning(nothing: Results, scope: &Scope, kept: &Kept, imported: Vec<Campaigned>) -> Results {
+fn beginning(
+    nothing: Results,
+    scope: &Scope,
+    kept: &Kept,
+    (imported, given): (Vec<Campaigned>, Vec<Outcome>),
+) -> Results {
     let mut first = Results { scope: scope.clone(), ..nothing };
     if let Some(old) = kept.results.clone() {
         first.provenance.tools.extend(old.provenance.tools);
@@ -114,6 +126,8 @@ fn beginning(nothing: Results, scope: &Scope, kept: &Kept, imported: Vec<Campaig
         first = Results { kept_since, campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, ..first };
     }
     first.campaigns.extend(imported);
+    first.outcomes.retain(|old| !given.iter().any(|new| new.model == old.model));
+    first.outcomes.extend(given);
     first
 }
 
@@ -137,6 +151,23 @@ fn ticking<T>(live: &Live, work: impl FnOnce() -> T) -> T {
         let _end = End(&over);
         work()
     })
+}
+
+/// What the tests have found of models, each to the end. One that is not in the catalogue, or is there twice, is an error.
+fn outcomes(path: &Path, plan: &Plan) -> Result<Vec<Outcome>, Fault> {
+    let fault = |text: String| Fault::new(&path.display(), text);
+    let found: Vec<Outcome> =
+        serde_json::from_str(&read(path)?).map_err(|error| fault(format!("no outcomes of models: {error}")))?;
+    let mut names = BTreeSet::new();
+    for outcome in &found {
+        if !plan.models.iter().any(|model| model.name == outcome.model) {
+            return Err(fault(format!("the model \"{}\" is not known; `models list` lists them", outcome.model)));
+        }
+        if !names.insert(&outcome.model) {
+            return Err(fault(format!("the model \"{}\" is there twice; it may be there once", outcome.model)));
+        }
+    }
+    Ok(found.into_iter().filter(|outcome| outcome.complete).collect())
 }
 
 /// A campaign of another engine or machine.

@@ -49,8 +49,9 @@ struct Group<'a> {
     mutants: BTreeMap<usize, (usize, &'a Mutant)>,
 }
 
-/// Harnesses in a group: few enough that most of its mutants concern each of them.
-const SIZE: usize = 8;
+/// Harnesses in a group. What concerns none of a harness's own mutants is constant to the prover, so that a large group costs it little;
+/// and each group is a kernel to compile.
+const SIZE: usize = 24;
 
 /// How mutants are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
