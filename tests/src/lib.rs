@@ -1,5 +1,5 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
-//! is checked against, sessions and drawn charts, trains under way, faulty implementations, and the input of the
+//! is checked against, sessions and drawn charts, trains under way, and the input of the
 //! benchmarks; and a browser.
 
 pub mod approach;
@@ -8,7 +8,6 @@ pub mod browser;
 pub mod busy_station;
 pub mod device;
 pub mod drawing;
-pub mod faulty;
 pub mod ground;
 pub mod passing_loop;
 pub mod reception;

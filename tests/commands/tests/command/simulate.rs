@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use atc_tests::device;
 use serde_json::Value;
 
-const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../simulation/examples");
+const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../simulation/examples");
 
 fn simulate(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(device::oracle());

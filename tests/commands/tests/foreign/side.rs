@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 /// The folder of the implementations.
 pub fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("foreign")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../foreign")
 }
 
 pub fn oracle() -> Command {

@@ -22,7 +22,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 fn examples() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../oracle/examples"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracle/examples"))
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn the_examples_are_drawn_and_the_files_are_whole() {
 
 #[test]
 fn the_schema_that_is_committed_is_the_schema_of_the_types() {
-    let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/../oracle/protocol-1.schema.json");
+    let committed = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracle/protocol-1.schema.json");
     let committed = fs::read_to_string(committed).expect("the schema");
     let folder = tempfile::tempdir().expect("a folder");
     let current = text(&oracle(folder.path(), &["schema"]).stdout);

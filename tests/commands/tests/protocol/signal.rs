@@ -179,8 +179,8 @@ static SCHEMA: LazyLock<Validator> =
 /// Long sessions through the real process: the same replies as in process, and every line of both sides fits the schema.
 #[test]
 fn long_sessions_through_the_process() {
-    let codec = include_str!("../../oracle/examples/telegram-codec.jsonl");
-    let pattern = include_str!("../../oracle/examples/braking-pattern.jsonl");
+    let codec = include_str!("../../../../oracle/examples/telegram-codec.jsonl");
+    let pattern = include_str!("../../../../oracle/examples/braking-pattern.jsonl");
     let both = format!("{}{}", ground::lines(ground::Train::New), ground::lines(ground::Train::Conventional));
     for requests in [codec, pattern, &both, &approach::lines()] {
         let said = device::converse(device::oracle(), requests.as_bytes().to_vec()).expect("a session");

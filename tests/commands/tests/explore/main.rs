@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 /// A file of the checkout.
 fn file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
 }
 
 /// Its text.

@@ -11,7 +11,7 @@ use atc_tests::session::{assert_malformed, converse, replies, start, step};
 use jsonschema::Validator;
 use serde_json::{Value, json};
 
-const EXAMPLE: &str = include_str!("../../oracle/examples/wayside.jsonl");
+const EXAMPLE: &str = include_str!("../../../../oracle/examples/wayside.jsonl");
 
 static SCHEMA: LazyLock<Validator> =
     LazyLock::new(|| jsonschema::validator_for(&atc_oracle::schema::schema()).expect("a schema"));

@@ -5,10 +5,10 @@ use atc_oracle::trace::{Replies, Trace};
 use atc_tests::drawing::{draw, titles};
 use atc_tests::session;
 
-const CODEC: &str = include_str!("../../oracle/examples/telegram-codec.jsonl");
-const GROUND: &str = include_str!("../../oracle/examples/speed-pattern.jsonl");
-const POSITION: &str = include_str!("../../oracle/examples/train-position.jsonl");
-const PATTERN: &str = include_str!("../../oracle/examples/braking-pattern.jsonl");
+const CODEC: &str = include_str!("../../../../oracle/examples/telegram-codec.jsonl");
+const GROUND: &str = include_str!("../../../../oracle/examples/speed-pattern.jsonl");
+const POSITION: &str = include_str!("../../../../oracle/examples/train-position.jsonl");
+const PATTERN: &str = include_str!("../../../../oracle/examples/braking-pattern.jsonl");
 
 #[test]
 fn the_fields_of_the_frames() {

@@ -5,10 +5,10 @@ use atc_oracle::trace::{Replies, Trace};
 use atc_tests::drawing::{self, titles};
 use atc_tests::session;
 
-const FIGURE_3: &str = include_str!("../../oracle/examples/figure-3.jsonl");
-const FIGURE_6: &str = include_str!("../../oracle/examples/figure-6.jsonl");
-const FIGURE_7: &str = include_str!("../../oracle/examples/figure-7.jsonl");
-const SUPERVISION: &str = include_str!("../../oracle/examples/supervision.jsonl");
+const FIGURE_3: &str = include_str!("../../../../oracle/examples/figure-3.jsonl");
+const FIGURE_6: &str = include_str!("../../../../oracle/examples/figure-6.jsonl");
+const FIGURE_7: &str = include_str!("../../../../oracle/examples/figure-7.jsonl");
+const SUPERVISION: &str = include_str!("../../../../oracle/examples/supervision.jsonl");
 
 fn draw(trace: &str) -> String {
     drawing::draw(trace, Replies::MustAgree, None)

@@ -6,7 +6,7 @@ use std::io::{self, BufRead as _, Write as _};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use atc_tests::faulty::{Faulty, fault};
+use atc_commands::faulty::{Faulty, fault};
 
 /// After so many requests the conversation breaks.
 const AFTER: u64 = 5;

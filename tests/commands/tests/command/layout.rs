@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use atc_tests::device;
 use tempfile::TempDir;
 
-const LAYOUTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../layouts");
+const LAYOUTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts");
 
 /// What every output file holds before a command that must leave it alone.
 const BEFORE: &str = "what was here before\n";
@@ -228,7 +228,7 @@ fn files_and_commands_that_are_not_there() {
 fn the_schema_is_printed() {
     let folder = folder();
     let (printed, _) = said(folder.path(), &["schema"]);
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../layout/layout.schema.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layout/layout.schema.json");
     assert_eq!(printed, fs::read_to_string(path).expect(path));
 }
 

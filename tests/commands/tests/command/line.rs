@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 use atc_tests::device;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the checkout").to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("in the checkout").to_path_buf()
 }
 
 fn check(folder: &Path, arguments: &[&str]) -> Output {

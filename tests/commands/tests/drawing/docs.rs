@@ -4,7 +4,7 @@ use atc_oracle::chart::{Part, View, svg};
 use atc_oracle::trace::{Replies, Trace};
 
 fn text(path: &str) -> String {
-    let path = format!("{}/../{path}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 

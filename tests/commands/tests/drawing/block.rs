@@ -5,8 +5,8 @@ use atc_oracle::trace::{Replies, Trace};
 use atc_tests::drawing::{self, titles};
 use atc_tests::session;
 
-const FIGURE_8: &str = include_str!("../../oracle/examples/figure-8.jsonl");
-const EXAMPLES: &str = include_str!("../../oracle/examples/block-count.jsonl");
+const FIGURE_8: &str = include_str!("../../../../oracle/examples/figure-8.jsonl");
+const EXAMPLES: &str = include_str!("../../../../oracle/examples/block-count.jsonl");
 
 fn draw(trace: &str, replies: Replies) -> String {
     drawing::draw(trace, replies, None)

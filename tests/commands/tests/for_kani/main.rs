@@ -18,7 +18,7 @@ fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
 
 /// The sources of the crates that are verified.
 fn verified() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let mut crates = Vec::new();
     for entry in std::fs::read_dir(root).unwrap() {
         let folder = entry.unwrap().path().join("src");

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use atc_commands::faulty::{FAULTS, Faulty};
 use atc_oracle::conform::fields::{Level, TABLES};
 use atc_oracle::conform::play::Finding;
 use atc_oracle::conform::profile::{Known, Profile};
@@ -12,7 +13,6 @@ use atc_oracle::conform::report::{self, Word};
 use atc_oracle::conform::run::{Options, Run, Verdict, run};
 use atc_oracle::conform::side::Broken;
 use atc_oracle::conform::vectors;
-use atc_tests::faulty::{FAULTS, Faulty};
 
 fn options(command: String, machine: &str) -> Options {
     Options {
@@ -193,7 +193,7 @@ fn a_known_difference_passes_until_it_is_gone() {
 /// Every requirement that a field names stands in the specification.
 #[test]
 fn the_requirements_of_the_fields_are_in_the_specification() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../spec");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../spec");
     let mut headings = String::new();
     for entry in std::fs::read_dir(folder).expect("the specification") {
         let path = entry.expect("an entry").path();
@@ -323,7 +323,7 @@ fn walks_are_taken_and_reach_the_limits() {
 /// The page for newcomers: its implementation differs, and agrees once the fault is mended. Without a Python here it is not run.
 #[test]
 fn the_example_in_python() {
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../oracle/examples/conform/aspect_acceptance.py");
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracle/examples/conform/aspect_acceptance.py");
     if std::process::Command::new("python3").arg("--version").output().is_err() {
         eprintln!("not run: no python3 here");
         return;

@@ -13,7 +13,7 @@ use atc_tests::{device, session::start};
 use jsonschema::Validator;
 use serde_json::{Value, json};
 
-const EXAMPLE: &str = include_str!("../../oracle/examples/interlocking.jsonl");
+const EXAMPLE: &str = include_str!("../../../../oracle/examples/interlocking.jsonl");
 
 /// ```text
 ///   L ═ W │ A ──<─ B │ ═ E ┤    point P in A: normal to B, reverse to C, which ends
@@ -414,7 +414,7 @@ fn the_example_through_the_process() {
 /// The layouts of the repository are layouts of this machine.
 #[test]
 fn every_sample_opens() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../layouts");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts");
     let mut opened = 0;
     for entry in std::fs::read_dir(folder).expect(folder) {
         let path = entry.expect("an entry").path();

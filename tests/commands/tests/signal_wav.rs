@@ -135,7 +135,7 @@ fn interruptions_and_analog_lines() {
 /// The example of the repository, with the standard receiver: it needs no configuration to be read.
 #[test]
 fn the_example() {
-    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../oracle/examples/signal.toml");
+    let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../oracle/examples/signal.toml");
     let folder = tempfile::tempdir().expect("a folder");
     let output = oracle(folder.path(), &["signal", "generate", example, "s.wav"]);
     assert!(output.status.success(), "{}", text(&output.stderr));

@@ -1,0 +1,7 @@
+//! The commands of `oracle`: arguments, exit codes, and what is written where.
+
+mod conform;
+mod layout;
+mod line;
+mod oracle;
+mod simulate;
