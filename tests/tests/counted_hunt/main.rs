@@ -17,13 +17,13 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp};
 use world::{
-    Channel, Circuit, Counts, Device, Dice, Draft, Kind, LIFE, M, Signal, Train, World, Zone, at, draft, input, point,
-    route, set, signals, stopping, withdraw,
+    Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, input, pieces,
+    point, route, set, signals, stopping, withdraw,
 };
 
 const PASS: u16 = 12;
 /// A line of six circuits, the nearest first; a throat, two tracks, a throat; a line of four circuits; in metres.
-const CIRCUITS: [(i64, i64, Option<(usize, usize)>); 14] = [
+const CIRCUITS: [Piece; 14] = [
     (-100, 0, None),
     (-200, -100, None),
     (-300, -200, None),
@@ -127,12 +127,8 @@ struct Line {
     heard: Option<Stamp>,
 }
 
-fn circuits() -> Vec<Circuit> {
-    CIRCUITS.iter().map(|(low, high, track)| Circuit { low: low * M, high: high * M, track: *track }).collect()
-}
-
 fn plan(broken: Option<Broken>) -> Draft {
-    let mut plan = draft(&circuits());
+    let mut plan = draft(&pieces(&CIRCUITS));
     plan.points = [point(6), point(9)];
     for track in 0..2 {
         let path = [(6, at(0, track)), (7 + track, Positions::NONE)];
@@ -225,8 +221,8 @@ fn build(seed: u64, broken: Option<Broken>) -> (World, Line) {
         let routes = vec![(2 + track, 360 * M)];
         all.push(Signal { at: 300 * M, heading: Heading::Right, track: Some((0, track)), device: 0, routes });
     }
-    let device = Device::new(plan(broken), equipment, vec![0, 1]);
-    let mut world = World::new(seed, (zones, circuits(), all), vec![device], &[20 * M, 340 * M]);
+    let device = Device::new(&plan(broken), &equipment, vec![0, 1]);
+    let mut world = World::new(seed, (zones, pieces(&CIRCUITS), all), vec![device], &[20 * M, 340 * M]);
     world.margin = dice.of(&[1, 50, 50, 50]) * M;
     let errors = dice.of(&[0, 40, 100, 300]);
     let line = Line {
@@ -425,8 +421,8 @@ fn request(world: &mut World) -> Option<Request> {
     match world.dice.below(16) {
         0..=2 => world.trains.iter().any(|train| train.nose < 0).then(|| set(track)),
         3..=5 => world.trains.iter().any(|train| world.is_in(train, 7 + track)).then(|| set(2 + track)),
-        6 => (directions.toward.is_empty() || world.dice.one_in(9)).then(|| Request::Turn(west, Travel::Toward)),
-        7 => (directions.away.is_empty() || world.dice.one_in(9)).then(|| Request::Turn(east, Travel::Away)),
+        6 => (directions.toward.is_empty() || world.dice.one_in(9)).then_some(Request::Turn(west, Travel::Toward)),
+        7 => (directions.away.is_empty() || world.dice.one_in(9)).then_some(Request::Turn(east, Travel::Away)),
         8 if world.dice.one_in(4) => Some(withdraw(world.dice.below(4))),
         9 if world.dice.one_in(4) => {
             let point = if track == 0 { PointId::ZERO } else { PointId::new(1).unwrap() };

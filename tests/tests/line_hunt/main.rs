@@ -13,14 +13,14 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Session};
 use world::{
-    BLOCKS, Channel, Circuit, Counts, Device, Dice, Draft, Kind, LIFE, M, Signal, Train, World, Zone, at, draft, input,
-    point, route, set, signals, withdraw,
+    BLOCKS, Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, input,
+    pieces, point, route, set, signals, withdraw,
 };
 
 const STILL: Detection = Detection { low_check: false, high_check: false, present: SectionSet::EMPTY, reset: None };
 
 /// Two tracks, a throat with its point, six circuits of line, and the same on the other side; in metres.
-const CIRCUITS: [(i64, i64, Option<(usize, usize)>); 12] = [
+const CIRCUITS: [Piece; 12] = [
     (-200, 0, Some((0, 0))),
     (-200, 0, Some((0, 1))),
     (0, 60, None),
@@ -51,20 +51,16 @@ enum Broken {
 /// Each with the episode from which it is looked for: near one that finds it. From the first on it takes up to 700.
 const BROKEN: [(Broken, u64); 3] = [(Broken::Turn, 690), (Broken::Clear, 1), (Broken::Release, 420)];
 
-fn circuits() -> Vec<Circuit> {
-    CIRCUITS.iter().map(|(low, high, track)| Circuit { low: low * M, high: high * M, track: *track }).collect()
-}
-
 /// The station at one end: its tracks, its throat, the line outward from it, and how much of that the other one sees.
 fn plan(tracks: [usize; 2], throat: usize, line: &[usize], shared: u8, outward: Heading) -> Draft {
-    let mut plan = draft(&circuits());
+    let mut plan = draft(&pieces(&CIRCUITS));
     plan.points[0] = point(throat);
-    for track in 0..2 {
-        let path = [(throat, at(0, track)), (tracks[track], Positions::NONE)];
+    for (track, platform) in tracks.into_iter().enumerate() {
+        let path = [(throat, at(0, track)), (platform, Positions::NONE)];
         // Beyond the tracks is a buffer stop.
         plan.routes[track] = route(outward.opposite(), line[0], &line[..3], &path, CIRCUITS.len());
         plan.routes[track].from = SegmentSet::nth(0);
-        plan.routes[2 + track] = route(outward, tracks[track], &[tracks[track]], &path[..1], line[0]);
+        plan.routes[2 + track] = route(outward, platform, &[platform], &path[..1], line[0]);
         plan.routes[2 + track].to = SegmentSet::nth(0);
     }
     let mut segment = Segment::NONE;
@@ -108,7 +104,7 @@ fn devices(shared: u8, broken: Option<Broken>) -> Vec<Device> {
         // Each station keeps the rules that its own device sees.
         (right.turn, right.residual, life) = (Ticks(5), Ticks(0), 2);
     }
-    vec![Device::new(left, equipment(100, LIFE), vec![0]), Device::new(right, equipment(500, life), vec![1])]
+    vec![Device::new(&left, &equipment(100, LIFE), vec![0]), Device::new(&right, &equipment(500, life), vec![1])]
 }
 
 fn build(seed: u64, broken: Option<Broken>) -> World {
@@ -128,7 +124,7 @@ fn build(seed: u64, broken: Option<Broken>) -> World {
         all.push(signal(0, Heading::Right, Some((0, track)), 0, &[(2 + track, 60)]));
         all.push(signal(720, Heading::Left, Some((1, track)), 1, &[(2 + track, 660)]));
     }
-    let mut world = World::new(seed, (zones, circuits(), all), devices, &[20 * M, 700 * M]);
+    let mut world = World::new(seed, (zones, pieces(&CIRCUITS), all), devices, &[20 * M, 700 * M]);
     world.margin = dice.of(&[0, 1, 5]) * M;
     let mut places = vec![(0, 0), (0, 1), (1, 0), (1, 1)];
     for _ in 0..dice.of(&[1, 2, 2, 3]) {
@@ -229,7 +225,9 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
         found = world.advance().map(|accident| format!("seed {seed}, cycle {}: {accident}", world.cycle));
         if world.trouble(&[2, 3, 4, 5, 6, 7, 8, 9]) && world.dice.one_in(2) {
             // The messages fail just when staff come.
-            channels.iter_mut().for_each(|channel| channel.fall_silent(world.cycle + 150));
+            for channel in &mut channels {
+                channel.fall_silent(world.cycle + 150);
+            }
         }
         let under_way = world.trains.iter().any(|train| train.span().0 > 0 && train.span().1 < 720 * M);
         if world.dice.one_in(if under_way { 250 } else { 80 }) {
@@ -237,8 +235,8 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
             let wants = [[true, false], [false, true], [true, false], [false, true], [true; 2], [false; 2]];
             sends = world.dice.of(&wants);
         }
-        for number in 0..2 {
-            step(&mut world, number, sends[number], &mut channels);
+        for (number, sends) in sends.into_iter().enumerate() {
+            step(&mut world, number, sends, &mut channels);
             world.restart(number, restarts);
         }
         still = if turn_round(&mut world) { 0 } else { still + 1 };

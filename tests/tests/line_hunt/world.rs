@@ -87,6 +87,14 @@ pub struct Zone {
     pub fouling: i64,
 }
 
+/// A circuit from here to there, in metres, and its track where there are two.
+pub type Piece = (i64, i64, Option<(usize, usize)>);
+
+/// The same in millimetres.
+pub fn pieces(pieces: &[Piece]) -> Vec<Circuit> {
+    pieces.iter().map(|(low, high, track)| Circuit { low: low * M, high: high * M, track: *track }).collect()
+}
+
 #[derive(Clone, Copy)]
 pub struct Circuit {
     pub low: i64,
@@ -192,9 +200,9 @@ pub struct Device {
 }
 
 impl Device {
-    pub fn new(plan: Draft, equipment: Equipment<BLOCKS>, points: Vec<usize>) -> Self {
-        let layout: &'static Station = Box::leak(Box::new(Layout::new(plan).expect("a layout")));
-        let machine = Wayside::new(layout, &equipment).expect("a device");
+    pub fn new(plan: &Draft, equipment: &Equipment<BLOCKS>, points: Vec<usize>) -> Self {
+        let layout: &'static Station = Box::leak(Box::new(Layout::new(*plan).expect("a layout")));
+        let machine = Wayside::new(layout, equipment).expect("a device");
         let mut all = CircuitSet::EMPTY;
         for route in &layout.plan().routes {
             all =
@@ -207,7 +215,7 @@ impl Device {
         Self {
             state: machine.initial(),
             layout,
-            equipment,
+            equipment: *equipment,
             machine,
             output: Ground::SAFE,
             circuits,
@@ -416,10 +424,9 @@ impl World {
         let Some(circuit) = self.circuit_of(train) else { return };
         let mut said = Vec::new();
         for device in &self.devices {
-            if let Some(transmission) = &device.output.transmissions[circuit] {
-                if let Ok(Telegram::Main(main)) = decode(transmission.facing(train.heading).main) {
-                    said.push(main);
-                }
+            let Some(transmission) = &device.output.transmissions[circuit] else { continue };
+            if let Ok(Telegram::Main(main)) = decode(transmission.facing(train.heading).main) {
+                said.push(main);
             }
         }
         if said.is_empty() || self.dice.one_in(12) {
@@ -568,7 +575,7 @@ impl World {
             let it = PointId::new(u8::try_from(own).unwrap()).unwrap().alone();
             let drives = device.output.drives;
             let normal = drives.normal.meets(it);
-            drives.points().meets(it).then(|| if normal { Position::Normal } else { Position::Reverse })
+            drives.points().meets(it).then_some(if normal { Position::Normal } else { Position::Reverse })
         })
     }
 
