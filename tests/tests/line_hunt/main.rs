@@ -223,7 +223,7 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
     let mut found = None;
     while world.cycle < 1500 && still < 300 && found.is_none() {
         found = world.advance().map(|accident| format!("seed {seed}, cycle {}: {accident}", world.cycle));
-        if world.trouble(&[2, 3, 4, 5, 6, 7, 8, 9]) && world.dice.one_in(2) {
+        if world.trouble(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]) && world.dice.one_in(2) {
             // The messages fail just when staff come.
             for channel in &mut channels {
                 channel.fall_silent(world.cycle + 150);
