@@ -229,6 +229,45 @@ fn a_head_heard_after_its_check_out_hides_one_that_is_missed() {
     );
 }
 
+/// At the exit of a line nothing else is needed: the head is past the check-out, and is missed itself (all free in column 6).
+#[test]
+fn a_head_past_the_check_out_of_a_line_is_free_once_it_is_missed() {
+    check(
+        &block(),
+        "
+        reset     0.......
+        in        .#......
+        out       .....#..
+        hears 0   ..#.....
+        hears 1   ...#....
+        hears 2   ....##.#
+        count     01111000
+        status    cccccccc
+        reports 0 .ad..a.a
+        reports 1 .a.d.a.a
+        reports 2 .a..da.a
+        ",
+    );
+}
+
+/// Condition `verified-reset`: a block is reset while a head is past its check-in, and not in it yet. The head is in no count, and free once it is missed.
+#[test]
+fn a_head_between_check_in_and_block_is_in_no_count_after_a_reset() {
+    check(
+        &block(),
+        "
+        reset     0..0....
+        in        .#......
+        hears 0   .....#.#
+        count     01100000
+        status    cccccccc
+        reports 0 .aa..a.a
+        reports 1 .aa..a.a
+        reports 2 .aa..a.a
+        ",
+    );
+}
+
 // ---- Pending check-outs (BLK-6) --------------------------------------------------------------------------------------------
 
 #[test]

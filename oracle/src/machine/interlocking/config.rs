@@ -26,6 +26,8 @@ pub(super) struct Opened {
     pub(super) names: Names,
     pub(super) speeds_kmh: [u16; MAX_CODES],
     pub(super) cycle_ms: u32,
+    /// The age of telegrams that the layout counts on; a plan does not say.
+    pub(super) telegram_age_ms: Option<u32>,
 }
 
 impl Config {
@@ -39,11 +41,12 @@ impl Config {
                 let compiled = description.compile().map_err(|errors| sentences(&errors))?;
                 let values = &compiled.model.values;
                 let (speeds_kmh, cycle_ms) = (values.speeds_kmh, values.cycle_ms);
-                Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms })
+                let telegram_age_ms = Some(values.telegram_age_ms);
+                Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms, telegram_age_ms })
             }
             Self::Plan(plan) => {
                 let (layout, names, speeds_kmh) = plan.layout()?;
-                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms })
+                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms, telegram_age_ms: None })
             }
         }
     }

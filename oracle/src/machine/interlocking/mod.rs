@@ -37,6 +37,7 @@ pub struct Interlocked {
     names: Names,
     speeds_kmh: [u16; kernel::MAX_CODES],
     cycle_ms: u32,
+    telegram_age_ms: Option<u32>,
     memory: Box<Memory<64, 8>>,
 }
 
@@ -101,6 +102,11 @@ impl Interlocked {
     /// The length of a logic cycle in ms.
     pub fn cycle_ms(&self) -> u32 {
         self.cycle_ms
+    }
+
+    /// The age of telegrams that the layout counts on, in ms; none of a plan, which does not say.
+    pub fn telegram_age_ms(&self) -> Option<u32> {
+        self.telegram_age_ms
     }
 
     fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
@@ -237,8 +243,8 @@ impl Machine for Interlocked {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        let Opened { layout, names, speeds_kmh, cycle_ms } = config.opened()?;
-        Ok(Self { layout, names, speeds_kmh, cycle_ms, memory: Box::new(Memory::INITIAL) })
+        let Opened { layout, names, speeds_kmh, cycle_ms, telegram_age_ms } = config.opened()?;
+        Ok(Self { layout, names, speeds_kmh, cycle_ms, telegram_age_ms, memory: Box::new(Memory::INITIAL) })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {

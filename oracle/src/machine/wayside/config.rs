@@ -33,7 +33,7 @@ pub struct Config {
     /// What the transmitters say.
     pub signals: Signals,
     /// For how long the neighbour's permission counts, from the own cycle that its message answers. Rounded down to cycles; less than
-    /// the layout's turn time.
+    /// the layout's turn time, and no more than its `telegram_age_ms`, if it has one.
     pub life_ms: u32,
     /// The number of this start of the device, 0 to 65535, never the same twice.
     #[serde(default)]
@@ -179,6 +179,13 @@ impl Config {
         }
         let life = Clock::new(cycle).and_then(|cycle| cycle.at_most(Millis(self.life_ms)));
         let life = life.ok_or_else(|| format!("life_ms is {} ms; it must be at most 60000 cycles", self.life_ms))?;
+        // `oracle layout border` holds that age against the neighbour's turn time, and sees no life.
+        if let Some(age) = station.telegram_age_ms().filter(|age| self.life_ms > *age) {
+            return Err(format!(
+                "life_ms is {} ms; it must be at most the layout's telegram_age_ms, {age} ms, for which the neighbour's turn time is checked",
+                self.life_ms
+            ));
+        }
         let signals = self.signals.plan(station)?;
         Ok(Parts { blocks, circuits, signals, life, session: session("session", self.session)? })
     }

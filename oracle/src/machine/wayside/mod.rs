@@ -164,7 +164,7 @@ macro_rules! with_blocks {
 impl Machine for Ground {
     const NAME: &'static str = "wayside";
     const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"blocks":[{"low_check":false,"high_check":false,"present":[0],"reset":null}],"request":{"set":"W-1"},"messages":{"West":{"permission":"granted","sent":{"session":1,"cycle":9},"echo":{"session":0,"cycle":8}}}}"#;
-    const CONFIG: &'static str = r#"{"layout":{…},"counted":{"segment":"West","travel":"toward","direction":"up","train_m":200,"blocks":[{"circuits":["W2","W1"],"max_trains":1,"tail_hold_sections":1}]},"signals":{"speeds_km_h":[0,45],"codes":{"pairs":[…]},"circuits":{"1T":{…}}},"life_ms":2000,"session":1}, with a layout of `interlocking`"#;
+    const CONFIG: &'static str = r#"{"layout":{…},"counted":{"segment":"West","travel":"toward","direction":"up","train_m":200,"blocks":[{"circuits":["W2","W1"],"max_trains":1,"tail_hold_sections":1}]},"signals":{"speeds_km_h":[0,45],"codes":{"pairs":[…]},"circuits":{"1T":{…}}},"life_ms":1000,"session":1}, with a layout of `interlocking`"#;
 
     type Config = Config;
     type Step = Step;

@@ -374,3 +374,22 @@ fn the_chart_of_the_example() {
         assert!(signals.contains(name), "{name}");
     }
 }
+
+/// The border check holds a layout's `telegram_age_ms` against the neighbour's turn time, so no permission may count for longer.
+#[test]
+fn a_permission_counts_for_no_longer_than_the_layout_says_of_telegrams() {
+    let mut config = config();
+    let layout = include_str!("../../layouts/passing-loop.toml");
+    let layout = layout.replace("[speed]", "[times]\nturn_ms = 300000\nstart_ms = 300000\n\n[speed]");
+    let description = atc_layout::Description::from_toml("", &layout).expect("a layout");
+    config["layout"] = serde_json::to_value(&description.station).expect("JSON");
+    config.as_object_mut().expect("an object").remove("counted");
+    // The last thing that is looked at: with a life that is right only the signals are of another station.
+    for (life, reason) in
+        [(1000, "signals"), (1001, "at most the layout's telegram_age_ms, 1000 ms"), (200_000, "at most")]
+    {
+        config["life_ms"] = life.into();
+        let said = converse(&[&start("wayside", &config.to_string())]);
+        assert!(said[0].starts_with("{\"rejected\"") && said[0].contains(reason), "{life}: {}", said[0]);
+    }
+}
