@@ -38,7 +38,8 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         options.import.iter().map(|path| import(path, &sources)).collect::<Result<Vec<_>, _>>().map_err(one)?;
     let mut provenance = provenance::collect(&root, sources.clone()).map_err(one)?;
     provenance.aspects = atc_proofs::ASPECTS;
-    let outcomes = options.outcomes.as_deref().map_or(Ok(Vec::new()), |path| outcomes(path, &plan)).map_err(one)?;
+    let outcomes =
+        options.outcomes.as_deref().map_or(Ok(Vec::new()), |path| outcomes(path, &plan, &chosen)).map_err(one)?;
     let requirements: Vec<_> = plan.requirements.iter().map(|one| one.id.clone()).collect();
     faults::check(&outcomes, &plan.data.assumptions, &requirements)?;
     let before = provenance.clone();
@@ -153,8 +154,8 @@ fn ticking<T>(live: &Live, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// What the tests have found of models, each to the end. One that is not in the catalogue, or is there twice, is an error.
-fn outcomes(path: &Path, plan: &Plan) -> Result<Vec<Outcome>, Fault> {
+/// What the tests have found of the models of this run, each to the end. One that is not in the catalogue, or is there twice, is an error.
+fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen) -> Result<Vec<Outcome>, Fault> {
     let fault = |text: String| Fault::new(&path.display(), text);
     let found: Vec<Outcome> =
         serde_json::from_str(&read(path)?).map_err(|error| fault(format!("no outcomes of models: {error}")))?;
@@ -167,7 +168,8 @@ fn outcomes(path: &Path, plan: &Plan) -> Result<Vec<Outcome>, Fault> {
             return Err(fault(format!("the model \"{}\" is there twice; it may be there once", outcome.model)));
         }
     }
-    Ok(found.into_iter().filter(|outcome| outcome.complete).collect())
+    let mine = |outcome: &Outcome| outcome.complete && chosen.has(&format!("model:{}", outcome.model));
+    Ok(found.into_iter().filter(mine).collect())
 }
 
 /// A campaign of another engine or machine.
