@@ -1,6 +1,7 @@
 //! The proof campaign and the wrong kernels, run by `atc-prover`.
 
 use crate::error::Fault;
+use crate::scope::Scope;
 use atc_proofs::Harness;
 use atc_prover::Options;
 use atc_prover::report::{Campaign, HarnessResult, MutantResult, Mutants};
@@ -22,8 +23,14 @@ pub fn versions(root: &Path) -> BTreeMap<String, String> {
 }
 
 /// How the provers are run: so many at a time, each for so many seconds at most.
-pub fn options(jobs: usize, seconds: u64) -> Options {
-    Options { jobs, limit: Duration::from_secs(seconds), ..Options::default() }
+///
+/// A shard compiles in a folder of its own: several may run in one checkout.
+pub fn options(jobs: usize, seconds: u64, scope: &Scope) -> Options {
+    let mut options = Options { jobs, limit: Duration::from_secs(seconds), ..Options::default() };
+    if let Scope::Shard(shard) = scope {
+        options.folder.push(format!("shard-{}-of-{}", shard.number, shard.of));
+    }
+    options
 }
 
 /// The harnesses of these names, in this order.
@@ -73,4 +80,21 @@ pub fn mutants(
         return Err(fault("none is named".to_owned()));
     }
     atc_prover::mutants(options, names, progress).map_err(fault)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::options;
+    use crate::scope::Scope;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn shards_in_one_checkout_do_not_wait_for_each_other() {
+        let whole = Scope::Whole;
+        let shards = ["1/4", "2/4", "1/2"].map(|text| Scope::Shard(text.parse().expect("a shard")));
+        let folder = |scope: &Scope| options(1, 60, scope).folder;
+        let folders: BTreeSet<_> = shards.iter().chain([&whole]).map(folder).collect();
+        assert_eq!(folders.len(), 4);
+        assert!(folder(&whole).ends_with("target/proofs"));
+    }
 }

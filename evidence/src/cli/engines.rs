@@ -114,7 +114,7 @@ impl Engines<'_> {
     /// A source cannot be read, or the models have found what nobody owns.
     pub fn run(&self, live: &Live) -> Result<(), Vec<Fault>> {
         let one = |fault: Fault| vec![fault];
-        let mut provers = prover::options(self.jobs, self.options.time_limit);
+        let mut provers = prover::options(self.jobs, self.options.time_limit, self.scope);
         provers.tests = self.options.native_runs;
         if !self.options.no_native {
             self.native(live, &provers).map_err(one)?;

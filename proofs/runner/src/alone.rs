@@ -18,7 +18,7 @@ pub fn attempt(
     mutant: &Mutant,
     options: &Options,
 ) -> Result<Vec<(&'static str, Judged)>, String> {
-    let folder = root.join("target").join("proofs").join("mutants").join(&mutant.name);
+    let folder = options.folder.join("mutants").join(&mutant.name);
     let sources = folder.join("sources");
     copy(root, &sources)?;
     write(&sources.join(mutant.path()), &changed(root, mutant)?)?;

@@ -8,7 +8,7 @@ use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
 use crate::tools::Tools;
 use crate::{provenance, root, selftest};
 use atc_proofs::Harness;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -28,6 +28,8 @@ pub struct Options {
     pub tests: usize,
     /// Whether each mutant is compiled alone, to check those that are compiled together.
     pub alone: bool,
+    /// Where all of it is compiled, by one run at a time.
+    pub folder: PathBuf,
 }
 
 impl Default for Options {
@@ -39,6 +41,7 @@ impl Default for Options {
             aspects: atc_proofs::ASPECTS,
             tests: 20_000,
             alone: false,
+            folder: root().join("target").join("proofs"),
         }
     }
 }
@@ -55,13 +58,13 @@ pub fn campaign(
     progress: &(dyn Fn(&HarnessResult) + Sync),
 ) -> Result<Campaign, String> {
     let root = root();
-    let _lock = only_run(&root.join("target").join("proofs"))?;
+    let _lock = only_run(&options.folder)?;
     let started = Instant::now();
     let tools = Tools::find(&root);
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
     let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
     provenance.aspects = options.aspects;
-    let folder = root.join("target").join("proofs").join("kernel");
+    let folder = options.folder.join("kernel");
     let ready = tools.map_err(|reason| (Verdict::NotRun, reason)).and_then(|tools| {
         let failed = |reason| (Verdict::Error, reason);
         selftest::check(&tools, options).map_err(failed)?;

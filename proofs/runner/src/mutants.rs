@@ -95,7 +95,7 @@ pub fn mutants(
     progress: &(dyn Fn(&MutantResult) + Sync),
 ) -> Result<Mutants, String> {
     let root = root();
-    let _lock = only_run(&root.join("target").join("proofs"))?;
+    let _lock = only_run(&options.folder)?;
     let started = Instant::now();
     let all = list(&root)?;
     if let Some(name) = names.iter().find(|name| !all.iter().any(|mutant| mutant.name == **name)) {

@@ -19,7 +19,7 @@ pub fn check(tools: &Tools, options: &Options) -> Result<(), String> {
     if lock(&PASSED).contains(&asked) {
         return Ok(());
     }
-    let found = run(tools, options, &crate::root().join("target/proofs/selftest"))?;
+    let found = run(tools, options, &options.folder.join("selftest"))?;
     let wrong: Vec<_> = found
         .iter()
         .filter(|trial| trial.outcome != Outcome::Right)

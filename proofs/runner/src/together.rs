@@ -98,7 +98,7 @@ pub fn judge(
     told: &(dyn Fn(usize, &str, Judged) + Sync),
 ) -> Vec<Control> {
     let groups = groups(mutants);
-    let folder = root.join("target").join("proofs").join("mutants");
+    let folder = options.folder.join("mutants");
     let compiled = in_parallel(options.jobs, groups.len(), |place| {
         build(tools, root, &folder.join(format!("together-{place}")), options, &groups[place])
     });

@@ -379,7 +379,7 @@ fn the_chart_of_the_example() {
 #[test]
 fn a_permission_counts_for_no_longer_than_the_layout_says_of_telegrams() {
     let mut config = config();
-    let layout = include_str!("../../layouts/passing-loop.toml");
+    let layout = include_str!("../../../../layouts/passing-loop.toml");
     let layout = layout.replace("[speed]", "[times]\nturn_ms = 300000\nstart_ms = 300000\n\n[speed]");
     let description = atc_layout::Description::from_toml("", &layout).expect("a layout");
     config["layout"] = serde_json::to_value(&description.station).expect("JSON");
