@@ -9,6 +9,7 @@ use crate::inputs::{measured, tests};
 use crate::output::SUMS;
 use crate::results;
 use crate::scope::Scope;
+use atc_models::Outcome;
 use atc_prover::report::{MutantVerdict, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,6 +27,11 @@ impl Kept {
     /// Whether this is concluded.
     pub fn has(&self, id: &str) -> bool {
         self.ids.contains(id)
+    }
+
+    /// The outcomes of these models stand as well.
+    pub fn take(&mut self, outcomes: &[Outcome]) {
+        self.ids.extend(outcomes.iter().map(|outcome| format!("model:{}", outcome.model)));
     }
 
     /// How many entries are.

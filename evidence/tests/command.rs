@@ -314,29 +314,38 @@ fn outcomes_of_models_are_taken_from_a_file_and_wrong_ones_are_refused() {
     let (out, file) = (folder.path().join("case"), folder.path().join("outcomes.json"));
     let entry = atc_models::catalogue().into_iter().find(|entry| entry.name == "change-heard").expect("there");
     let found = serde_json::to_value(atc_models::check(&entry, 1)).expect("JSON");
-    let run = |outcomes: &serde_json::Value| {
-        std::fs::write(&file, outcomes.to_string()).expect("written");
+    let given = |commit: &serde_json::Value, outcomes: serde_json::Value| {
+        let text = serde_json::json!({"commit": commit, "outcomes": outcomes}).to_string();
+        std::fs::write(&file, text).expect("written");
         bare(&out, &["--outcomes", file.to_str().expect("a path")])
     };
     let verdict = |name: &str| {
         let list = json(&out)["evidence"].as_array().expect("a list").clone();
         list.into_iter().find(|one| one["id"] == format!("model:{name}")).expect("there")["verdict"].clone()
     };
-    run(&serde_json::json!([found]));
-    assert_eq!((verdict("change-heard"), verdict("misread")), ("model-checked".into(), "not-run".into()));
+    let said = given(&"another".into(), serde_json::json!([found]));
+    assert!(text(&said).contains("of another commit"), "{}", text(&said));
+    assert_eq!(verdict("change-heard"), "not-run");
+    let (commit, dirty) = (json(&out)["provenance"]["commit"].clone(), json(&out)["provenance"]["dirty"].clone());
+    let commit = if commit.is_null() { "none".into() } else { commit };
+    let run = |outcomes| given(&commit, outcomes);
+    run(serde_json::json!([found]));
+    // While somebody works on the checkout nothing is taken.
+    let taken = if dirty == false { "model-checked" } else { "not-run" };
+    assert_eq!((verdict("change-heard"), verdict("misread")), (taken.into(), "not-run".into()));
     // A search that did not come to its end is none.
     let mut half = found.clone();
     half["complete"] = false.into();
-    run(&serde_json::json!([half]));
+    run(serde_json::json!([half]));
     assert_eq!(verdict("change-heard"), "not-run");
     let mut other = found.clone();
     other["model"] = "other".into();
     for (wrong, says) in [
         (serde_json::json!([found, found]), "the model \"change-heard\" is there twice"),
         (serde_json::json!([other]), "the model \"other\" is not known"),
-        (serde_json::json!({}), "no outcomes of models"),
+        (serde_json::json!(1), "no outcomes of models"),
     ] {
-        let refused = run(&wrong);
+        let refused = run(wrong);
         assert_eq!(refused.status.code(), Some(2));
         assert!(text(&refused).contains(says), "{}", text(&refused));
     }

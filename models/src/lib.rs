@@ -49,6 +49,6 @@ pub mod inside {
 
 pub use catalogue::catalogue;
 pub use check::{About, Checked, Claim, Entry, Limits, Subject, Visit, check, check_within, explore, visit};
-pub use outcome::{CutSet, Expectation, FailureMode, Outcome, PropertyOutcome, Step, Trace, Verdict};
+pub use outcome::{CutSet, Expectation, FailureMode, Outcome, PropertyOutcome, Searched, Step, Trace, Verdict};
 pub use pool::in_parallel;
 pub use spin::{Agreement, SecondOpinion};

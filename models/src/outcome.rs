@@ -199,3 +199,12 @@ impl Trace {
         text
     }
 }
+
+/// Outcomes, and what they are of: for `safety-case run --outcomes`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Searched {
+    /// The commit whose sources, unchanged, were searched.
+    pub commit: String,
+    /// The outcomes, one a model.
+    pub outcomes: Vec<Outcome>,
+}

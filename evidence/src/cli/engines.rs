@@ -66,8 +66,6 @@ pub struct Engines<'a> {
     pub sources: &'a str,
     /// What an earlier run has concluded.
     pub kept: &'a Kept,
-    /// What the tests have found of models.
-    pub outcomes: &'a [Outcome],
     /// The time that it has.
     pub budget: Budget,
 }
@@ -184,8 +182,6 @@ impl Engines<'_> {
     fn entries(&self, kind: &str) -> Vec<Entry> {
         let mut entries = atc_models::catalogue();
         entries.retain(|entry| self.chosen.has(&format!("model:{}", entry.name)));
-        let given = |entry: &Entry| self.outcomes.iter().any(|outcome| outcome.model == entry.name);
-        entries.retain(|entry| kind != "model" || !given(entry));
         entries.retain(|entry| !self.kept.has(&format!("{kind}:{}", entry.name)));
         entries
     }

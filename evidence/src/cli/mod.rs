@@ -135,7 +135,7 @@ pub struct Run {
     /// What `cargo test` printed (both streams in one file), instead of running it.
     #[arg(long, conflicts_with = "no_tests")]
     test_results: Option<PathBuf>,
-    /// What `models check --json` has written, instead of searching those models again.
+    /// What the tests of `atc-models` have found of models, instead of searching those again: of this very commit, or it is not used.
     #[arg(long)]
     outcomes: Option<PathBuf>,
     /// A campaign of another engine or machine (JSON); may be given more than once.

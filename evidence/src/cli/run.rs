@@ -15,7 +15,7 @@ use crate::plan::Plan;
 use crate::progress::Progress;
 use crate::scope::{Chosen, Scope};
 use crate::{prover, results, stale, terminal};
-use atc_models::Outcome;
+use atc_models::{Outcome, Searched};
 use atc_prover::report::{Campaign, SCHEMA};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -39,14 +39,16 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let mut provenance = provenance::collect(&root, sources.clone()).map_err(one)?;
     provenance.aspects = atc_proofs::ASPECTS;
     let outcomes =
-        options.outcomes.as_deref().map_or(Ok(Vec::new()), |path| outcomes(path, &plan, &chosen)).map_err(one)?;
+        options.outcomes.as_deref().map_or(Ok(Vec::new()), |path| outcomes(path, &plan, &chosen, &provenance));
+    let outcomes = outcomes.map_err(one)?;
     let requirements: Vec<_> = plan.requirements.iter().map(|one| one.id.clone()).collect();
     faults::check(&outcomes, &plan.data.assumptions, &requirements)?;
     let before = provenance.clone();
 
     let out = options.out.clone().unwrap_or_else(|| root.join("target/safety-case"));
     let versions = prover::versions(&root);
-    let kept = if options.anew { Kept::default() } else { again::kept(&out, &provenance, &scope, &versions) };
+    let mut kept = if options.anew { Kept::default() } else { again::kept(&out, &provenance, &scope, &versions) };
+    kept.take(&outcomes);
     let folder = Folder::begin(&out).map_err(one)?;
     let jobs = options.jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)).max(1);
     let engines = Engines {
@@ -59,14 +61,13 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         jobs,
         sources: &sources,
         kept: &kept,
-        outcomes: &outcomes,
         budget: Budget::new(options.limit(), start),
     };
     if kept.count() > 0 {
         eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.count());
     }
     let progress = Progress::new(engines.works(), jobs);
-    let nothing = beginning(nothing(provenance), &scope, &kept, (campaigns, outcomes.clone()));
+    let nothing = beginning(nothing(provenance), &scope, &kept, (campaigns, outcomes));
     let live = Live::begin(&plan, required(options.require), &folder, progress, nothing).map_err(one)?;
     eprintln!("the page, incomplete until the end: {}", out.join(PAGE).display());
     ticking(&live, || engines.run(&live))?;
@@ -154,10 +155,11 @@ fn ticking<T>(live: &Live, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// What the tests have found of the models of this run, each to the end. One that is not in the catalogue, or is there twice, is an error.
-fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen) -> Result<Vec<Outcome>, Fault> {
+/// What the tests have found of the models of this run, each to the end. Of another commit, or of changed files, nothing is taken. A model that
+/// is not in the catalogue, or is there twice, is an error.
+fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen, now: &Provenance) -> Result<Vec<Outcome>, Fault> {
     let fault = |text: String| Fault::new(&path.display(), text);
-    let found: Vec<Outcome> =
+    let Searched { commit, outcomes: found } =
         serde_json::from_str(&read(path)?).map_err(|error| fault(format!("no outcomes of models: {error}")))?;
     let mut names = BTreeSet::new();
     for outcome in &found {
@@ -168,8 +170,17 @@ fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen) -> Result<Vec<Outcome>, F
             return Err(fault(format!("the model \"{}\" is there twice; it may be there once", outcome.model)));
         }
     }
+    if !is_of(&commit, now) {
+        eprintln!("{}: of another commit, or files have changed since: not used", path.display());
+        return Ok(Vec::new());
+    }
     let mine = |outcome: &Outcome| outcome.complete && chosen.has(&format!("model:{}", outcome.model));
     Ok(found.into_iter().filter(mine).collect())
+}
+
+/// Whether what was found of this commit, unchanged, is of these sources.
+fn is_of(commit: &str, now: &Provenance) -> bool {
+    now.commit.as_deref() == Some(commit) && now.dirty == Some(false)
 }
 
 /// A campaign of another engine or machine.
@@ -189,4 +200,23 @@ fn import(path: &Path, sources: &str) -> Result<Campaigned, Fault> {
     let stale = campaign.provenance.sources_sha256 != sources;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     Ok(Campaigned { campaign, source: format!("imported from {name}"), stale })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Provenance, is_of};
+    use crate::merge::checks::shard;
+
+    #[test]
+    fn outcomes_are_of_one_commit_without_a_change() {
+        let now = |commit: Option<&str>, dirty| Provenance {
+            commit: commit.map(ToOwned::to_owned),
+            dirty,
+            ..shard(1, 1, &[], &[]).1.provenance
+        };
+        assert!(is_of("a", &now(Some("a"), Some(false))));
+        for other in [now(Some("b"), Some(false)), now(Some("a"), Some(true)), now(Some("a"), None), now(None, None)] {
+            assert!(!is_of("a", &other));
+        }
+    }
 }

@@ -1,11 +1,11 @@
 //! A hunt for an accident at the joint between block counting and interlocking, in a closed loop: trains with antennas at their noses on a counted line,
 //! checks and detectors that fail one at a time in a block, staff who reset, a station of two tracks with its circuits, and a line out of it. One of the
 //! two lines is counted. Devices restart in any cycle, trains follow one another as close as their telegrams let them. Nothing that judges is taken from
-//! the kernel; the world is that of `line_hunt`.
+//! the kernel; the world is that of `line_hunt`, too.
 //!
 //! The accidents: two trains meet; a point moves under a train, or lies wrong when its nose comes; a train runs where staff rely on a block.
 
-#[path = "../line_hunt/world.rs"]
+#[path = "../common/world.rs"]
 mod world;
 
 use atc_kernel::block::{Block, Detection, Direction, Hold, SectionSet, Status, TrainCount};
@@ -17,8 +17,8 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp};
 use world::{
-    Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, input, pieces,
-    point, route, set, signals, stopping, withdraw,
+    Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, finds_none,
+    finds_one, input, pieces, point, route, set, signals, stopping, withdraw,
 };
 
 const PASS: u16 = 12;
@@ -463,30 +463,14 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
     found
 }
 
-/// Of up to 1,500 cycles each; more of them with `ATC_EPISODES=8000`.
-const EPISODES: u64 = 100;
-
 #[test]
 fn no_accident_on_a_counted_line() {
-    let mut counts = Counts::default();
-    let episodes = std::env::var("ATC_EPISODES").ok().and_then(|number| number.parse().ok()).unwrap_or(EPISODES);
-    for seed in 1..=episodes {
-        let accident = episode(seed, None, &mut counts);
-        assert_eq!(accident, None, "{}", accident.as_deref().unwrap_or_default());
-    }
-    println!("{counts:?}");
-    // Trains come, pass and leave, staff come, devices restart.
-    assert!(counts.cycles > 300 * episodes && counts.lost > counts.cycles / 20, "{counts:?}");
-    let all = [counts.proceed, counts.passed, counts.arrived, counts.confirmed, counts.restarts];
-    assert!(all.iter().all(|number| number * 6 > episodes), "{counts:?}");
+    finds_none(100, |seed, counts| episode(seed, None, counts));
 }
 
 #[test]
 fn each_broken_condition_ends_in_one() {
     for (broken, first) in BROKEN {
-        let mut counts = Counts::default();
-        let found = (first..first + 4000).find_map(|seed| episode(seed, Some(broken), &mut counts));
-        println!("{broken:?}: {found:?}, {} cycles", counts.cycles);
-        assert!(found.is_some(), "{broken:?}: no accident, {counts:?}");
+        finds_one(&format!("{broken:?}"), first..first + 4000, |seed, counts| episode(seed, Some(broken), counts));
     }
 }

@@ -4,6 +4,7 @@
 //!
 //! The accidents: two trains meet; a point moves under a train, or lies wrong when its nose comes; a train runs where staff rely on a block.
 
+#[path = "../common/world.rs"]
 mod world;
 
 use atc_kernel::block::{Detection, SectionSet};
@@ -13,8 +14,8 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Session};
 use world::{
-    BLOCKS, Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, input,
-    pieces, point, route, set, signals, withdraw,
+    BLOCKS, Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft,
+    finds_none, finds_one, input, pieces, point, route, set, signals, withdraw,
 };
 
 const STILL: Detection = Detection { low_check: false, high_check: false, present: SectionSet::EMPTY, reset: None };
@@ -247,30 +248,14 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
     found
 }
 
-/// Of up to 1,500 cycles each; more of them with `ATC_EPISODES=8000`.
-const EPISODES: u64 = 150;
-
 #[test]
 fn no_accident_between_two_stations() {
-    let mut counts = Counts::default();
-    let episodes = std::env::var("ATC_EPISODES").ok().and_then(|number| number.parse().ok()).unwrap_or(EPISODES);
-    for seed in 1..=episodes {
-        let accident = episode(seed, None, &mut counts);
-        assert_eq!(accident, None, "{}", accident.as_deref().unwrap_or_default());
-    }
-    println!("{counts:?}");
-    // Trains run from station to station, staff come, devices restart.
-    assert!(counts.cycles > 300 * episodes && counts.lost > counts.cycles / 20, "{counts:?}");
-    let all = [counts.proceed, counts.passed, counts.arrived, counts.confirmed, counts.restarts];
-    assert!(all.iter().all(|number| number * 6 > episodes), "{counts:?}");
+    finds_none(150, |seed, counts| episode(seed, None, counts));
 }
 
 #[test]
 fn each_broken_condition_ends_in_one() {
     for (broken, first) in BROKEN {
-        let mut counts = Counts::default();
-        let found = (first..first + 2000).find_map(|seed| episode(seed, Some(broken), &mut counts));
-        println!("{broken:?}: {found:?}, {} cycles", counts.cycles);
-        assert!(found.is_some(), "{broken:?}: no accident, {counts:?}");
+        finds_one(&format!("{broken:?}"), first..first + 2000, |seed, counts| episode(seed, Some(broken), counts));
     }
 }
