@@ -333,6 +333,8 @@ fn outcomes_of_models_are_taken_from_a_file_and_wrong_ones_are_refused() {
     // While somebody works on the checkout nothing is taken.
     let taken = if dirty == false { "model-checked" } else { "not-run" };
     assert_eq!((verdict("change-heard"), verdict("misread")), (taken.into(), "not-run".into()));
+    let told = json(&out)["open_items"].to_string().contains("1 of them were searched by the tests of this commit");
+    assert_eq!(told, dirty == false);
     // A search that did not come to its end is none.
     let mut half = found.clone();
     half["complete"] = false.into();

@@ -5,7 +5,7 @@ use super::engines::Engines;
 use super::{Run, checkout, planned, required};
 use crate::again::{self, Kept};
 use crate::build::{Results, build};
-use crate::case::Provenance;
+use crate::case::{OpenItem, Provenance, Severity};
 use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
 use crate::inputs::{faults, provenance};
@@ -128,6 +128,13 @@ fn beginning(
         first = Results { kept_since, campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, ..first };
     }
     first.campaigns.extend(imported);
+    if !given.is_empty() {
+        let text = format!(
+            "{} of them were searched by the tests of this commit, and not once more in this run.",
+            given.len()
+        );
+        first.open.push(OpenItem { severity: Severity::Note, about: "models".to_owned(), text });
+    }
     first.outcomes.retain(|old| !given.iter().any(|new| new.model == old.model));
     first.outcomes.extend(given);
     first
