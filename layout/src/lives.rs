@@ -1,6 +1,7 @@
 //! The lives of telegrams, in one place: what the ground counts on (`telegram_age_ms`, release times), and what trains do.
 //!
-//! A train acts on a telegram from the moment in which its content was taken until the train slows down after the telegram has died.
+//! A train acts on a telegram from the moment in which its content was taken until the train slows down after the telegram has died; and on
+//! a code for as long as it is displayed after it was last heard.
 //! The approach of a route, the turn time and the release times are held against `telegram_age_ms`; so it must not be shorter.
 
 use crate::description::Description;
@@ -8,37 +9,58 @@ use crate::model::Model;
 use crate::problem::{Errors, Problem};
 use crate::rule::Rule;
 
-/// What a train does with main telegrams, in ms.
+/// What a train does with main telegrams and codes, in ms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrainLives {
     /// By how much content is taken before its telegram is complete: the time of one telegram.
     pub ahead_ms: u64,
+    /// From the last bit of a telegram in the rail to its arrival in the logic. The age that a train counts begins there.
+    pub way_ms: u64,
     /// For how long a telegram is used: the life, up to the cycle in which it is gone.
     pub life_ms: u64,
+    /// For how long a code is displayed after it was last heard: T2 + T3; 0 if nothing says.
+    pub code_ms: u64,
     /// From a lower permission to a train that slows down.
     pub reaction_ms: u64,
 }
 
 impl TrainLives {
-    /// For how long a train may act on what the ground has withdrawn.
+    /// For how long a train may act on what the ground has withdrawn: by telegram or by code, whichever is longer.
     pub const fn acts_ms(self) -> u64 {
-        self.ahead_ms + self.life_ms + self.reaction_ms
+        (if self.is_of_codes() { self.code_ms } else { self.telegram_ms() }) + self.reaction_ms
+    }
+
+    /// Whether a code is displayed for longer than a telegram lives.
+    pub const fn is_of_codes(self) -> bool {
+        self.code_ms > self.telegram_ms()
+    }
+
+    const fn telegram_ms(self) -> u64 {
+        self.ahead_ms + self.way_ms + self.life_ms
     }
 }
 
 /// What is wrong with the age that the ground counts on, if trains act on telegrams for longer.
 pub fn age(description: &Description, train: TrainLives) -> Option<Problem> {
     let acts = train.acts_ms();
-    let TrainLives { ahead_ms, life_ms, reaction_ms } = train;
+    let TrainLives { ahead_ms, way_ms, life_ms, code_ms, reaction_ms } = train;
     let age = &description.station.times.telegram_age_ms;
     if u64::from(age.value) >= acts {
         return None;
     }
+    if train.is_of_codes() {
+        let what = format!(
+            "the ground counts on telegrams that live for {age} ms, and trains act on a code for {acts} ms (displayed for {code_ms} ms \
+             after it was last heard, reaction {reaction_ms} ms)"
+        );
+        let right = format!("telegram_age_ms must be {acts} or more, or T2 + T3 less");
+        return Some(Problem::new(Rule::TelegramLives, &age.span, what, right));
+    }
     let what = format!(
         "the ground counts on telegrams that live for {age} ms, and trains act on them for {acts} ms (content taken ahead \
-         {ahead_ms} ms, life {life_ms} ms, reaction {reaction_ms} ms)"
+         {ahead_ms} ms, way {way_ms} ms, life {life_ms} ms, reaction {reaction_ms} ms)"
     );
-    let right = match u64::from(age.value).checked_sub(ahead_ms + reaction_ms).filter(|life| *life > 0) {
+    let right = match u64::from(age.value).checked_sub(ahead_ms + way_ms + reaction_ms).filter(|life| *life > 0) {
         Some(life) => format!("telegram_age_ms must be {acts} or more, or the train's life end within {life} ms"),
         None => format!("telegram_age_ms must be {acts} or more"),
     };

@@ -342,9 +342,10 @@ impl Line {
         &self.telegrams
     }
 
-    /// What its trains do with telegrams, if it sends any.
+    /// What its trains do with telegrams and codes, if it sends telegrams.
     pub fn lives(&self) -> Option<TrainLives> {
-        self.signal.as_ref().map(Signal::lives)
+        let code_ms = self.ms(self.times.expiry().0);
+        self.signal.as_ref().map(|signal| TrainLives { code_ms, ..signal.lives() })
     }
 
     /// Its file, as the user named it.

@@ -163,7 +163,11 @@ impl Signal {
             return refused(Rule::Tel7, "memory_ms", what);
         }
         let parts = |life: Ticks| {
-            format!("content taken ahead {frame} ms, its life {} ms, the reaction {reaction} ms", self.past(life))
+            format!(
+                "content taken ahead {frame} ms, its way {} ms, its life {} ms, the reaction {reaction} ms",
+                self.delay,
+                self.past(life)
+            )
         };
         if self.release < self.obeyed() {
             let what = format!(
@@ -226,11 +230,13 @@ impl Signal {
         u8::MAX - self.permitted.settings().sequence.window()
     }
 
-    /// What a train of this line does with main telegrams.
-    pub fn lives(&self) -> TrainLives {
+    /// What a train of this line does with main telegrams. Of codes it says nothing.
+    pub(crate) fn lives(&self) -> TrainLives {
         TrainLives {
             ahead_ms: self.frame,
+            way_ms: self.delay,
             life_ms: self.past(self.permitted.settings().life),
+            code_ms: 0,
             reaction_ms: self.reaction,
         }
     }
@@ -242,7 +248,7 @@ impl Signal {
 
     /// The same for a sub telegram.
     fn believed(&self) -> u64 {
-        self.frame + self.past(self.permitted.settings().fixed_life) + self.reaction
+        self.frame + self.delay + self.past(self.permitted.settings().fixed_life) + self.reaction
     }
 
     fn top(&self) -> KmhTenths {
@@ -306,13 +312,13 @@ impl Signal {
             row(
                 "A withdrawn stopping point is still obeyed for",
                 format!("{} ms, {} m at the highest speed", self.obeyed(), self.run(self.obeyed())),
-                "content taken ahead by a telegram + life + reaction; the ground keeps the stretch free for longer",
+                "content taken ahead by a telegram + its way + life + reaction; the ground keeps the stretch free for longer",
                 "T-PER-8",
             ),
             row(
                 "A restriction is not known to every train for",
                 format!("{} ms", self.believed()),
-                "content taken ahead by a telegram + life of a sub telegram + reaction",
+                "content taken ahead by a telegram + its way + life of a sub telegram + reaction",
                 "T-PER-5",
             ),
             row(

@@ -778,8 +778,10 @@ static bool step(const struct json *input) {
         else if ((refused = drive(asked)) == NULL) driven = asked;
     }
 
-    // The turn time.
+    // The turn time; a block counts on the time before this cycle.
+    int64_t waited[SEGMENTS];
     for (int s = 0; s < plan.segments; s++) {
+        waited[s] = now.turned[s];
         if (now.travel[s] == TOWARD) now.turned[s] = 0;
         else if (now.turned[s] < plan.turn) now.turned[s]++;
     }
@@ -818,7 +820,7 @@ static bool step(const struct json *input) {
         bool safe = true;
         for (int s = 0; s < plan.segments; s++) {
             if (!(plan.segment[s].circuits & one(c))) continue;
-            if (((FAULTY(19) ? plan.segment[s].circuits : line_and_throat(s)) & now.occupied) || now.travel[s] == TOWARD || now.turned[s] < plan.turn) safe = false;
+            if (((FAULTY(19) ? plan.segment[s].circuits : line_and_throat(s)) & now.occupied) || now.travel[s] == TOWARD || waited[s] < plan.turn) safe = false;
             for (int r = 0; r < plan.routes; r++)
                 if (plan.route[r].to == s && (now.route[r].phase != IDLE || (running & one(r)))) safe = false;
         }

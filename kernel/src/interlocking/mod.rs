@@ -131,6 +131,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let moves = !matches!(input.request, None | Some(Request::Withdraw(_)));
         let refused = starting && moves;
         let heard = Input { request: if refused { None } else { input.request }, ..input };
+        let waited = state.directions.withdrawn;
         let (alone, answer) = self.carry_out(&mut state, heard, sight);
         let answer = if refused { Some(Err(Refusal::Starting)) } else { answer };
         //= spec/interlocking.md#ilk-30-points-ahead
@@ -149,7 +150,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let needs = Needs::of(self, &state.routes).and_out_to(ways.outward);
         //= spec/interlocking.md#ilk-31-blocks-ahead
         //# A block on an unswept circuit MUST NOT be confirmed.
-        let mut circuits = direction::open_line(self, &state.directions, (occupied, needs)).or(unswept.circuits);
+        let mut circuits =
+            direction::open_line(self, (&state.directions, &waited), (occupied, needs)).or(unswept.circuits);
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             circuits = circuits.or(held.circuits(route));

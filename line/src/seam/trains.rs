@@ -1,6 +1,7 @@
 //! Times, brakes, lengths and gradients: what the ground counts on, against what trains are and do.
 
 use atc_kernel::telegram::Gradient;
+use atc_layout::lives::TrainLives;
 
 use super::{Judged, NO_SIGNAL, NO_STATION, NO_TRAIN, Sound, count, finding, judged};
 use crate::blocks::Detection;
@@ -31,7 +32,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
     vec![
         judged(Rule::TrainBrake, "the brake of the pattern", own_brake(line)),
         judged(Rule::TrainLength, scope(), length(line, &stations)),
-        judged(Rule::TelegramLives, scope(), with_signal(&|station, signal| lives(line, station, signal))),
+        judged(Rule::TelegramLives, scope(), lives(line).and_then(|trains| each(&|one| age(line, one, trains)))),
         judged(
             Rule::ReleasePromised,
             count(routes, "route"),
@@ -101,12 +102,16 @@ fn length(line: &Line, stations: &[Sound<'_>]) -> Judged {
     Ok(findings)
 }
 
-fn lives(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {
-    let description = one.station.description();
-    let problem = atc_layout::lives::age(description, signal.lives());
+fn lives(line: &Line) -> Result<TrainLives, &'static str> {
+    line.lives().ok_or(NO_SIGNAL)
+}
+
+fn age(line: &Line, one: Sound<'_>, trains: TrainLives) -> Vec<Finding> {
+    let problem = atc_layout::lives::age(one.station.description(), trains);
+    let against = if trains.is_of_codes() { "times.mask_ms" } else { "signal.life_ms" };
     let told = problem.map(|problem| {
         let what = format!("{}: {}", one.name(), problem.what);
-        finding(one.station.at(&problem.span), line.places().at("signal.life_ms"), what, problem.right)
+        finding(one.station.at(&problem.span), line.places().at(against), what, problem.right)
     });
     told.into_iter().collect()
 }

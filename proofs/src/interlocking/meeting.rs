@@ -19,7 +19,10 @@ const LINE_BUILT_IN: &[(&str, &str)] = &[
     BUILT_IN[2],
     BUILT_IN[3],
     BUILT_IN[4],
-    ("turn-outlasts-telegrams", "a permission that was withdrawn is counted on for no longer than the turn time"),
+    (
+        "turn-outlasts-telegrams",
+        "what the neighbour sends by a permission is reported no later than in the cycle after the turn time since this station last gave it",
+    ),
     ("neighbour-turns-alike", "the neighbour sends only while it may count on this station's permission"),
     (
         "views-of-a-line-meet",
@@ -74,7 +77,7 @@ fn holds(scene: &Scene<ROUTES, 0, SEGMENTS>, device: &State<ROUTES, SEGMENTS>, i
     let (away, toward) = (directions.away.bits() & 1 == 1, directions.toward.bits() & 1 == 1);
     let quiet = !device.works.confirmed.meets(line(scene));
     let waited = u32::from(inbound.coming) + u32::from(directions.withdrawn[0].0);
-    let mut holds = inbound.coming == 0 || waited <= u32::from(scene.plan.turn.0);
+    let mut holds = inbound.coming == 0 || waited <= u32::from(scene.plan.turn.0) + 1;
     holds &= !inbound.is_there() || !away && !out && quiet;
     holds & (!out || !toward && directions.came.bits() & 1 == 0 && quiet)
 }
@@ -169,7 +172,9 @@ harness! {
         e.suppose("loss-of-shunt-within-clear", !beyond || occupied.meets(line));
         e.suppose("loss-of-shunt-within-clear", !inbound.on || occupied.meets(line.or(throat)));
         let permitted = scene.output.permits.bits() & 1 == 1;
-        let later = Inbound { coming: if permitted { scene.plan.turn.0 } else { inbound.coming }, ..inbound };
+        // The life of the permission ends after its last cycle, and from then on a train that was sent may run on, unseen at the last.
+        let last = scene.plan.turn.0.saturating_add(1);
+        let later = Inbound { coming: if permitted { last } else { inbound.coming }, ..inbound };
         let after = goes_out(&scene, &scene.informed, left);
         let contents = scene.output.table.parts().2;
         e.claim(Claim::Meet as u32, !(later.is_there() && after));

@@ -12,8 +12,8 @@ pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 1 s
 
 harness! {
     /// A circuit is blocked or restricted by command only, and always by command. A block is confirmed only where no route holds the circuit
-    /// and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and the neighbour has not been
-    /// permitted to send for the turn time; what makes it protection lasts.
+    /// and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and before this cycle the
+    /// neighbour has not been permitted to send for the turn time; what makes it protection lasts.
     t_ilk_8(e)
     theorem "T-ILK-8";
     requirements ["ILK-15", "ILK-16"];
@@ -27,7 +27,7 @@ harness! {
         Told: "the shared table has these blocks, and no limit above the restriction, whatever routes do",
         Confirmed: "only a blocked circuit that no route holds is confirmed",
         Clear: "it becomes confirmed only while it is not occupied",
-        Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and the neighbour has not been permitted to send for the turn time",
+        Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time",
         Stays: "a confirmed circuit stays confirmed until its block is lifted",
         Lasts: "while it stays confirmed, the neighbour is not permitted to send and no route out is held",
     }
@@ -113,7 +113,7 @@ harness! {
         let becomes = confirmed && !was_confirmed;
         e.claim(Claim::Clear as u32, !becomes || !has(occupied));
         let clear = occupied & (line | segment.throat.bits()) == 0;
-        let quiet = clear && protects(&after);
+        let quiet = clear && protects(&after) && before.directions.withdrawn[0] == turn;
         e.claim(Claim::Quiet as u32, !becomes || !on_line || quiet);
         let stays = has(after.works.confirmed.bits()) && has(output.confirmed.bits());
         e.claim(Claim::Stays as u32, !was_confirmed || !is_blocked || stays);

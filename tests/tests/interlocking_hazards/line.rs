@@ -1,6 +1,8 @@
 //! Plain line: the neighbour's consent ends, and a train on the line goes nobody knows where.
 
-use atc_kernel::interlocking::{Refusal, SegmentSet, Travel};
+use atc_kernel::interlocking::{Epoch, Refusal, SegmentSet, Travel};
+use atc_kernel::time::Ticks;
+use atc_kernel::wayside::{self, Consent, Message, Permission, Stamp, check_life};
 
 use crate::session::Session;
 
@@ -77,4 +79,45 @@ fn a_line_without_a_way_in_is_not_turned_in() {
     session.consent = SegmentSet::ALL;
     let away = session.turn("West", Travel::Away);
     assert_eq!(session.ask(away, &[]), Ok(()));
+}
+
+/// The cycles of the neighbour's last train, from the last one in which it was permitted to be sent: on the circuit, and reported there. The
+/// neighbour counts on the permission for its life, as its own kernel does; the train runs on for the whole residual running, and is lost
+/// for as long as a train may be.
+fn last_train(life: Ticks, residual: Ticks, loss: u8) -> (u16, u16) {
+    let stamp = |cycle| Stamp { session: wayside::Session(1), cycle: Epoch(cycle) };
+    let permitted = Message { permission: Permission::Granted, sent: stamp(0), echo: Some(stamp(0)) };
+    let mut closed = 1;
+    let mut consent = Consent::none(life).hear(life, stamp(1), Some(permitted));
+    while consent.counts(life) {
+        closed += 1;
+        consent = consent.hear(life, stamp(closed.into()), None);
+    }
+    (closed + residual.0, closed + residual.0 + u16::from(loss))
+}
+
+/// Staff are not sent onto the line in the cycle before the neighbour's last train is reported there: the longest life that a device accepts.
+#[test]
+fn no_block_is_confirmed_under_the_neighbour_s_last_train() {
+    for comes in [true, false] {
+        let mut session = Session::new(SECOND);
+        session.wait(9, &[]);
+        let (turn, residual, loss) = session.line_times();
+        let life = Ticks(turn.0 - residual.0 - u16::from(loss));
+        assert!(check_life(life, turn, residual, loss).is_ok());
+        assert!(check_life(Ticks(life.0 + 1), turn, residual, loss).is_err());
+        let (there, reported) = last_train(life, residual, loss);
+        let (toward, away) = (session.turn("West", Travel::Toward), session.turn("West", Travel::Away));
+        assert_eq!(session.ask(toward, &[]), Ok(()));
+        assert_eq!(session.ask(away, &[]), Err(Refusal::Waiting));
+        session.block(&["W2"], &[]);
+        let mut confirmed = None;
+        for cycle in 3..reported + 100 {
+            session.wait(1, if comes && cycle >= reported { &["W2"] } else { &[] });
+            assert!(!comes || cycle < there || !session.is_confirmed("W2"), "cycle {cycle}: there since {there}");
+            confirmed = confirmed.or_else(|| session.is_confirmed("W2").then_some(cycle));
+        }
+        // Not a cycle too late: a line on which nobody comes is confirmed in the very cycle in which it could be turned.
+        assert_eq!(confirmed, (!comes).then_some(turn.0 + 1));
+    }
 }

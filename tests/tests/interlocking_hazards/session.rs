@@ -5,6 +5,7 @@ use atc_kernel::interlocking::{
     CircuitSet, Input, Movement, Orders, Output, Phase, PointId, Position, Positions, Refusal, Request, RouteId,
     SegmentId, SegmentSet, State, Station, Travel,
 };
+use atc_kernel::time::Ticks;
 use atc_layout::{Description, Names};
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
@@ -82,6 +83,12 @@ impl Session {
         let orders = Orders { unblock: CircuitSet::ALL, lift: CircuitSet::ALL, ..Orders::default() };
         session.step(&[], None, orders);
         session
+    }
+
+    /// In cycles: the turn time, the residual running, and the longest loss of shunt.
+    pub fn line_times(&self) -> (Ticks, Ticks, u8) {
+        let plan = self.layout.plan();
+        (plan.turn, plan.residual, plan.loss)
     }
 
     /// So many quiet cycles with these circuits occupied.

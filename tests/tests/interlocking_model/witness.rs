@@ -220,15 +220,16 @@ impl Witness {
             reasons.dedup();
             reasons
         });
-        for stretch in &mut self.stretches {
-            let permitted = stretch.travel == Some(Travel::Toward);
-            stretch.withdrawn = if permitted { 0 } else { (stretch.withdrawn + 1).min(sketch.turn) };
-        }
         let drives = self.drives(sketch, alone, &occupied, &seen);
         let firm = self.settled(sketch, seen, &drives);
         self.reserve(sketch, &occupied, &firm);
         if self.age >= sketch.start {
             self.confirm(sketch, &occupied);
+        }
+        // Only now: who looked at these times in this cycle has looked at the cycles before.
+        for stretch in &mut self.stretches {
+            let permitted = stretch.travel == Some(Travel::Toward);
+            stretch.withdrawn = if permitted { 0 } else { (stretch.withdrawn + 1).min(sketch.turn) };
         }
         self.age = (self.age + 1).min(sketch.start);
         let proceed: Set = (0..self.routes.len())
@@ -304,6 +305,7 @@ impl Witness {
                 || routes().any(|(_, way)| way.to == Some(number))
                 || self.unswept.goes_out_to(sketch, number)
                 || self.stretches[number].withdrawn < sketch.turn
+                || self.stretches[number].travel == Some(Travel::Toward)
         };
         let line = sketch.segments.iter().position(|line| line.circuits.contains(&circuit));
         routes().any(|(held, way)| held.circuits(way).contains(&circuit)) || line.is_some_and(on_line)
