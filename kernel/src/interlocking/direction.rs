@@ -166,19 +166,19 @@ pub(super) fn closed<const R: usize, const P: usize, const N: usize, const S: us
     closed
 }
 
-/// The circuits of segments where a train may be on its way: the neighbour may send, or before this cycle was permitted to less than the
-/// turn time ago (`waited`); a route out is held; or a train is in the segment or its throat.
+/// The circuits of segments where a train may be on its way: before this cycle the neighbour was permitted to send, or was less than the turn
+/// time ago (`waited`); a route out is held; or a train is in the segment or its throat. What is blocked gets no permission in this cycle.
 #[inline]
 pub(super) fn open_line<const R: usize, const P: usize, const N: usize, const S: usize>(
     layout: &Layout<R, P, N, S>,
-    (directions, waited): (&Directions<S>, &[Ticks; S]),
+    waited: &[Ticks; S],
     (occupied, needs): (CircuitSet, Needs),
 ) -> CircuitSet {
     let mut open = CircuitSet::EMPTY;
     for (number, segment) in layout.plan().segments.iter().enumerate() {
         let it = SegmentSet::nth(number);
         // Not this cycle's count: one that is sent at the end of a permission is reported a cycle after the times of the condition.
-        let sent = waited[number] < layout.plan().turn || directions.toward.meets(it);
+        let sent = waited[number] < layout.plan().turn;
         let moving = segment.all().or(segment.throat).meets(occupied);
         open = open.or(segment.all().only_if(sent || needs.away.meets(it) || moving));
     }

@@ -150,8 +150,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let needs = Needs::of(self, &state.routes).and_out_to(ways.outward);
         //= spec/interlocking.md#ilk-31-blocks-ahead
         //# A block on an unswept circuit MUST NOT be confirmed.
-        let mut circuits =
-            direction::open_line(self, (&state.directions, &waited), (occupied, needs)).or(unswept.circuits);
+        let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits);
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             circuits = circuits.or(held.circuits(route));

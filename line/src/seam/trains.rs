@@ -32,7 +32,11 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
     vec![
         judged(Rule::TrainBrake, "the brake of the pattern", own_brake(line)),
         judged(Rule::TrainLength, scope(), length(line, &stations)),
-        judged(Rule::TelegramLives, scope(), lives(line).and_then(|trains| each(&|one| age(line, one, trains)))),
+        judged(
+            Rule::TelegramLives,
+            scope(),
+            line.lives().ok_or(NO_SIGNAL).and_then(|trains| each(&|one| lives(line, one, trains))),
+        ),
         judged(
             Rule::ReleasePromised,
             count(routes, "route"),
@@ -102,11 +106,7 @@ fn length(line: &Line, stations: &[Sound<'_>]) -> Judged {
     Ok(findings)
 }
 
-fn lives(line: &Line) -> Result<TrainLives, &'static str> {
-    line.lives().ok_or(NO_SIGNAL)
-}
-
-fn age(line: &Line, one: Sound<'_>, trains: TrainLives) -> Vec<Finding> {
+fn lives(line: &Line, one: Sound<'_>, trains: TrainLives) -> Vec<Finding> {
     let problem = atc_layout::lives::age(one.station.description(), trains);
     let against = if trains.is_of_codes() { "times.mask_ms" } else { "signal.life_ms" };
     let told = problem.map(|problem| {
