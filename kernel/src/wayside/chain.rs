@@ -67,6 +67,9 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
     /// The track of this segment; none if there is no such segment.
     #[inline]
     pub fn of<const N: usize, const S: usize>(layout: &Layout<R, P, N, S>, segment: SegmentId) -> Option<Self> {
+        //= spec/wayside.md#way-24-the-track
+        //# The joint MUST be checked on the circuits and lengths that the layout has: of the segment and its throat, of as many places
+        //# behind the throat on every route out to it, and of the beginning of every route; where tracks join, the shortest counts.
         let plan = layout.plan();
         let mut chain =
             Self { throat: Place::NONE, circuits: [Place::NONE; P], behind: [Place::NONE; K], ways: [Way::NONE; R] };

@@ -9,6 +9,7 @@ mod direction;
 mod joint;
 mod occupancy;
 mod speech;
+mod track;
 
 use crate::Harness;
 use atc_kernel::distance::Metres;
@@ -20,6 +21,7 @@ use atc_kernel::time::Ticks;
 pub const ALL: &[Harness] = &[
     occupancy::t_way_1::HARNESS,
     joint::t_way_1_joint::HARNESS,
+    track::t_way_1_track::HARNESS,
     occupancy::t_way_2::HARNESS,
     speech::t_way_3::HARNESS,
     speech::t_way_3_train::HARNESS,
