@@ -162,7 +162,13 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
     let turn = values.ms(values.turn);
     let (lives, runs, loss) =
         (&its.station.times.telegram_age_ms, &its_values.residual_ms, &its.station.times.shunt_loss_ms);
-    let least = run_ms(lives.value, runs.value, loss.value);
+    // It is lost in the circuits of either; and what the neighbour's device says stands until its next cycle.
+    let (lost, cycle) = (
+        loss.value.max(description.station.times.shunt_loss_ms.value),
+        its_values.cycle_ms.saturating_sub(values.cycle_ms),
+    );
+    let least = run_ms(lives.value, runs.value, lost).saturating_add(cycle);
+    let late = if cycle == 0 { String::new() } else { format!(", a cycle there is {cycle} ms longer") };
     if turn <= lives.value {
         let what =
             format!("{station} turns the line after {turn} ms, and telegrams in {neighbour} live for {lives} ms");
@@ -170,7 +176,7 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
     } else if turn < least {
         let what = format!(
             "{station} turns the line and confirms blocks on it after {turn} ms, and a train of {neighbour} may run in for {least} ms: telegrams \
-             live for {lives} ms, it runs on for {runs} ms, and may be lost for {loss} ms"
+             live for {lives} ms, it runs on for {runs} ms, and may be lost for {lost} ms{late}"
         );
         wrong(what, format!("turn_ms of {station} must be at least {least}"));
     }
@@ -188,11 +194,11 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
             format!("trains of {neighbour} run on for {runs} ms, and {station} counts on {own} ms for its routes");
         wrong(what, format!("residual_ms of {station} must be at least {runs}"));
     }
-    let (start, least) = (values.ms(values.start), run_ms(lives.value, runs.value, 0));
+    let (start, least) = (values.ms(values.start), run_ms(lives.value, runs.value, 0).saturating_add(cycle));
     if start < least && description.station.times.start_protected.is_none() {
         let what = format!(
             "after a start of {station} nothing moves for {start} ms, and a train of {neighbour} may run on for {least} ms: telegrams live for \
-             {lives} ms, and it runs on for {runs} ms"
+             {lives} ms, and it runs on for {runs} ms{late}"
         );
         let right =
             format!("start_ms of {station} must be at least {least}, or start_protected say why every train stands");

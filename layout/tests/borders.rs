@@ -162,6 +162,44 @@ fn times_of_the_neighbours_trains() {
     }
 }
 
+/// What the neighbour has granted stands until its next cycle, which may be longer than a cycle here: a train came in 0.5 m under a block that had been
+/// confirmed (found in the eighth attack).
+#[test]
+fn a_neighbour_with_longer_cycles() {
+    let one = station("One", "", "line = \"b\"");
+    let other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    let mut slow = other.clone();
+    slow.station.times.cycle_ms.value = 500;
+    let turned = |ms| {
+        let mut one = one.clone();
+        one.station.times.turn_ms = Some(At::derived(ms));
+        held(&one, &slow)
+    };
+    assert!(turned(34_700).is_ok());
+    let errors = turned(34_600).expect_err("too short").to_string();
+    let says = "a train of Neighbour may run in for 34650 ms: telegrams live for 1000 ms, it runs on for 32250 ms, and may be lost for 1000 ms, a cycle \
+                there is 400 ms longer; turn_ms of One must be at least 34650";
+    assert!(errors.contains(says), "{errors}");
+}
+
+/// A train of the neighbour is lost in the circuits of this station for as long as these allow.
+#[test]
+fn a_loss_that_is_longer_here() {
+    let mut one = station("One", "", "line = \"b\"");
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    (one.station.times.shunt_loss_ms.value, one.station.times.clear_ms.value) = (3000, 6000);
+    other.station.times.clear_ms.value = 6000;
+    // Its own trains run in sooner than the neighbour's.
+    one.station.braking.deceleration_mm_s2.value = 800;
+    one.station.times.telegram_age_ms.value = 500;
+    one.station.times.turn_ms = Some(At::derived(35_800));
+    refused(
+        &one,
+        &other,
+        "may run in for 36250 ms: telegrams live for 1000 ms, it runs on for 32250 ms, and may be lost for 3000 ms",
+    );
+}
+
 /// The neighbour's device does not know the points that a tail lies on, nor the speed over them.
 #[test]
 fn tails_that_the_neighbour_does_not_see() {

@@ -366,7 +366,7 @@ fn segment_elsewhere() {
 }
 
 /// A train that is not reported yet is as near as one that is: 13 m at 45 km/h are the difference between a point that is locked and one
-/// that moves in front of a train (found in the third attack: 300 m of approach where 314 are needed).
+/// that moves in front of a train (found in the third attack: 300 m of approach where 315 are needed).
 #[test]
 fn approach_holds_what_is_run_unreported() {
     let approach = |loss_ms: u32| {
@@ -375,9 +375,9 @@ fn approach_holds_what_is_run_unreported() {
         let route = compiled.model.routes.iter().find(|route| route.name == "W-1").expect("a route");
         (route.approach_m, route.approach.len())
     };
-    assert_eq!((approach(0), approach(1_000)), ((293, 1), (314, 2)));
+    assert_eq!((approach(0), approach(1_000)), ((294, 1), (315, 2)));
     let short = change(LOOP, "name = \"W-1\"", "entry", "approach = [\"W1\"]\nentry");
-    breaks(&short, Rule::ApproachTooShort, "300 m back from the signal, where W2 is not in it; 314 m are needed");
+    breaks(&short, Rule::ApproachTooShort, "300 m back from the signal, where W2 is not in it; 315 m are needed");
 }
 
 /// A route that leads up to a signal may be faster than the line.
@@ -389,17 +389,17 @@ fn approach_of_a_fast_route() {
     };
     let compiled = Description::from_toml("loop", &slow(LOOP)).unwrap().compile().unwrap();
     let route = |name: &str| compiled.model.routes.iter().find(|route| route.name == name).expect("a route");
-    // 75 km/h and 800 mm/s²: 272 m, 21 m in a telegram's life, and 21 m unreported. 45 km/h: 98 m, 13 m and 13 m.
-    assert_eq!((route("1-E").approach_m, route("W-1").approach_m), (314, 124));
+    // 75 km/h and 800 mm/s²: 272 m, 21 m in a telegram's life and 1 m from step to step, and 21 m unreported. 45 km/h: 98 m, 13 m, 1 m and 13 m.
+    assert_eq!((route("1-E").approach_m, route("W-1").approach_m), (315, 125));
     let named = |name: &str| compiled.names.circuits.iter().position(|circuit| circuit == name).expect("a circuit");
     assert_eq!(route("1-E").approach, ["1T", "P1T", "W1"].map(named).into());
     // Over the reverse leg none is faster than the line.
-    assert_eq!(route("2-E").approach_m, 124);
+    assert_eq!(route("2-E").approach_m, 125);
     let near = change(&slow(LOOP), "name = \"1-E\"", "entry", "approach = [\"1T\"]\nentry");
     breaks(
         &near,
         Rule::ApproachTooShort,
-        "route 1-E: the approach reaches 150 m back from the signal, where P1T is not in it; 314 m",
+        "route 1-E: the approach reaches 150 m back from the signal, where P1T is not in it; 315 m",
     );
     let said = change(&slow(LOOP), "name = \"1-E\"", "entry", "approach_kmh = 45\nentry");
     breaks(&said, Rule::Range, "route 1-E: trains come up at 45 km/h, and route W-1 leads there at 75");
@@ -507,8 +507,10 @@ fn distances_round_up_and_times_as_is_safe() {
     assert_eq!(plan.clear, 30, "2031 ms at 70 ms, up");
     assert_eq!(plan.routes[0].drive.0, 142, "10 000 ms at 70 ms, down: it restricts");
     assert_eq!(plan.routes[0].release.0, 858, "60 000 ms at 70 ms, up: it permits");
-    // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m, up; and 12.5 m in the second for which a telegram lives, up.
-    assert_eq!(plan.braking[3].0, 98 + 13);
-    let older = Description::from_toml("loop", &format!("{LOOP}\n[times]\ntelegram_age_ms = 2000\n")).unwrap();
-    assert_eq!(older.compile().unwrap().plan.braking[3].0, 98 + 25);
+    // 45 km/h and 800 mm/s²: 12.5² / 1.6 = 97.66 m, up; 12.5 m in the second for which a telegram lives, up; and from step to step 0.4 m, up.
+    assert_eq!(plan.braking[3].0, 98 + 13 + 1);
+    let older =
+        |age_ms| Description::from_toml("loop", &format!("{LOOP}\n[times]\ntelegram_age_ms = {age_ms}\n")).unwrap();
+    assert_eq!(older(2_000).compile().unwrap().plan.braking[3].0, 98 + 25 + 2);
+    assert_eq!(older(5_000).compile().unwrap().plan.braking[3].0, 98 + 63 + 10);
 }

@@ -177,7 +177,10 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
     for (code, speed) in (1..MAX_CODES).zip(&speeds.value) {
         table.0[code] = *speed;
         match stopping(brake, KmhTenths(speed * 10)) {
-            Some(distance) => table.1[code] = Metres(distance.0.saturating_add(aged(*speed, age_ms))),
+            Some(distance) => {
+                let late = aged(*speed, age_ms).saturating_add(stepped(brake, age_ms));
+                table.1[code] = Metres(distance.0.saturating_add(late));
+            }
             None => problems.push(Problem::new(
                 Rule::Range,
                 &given.deceleration_mm_s2.span,
@@ -229,6 +232,14 @@ pub fn code(values: &Values, speed: &At<u16>, problems: &mut Vec<Problem>) -> Sp
 /// What a train runs while its telegram ages, in whole metres, rounded up.
 fn aged(speed_kmh: u16, age_ms: u32) -> u16 {
     let metres = (u64::from(speed_kmh) * u64::from(age_ms)).div_ceil(3600);
+    u16::try_from(metres).unwrap_or(u16::MAX)
+}
+
+/// What a train that brakes from code to code runs besides, in whole metres, rounded up. It still brakes towards one code when the next lower one is told, and obeys
+/// the first until it is too old: from the second on it has the room for that once more, at most what it brakes away in that time.
+fn stepped(brake: Deceleration, age_ms: u32) -> u16 {
+    // mm/s² times ms²: 1e9 of them are a metre, and a half of it counts.
+    let metres = (u128::from(brake.mm_s2()) * u128::from(age_ms).pow(2)).div_ceil(2_000_000_000);
     u16::try_from(metres).unwrap_or(u16::MAX)
 }
 

@@ -15,11 +15,12 @@ const SEGMENTS: usize = 2;
 /// The places behind the throat that are looked at: an entry may be the last of them.
 const BEHIND: usize = PATH;
 
-pub const BOUND: &str = "2 routes of up to 2 circuits, 2 segments of up to 2, 32 circuits, each with a length of its own";
+pub const BOUND: &str =
+    "2 routes of up to 2 circuits, 2 segments of up to 2, 32 circuits, each with a length of its own";
 
 /// How long a circuit is: each of the 32 has another length, and they neither rise nor fall with the numbers.
-const fn metres(number: usize) -> Metres {
-    Metres((number as u16 & 31) * 37 % 61 + 1)
+fn metres(number: usize) -> Metres {
+    Metres(u16::from(number.to_le_bytes()[0] & 31) * 37 % 61 + 1)
 }
 
 /// What a train that goes out over the route is on, in its order: the entry, then the path. Bits of circuits.

@@ -1,0 +1,86 @@
+//! Trains that act on codes alone, on metres: do they stop within what they are granted?
+//!
+//! The ground is the kernel's interlocking and ATC, with the distances of the codes as `layout` derives them. The train has a front and a tail. A lower
+//! code is obeyed only when the one before is as old as a telegram may be, a higher one at once; a train that is faster than its code brakes, with
+//! the brake that every train has or a stronger one, as it likes. Lines are drawn, and those on which a train comes farthest are changed a little.
+//! Without what a code's distance holds for steps the search finds an accident at once (eighth attack).
+
+mod line;
+
+use line::{Line, Place, derived, steps};
+
+/// xorshift: the same numbers on every machine.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, number: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) % number
+    }
+
+    fn between(&mut self, least: u16, most: u16) -> u16 {
+        least + u16::try_from(self.below(u64::from(most - least) + 1)).expect("below a u16")
+    }
+}
+
+/// The age of a telegram (ms) and the brake (mm/s²).
+const TRAINS: [(u32, u16); 4] = [(1_000, 800), (5_000, 800), (5_000, 1_200), (8_000, 500)];
+
+/// How far beyond its place, in mm, a train comes on so many lines, at the worst; with `less` metres taken from the distance of each code.
+fn farthest(place: Place, (age_ms, brake): (u32, u16), less: u16, runs: usize) -> (i64, Vec<u16>) {
+    let braking = derived(age_ms, brake).map(|distance| distance.map(|metres| metres.saturating_sub(less)));
+    let mut dice = Dice(0x0139_408d_cbbf_7a44);
+    let mut worst = (i64::MIN, Vec::new(), 0);
+    for _ in 0..runs {
+        let known: &(i64, Vec<u16>, i64) = &worst;
+        let (lengths, moment) = if known.1.is_empty() || dice.below(2) == 0 {
+            let count = 4 + dice.below(5);
+            ((0..count).map(|_| dice.between(50, 500)).collect(), -i64::from(dice.between(1, 1_000)) * 1_000)
+        } else {
+            let mut lengths: Vec<u16> = known.1.clone();
+            let changed = usize::try_from(dice.below(lengths.len() as u64)).expect("a place");
+            lengths[changed] = (lengths[changed] + dice.between(0, 60)).saturating_sub(30).clamp(50, 600);
+            (lengths, known.2 + i64::from(dice.between(0, 20_000)) - 10_000)
+        };
+        let stronger = if dice.below(2) == 0 { brake } else { dice.between(brake, 2 * brake) };
+        let line = Line { lengths: &lengths, braking: &braking, age_ms, brakes: [brake, stronger] };
+        if let Some(beyond) = line.run(place, moment).filter(|beyond| *beyond > worst.0) {
+            worst = (beyond, lengths, moment);
+        }
+    }
+    (worst.0, worst.1)
+}
+
+/// Behind a train that stands.
+#[test]
+fn a_train_by_codes_stops_behind_the_one_ahead() {
+    for train in TRAINS {
+        let (beyond, lengths) = farthest(Place::Train, train, 0, 600);
+        assert!(beyond <= 0, "{train:?}: {beyond} mm too far over circuits of {lengths:?} m");
+        assert!(beyond > -60_000, "{train:?}: none came nearer than {beyond} mm, so this shows nothing");
+    }
+}
+
+/// Before a signal whose route was withdrawn, and which nothing holds any more.
+#[test]
+fn a_train_by_codes_stops_before_a_signal_that_was_given_up() {
+    for train in TRAINS {
+        let (beyond, lengths) = farthest(Place::Signal, train, 0, 500);
+        assert!(beyond <= 0, "{train:?}: {beyond} mm too far over circuits of {lengths:?} m");
+        assert!(beyond > -60_000, "{train:?}: none came nearer than {beyond} mm, so this shows nothing");
+    }
+}
+
+/// The old rule: the distance of a code held one age, and a train that brakes in steps takes two.
+#[test]
+fn without_the_steps_it_does_not() {
+    for (train, metres) in [(TRAINS[1], 10), (TRAINS[2], 15), (TRAINS[3], 16)] {
+        assert_eq!(steps(train), metres);
+        for place in [Place::Train, Place::Signal] {
+            let (beyond, _) = farthest(place, train, metres, 500);
+            assert!(beyond > 500, "{train:?}, {place:?}: {beyond} mm");
+        }
+    }
+}
