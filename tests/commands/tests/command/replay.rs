@@ -262,7 +262,7 @@ const FAULTS: &[Fault] = &[
             None
         },
         code: 2,
-        says: &["t.jsonl: line 1: a byte order mark", "18 lines behind it were passed over", "3 of 3 sessions agree"],
+        says: &["t.jsonl: line 1: a byte order mark", "19 lines behind it were passed over", "3 of 3 sessions agree"],
     },
     Fault {
         name: "CRLF and empty lines, which may be",
@@ -490,7 +490,7 @@ fn reports_are_written() {
         "{junit}"
     );
     let page = read("r.html");
-    assert!(page.contains("<svg") && page.contains("There it says: display") && page.contains("ACC-1"), "{page}");
+    assert!(page.contains("<svg") && page.contains("display as recorded") && page.contains("ACC-1"), "{page}");
     // The same by standard input.
     let mut child = Command::new(device::oracle())
         .args(["replay", "-", "--json", "s.json"])
