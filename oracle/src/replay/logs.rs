@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest as _, Sha256};
 
 use super::report::Unread;
+use crate::conform::vectors::hex;
 
 /// The name that stands for standard input.
 pub const STANDARD_INPUT: &str = "-";
@@ -147,7 +148,7 @@ impl Logs {
             hash.update([0]);
             hash.update(log.length.unwrap_or(u64::MAX).to_le_bytes());
         }
-        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hex(&hash.finalize())
     }
 
     /// The piece of the row that a shard has: shard `index`, from 1, of so many.

@@ -68,7 +68,7 @@ struct All {
     machines: Vec<Tally>,
     differs: BTreeMap<Place, (u64, Differs)>,
     stuck: BTreeMap<(Place, u64), (u64, Stuck)>,
-    all_stuck: u64,
+    places: u64,
     left_out: u64,
     open: u64,
     bytes: u64,
@@ -145,7 +145,7 @@ impl All {
         while self.stuck.len() > MOST_STUCK {
             self.stuck.pop_last();
         }
-        self.all_stuck += done.all_stuck;
+        self.places += done.all_stuck;
         self.left_out += done.left_out;
         self.open += done.open;
         self.bytes += done.bytes;
@@ -162,7 +162,7 @@ impl All {
             _ => line,
         };
         let mut unread = Vec::new();
-        let mut unread_in_all = self.all_stuck + self.failed.len() as u64;
+        let mut unread_in_all = self.places + self.failed.len() as u64;
         // What is wrong with the names is wrong in each shard: it is told once.
         if index == 1 {
             unread_in_all += logs.unread.len() as u64;
