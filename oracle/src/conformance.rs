@@ -68,13 +68,23 @@ pub(crate) struct ConformArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum LevelArg {
+pub(crate) enum LevelArg {
     /// What leaves the device
     Output,
     /// And the reasons of refusals and the names of faults
     Reason,
     /// And what is remembered, where the other side reports it
     State,
+}
+
+impl LevelArg {
+    pub(crate) const fn level(self) -> Level {
+        match self {
+            Self::Output => Level::Output,
+            Self::Reason => Level::Reason,
+            Self::State => Level::State,
+        }
+    }
 }
 
 #[derive(Args)]
@@ -99,7 +109,7 @@ enum SetArg {
 }
 
 /// Reads a time such as `60s`, `2m` or `500ms`; a number alone is seconds.
-fn duration(text: &str) -> Result<Duration, String> {
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let split = text.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(text.len());
     let (number, unit) = text.split_at(split);
     let milliseconds = match unit {
@@ -116,7 +126,7 @@ fn duration(text: &str) -> Result<Duration, String> {
     time.ok_or_else(|| "a time is a whole number above 0 with ms, s, m or h, such as 60s, at most 1000000s".to_owned())
 }
 
-fn machines(names: &[String]) -> Result<(), Failure> {
+pub(crate) fn machines(names: &[String]) -> Result<(), Failure> {
     let all: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
     match names.iter().find(|name| machine::find(name).is_none()) {
         Some(name) => Err(Failure::Asked(format!("there is no machine {name:?}; there are {}", all.join(", ")))),
@@ -124,7 +134,7 @@ fn machines(names: &[String]) -> Result<(), Failure> {
     }
 }
 
-fn read(path: &Path) -> Result<String, Failure> {
+pub(crate) fn read_asked(path: &Path) -> Result<String, Failure> {
     super::read(path).map_err(|failure| Failure::Asked(failure.to_string()))
 }
 
@@ -163,16 +173,12 @@ fn options(args: &ConformArgs) -> Result<Options, Failure> {
     machines(&args.machine)?;
     let profile = match &args.profile {
         Some(path) => {
-            let profile = Profile::parse(&read(path)?);
+            let profile = Profile::parse(&read_asked(path)?);
             profile.map_err(|reason| Failure::Asked(format!("{}: {reason}", path.display())))?
         }
         None => Profile::default(),
     };
-    let level = args.level.map(|level| match level {
-        LevelArg::Output => Level::Output,
-        LevelArg::Reason => Level::Reason,
-        LevelArg::State => Level::State,
-    });
+    let level = args.level.map(LevelArg::level);
     let config = args.config.as_ref().map(|path| config(path, &args.machine)).transpose()?;
     let vectors = args.vectors.as_ref().map(|folder| vectors_in(folder, &args.machine)).transpose()?;
     Ok(Options {
@@ -191,12 +197,12 @@ fn options(args: &ConformArgs) -> Result<Options, Failure> {
 }
 
 /// A configuration that the kernel takes.
-fn config(path: &Path, machines: &[String]) -> Result<Value, Failure> {
+pub(crate) fn config(path: &Path, machines: &[String]) -> Result<Value, Failure> {
     let [machine] = machines else {
         return Err(Failure::Asked("--config is the configuration of one machine: name it with --machine".to_owned()));
     };
     let wrong = |reason: String| Failure::Asked(format!("{}: {reason}", path.display()));
-    let text = read(path)?;
+    let text = read_asked(path)?;
     let is_toml = path.extension().is_some_and(|extension| extension == "toml");
     let config: Value = if is_toml {
         toml::from_str(&text).map_err(|error| wrong(error.to_string().trim_end().to_owned()))?

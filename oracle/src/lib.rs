@@ -5,6 +5,7 @@
 //! * [`trace`] and [`chart`]: the timing chart (SVG, VCD) of a recorded session, checked against the kernel.
 //! * [`film`]: a recorded session, or a trace of a model, as a page that plays it.
 //! * [`conform`]: another implementation against the kernel, down to the first difference; and vectors.
+//! * [`replay`]: the logs of recorders against the kernel, in bulk.
 //! * [`signal`]: the train control signal as a WAV file, made and read back.
 //! * [`schema`]: the JSON Schema of the protocol, generated from the types.
 
@@ -14,6 +15,7 @@ pub mod film;
 pub mod machine;
 mod names;
 pub mod protocol;
+pub mod replay;
 pub mod schema;
 mod sections;
 mod serve;

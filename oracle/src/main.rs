@@ -4,6 +4,7 @@ mod conformance;
 mod explore;
 mod layout;
 mod line;
+mod replaying;
 mod simulate;
 
 use std::fmt;
@@ -40,6 +41,8 @@ enum Command {
     Conform(Box<conformance::ConformArgs>),
     /// Writes test vectors: cases with the kernel's replies and the requirements that they are about
     Vectors(conformance::VectorsArgs),
+    /// Holds the logs of recorders against the kernel, in bulk
+    Replay(Box<replaying::ReplayArgs>),
     /// Makes the train control signal as a WAV file, or reads one
     #[command(subcommand)]
     Signal(SignalCommand),
@@ -49,7 +52,7 @@ enum Command {
     /// Checks the data of a whole line, and what its stations and trains count on of each other
     #[command(subcommand)]
     Line(line::LineCommand),
-    /// Prints a JSON Schema: of protocol 1, or of what `conform` and `vectors` write
+    /// Prints a JSON Schema: of protocol 1, or of what `conform`, `replay` and `vectors` write
     Schema {
         /// Of which form
         #[arg(value_enum, default_value = "protocol")]
@@ -73,6 +76,8 @@ enum SchemaOf {
     Protocol,
     /// The JSON report of `oracle conform`
     Report,
+    /// The JSON report of `oracle replay`
+    Replay,
     /// A line of a file of vectors
     Vector,
 }
@@ -143,8 +148,8 @@ enum Failure {
     Asked(String),
     /// What was compared is not the same; it has been told.
     Differs,
-    /// A line is not as it should be; it has been told. The exit code.
-    Line(u8),
+    /// Something is not as it should be; it has been told. The exit code.
+    Told(u8),
 }
 
 impl fmt::Display for Failure {
@@ -157,7 +162,7 @@ impl fmt::Display for Failure {
             Self::Config(path, reason) => write!(f, "{}: {reason}", path.display()),
             Self::Signal(reason) | Self::Asked(reason) => f.write_str(reason),
             Self::Layout(errors) => write!(f, "{errors}"),
-            Self::Differs | Self::Line(_) => Ok(()),
+            Self::Differs | Self::Told(_) => Ok(()),
         }
     }
 }
@@ -170,9 +175,11 @@ fn main() -> ExitCode {
         Command::Layout(command) => layout(command),
         Command::Line(command) => line(&command),
         Command::Conform(args) => conformance::conform(&args),
+        Command::Replay(args) => replaying::replay(&args),
         Command::Vectors(args) => conformance::vectors(&args),
         Command::Schema { of } => print(&match of {
             SchemaOf::Protocol => atc_oracle::schema::text(),
+            SchemaOf::Replay => atc_oracle::replay::report::schema(),
             SchemaOf::Report => atc_oracle::conform::report::schema(),
             SchemaOf::Vector => atc_oracle::conform::vectors::schema(),
         }),
@@ -183,7 +190,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Differs) => ExitCode::FAILURE,
-        Err(Failure::Line(code)) => ExitCode::from(code),
+        Err(Failure::Told(code)) => ExitCode::from(code),
         // Each line of these begins with its file and place, as an editor wants it.
         Err(Failure::Layout(errors)) => {
             remark(&format!("{errors}\n"));
@@ -300,7 +307,7 @@ fn line(command: &line::LineCommand) -> Result<(), Failure> {
     let done = line::run(command);
     print(&done.text)?;
     remark(&done.remarks);
-    if done.code == 0 { Ok(()) } else { Err(Failure::Line(done.code)) }
+    if done.code == 0 { Ok(()) } else { Err(Failure::Told(done.code)) }
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

@@ -54,7 +54,9 @@ impl Session {
         reply.push(b'\n');
     }
 
-    fn request(&mut self, line: &str, reply: &mut Vec<u8>) -> Result<(), Fault> {
+    /// Answers a line that is text: appends one line of JSON without its newline, or says why there is none. What was appended before a
+    /// fault is for the caller to take away.
+    pub(crate) fn request(&mut self, line: &str, reply: &mut Vec<u8>) -> Result<(), Fault> {
         match protocol::request(line)? {
             Request::Step(body) => {
                 let Some(open) = &mut self.open else {

@@ -88,7 +88,7 @@ enum Answer {
 /// Any line of a trace.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Line<'a> {
+pub(crate) enum Line<'a> {
     #[serde(borrow)]
     Start(&'a RawValue),
     Step(IgnoredAny),

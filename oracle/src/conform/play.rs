@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::case::{Expected, STOP, step_line};
+use super::case::{Expected, STOP, is_rejected, step_line};
 use super::fields::{Difference, Level, compare, compare_cycles, start_difference};
 use super::profile::Profile;
 use super::side::{Broken, Side};
@@ -128,62 +128,104 @@ impl Player<'_> {
             self.step(step, output).map_err(|finding| (At::Step(number), finding))?;
         }
         let reply = self.ask(STOP).map_err(|finding| (At::Stop, finding))?;
-        kind_of(&reply, "stopped").map(drop).map_err(|finding| (At::Stop, finding))
+        self.judge.stop(&reply).map_err(|finding| (At::Stop, finding))
     }
 
     /// Whether the case is open on both sides.
     fn start(&mut self, expected: &Expected) -> Result<bool, Finding> {
         let reply = self.ask(&expected.case.start_line())?;
-        let ours = if expected.is_rejected() { "rejected" } else { "started" };
-        let body = json(&reply)?;
-        let theirs = if body.get("rejected").is_some() { "rejected" } else { "started" };
-        if theirs == "started" {
-            kind_of(&reply, "started")?;
+        let opened = self.judge.start(self.machine, &expected.start, &reply, &mut self.agreed)?;
+        // Known: there is nothing to go on with; what one side has open is closed.
+        if opened == Opened::Theirs {
+            self.ask(STOP)?;
         }
-        if ours != theirs {
-            if theirs == "rejected" {
-                self.agreed.rejected = Some(body["rejected"]["reason"].as_str().unwrap_or_default().to_owned());
-            }
-            self.differ(vec![start_difference(self.machine, ours, theirs)])?;
-            // Known: there is nothing to go on with; what one side has open is closed.
-            if theirs == "started" {
-                self.ask(STOP)?;
-            }
-            return Ok(false);
-        }
-        if ours == "rejected" {
-            return Ok(false);
-        }
-        let started: Value = serde_json::from_str(&expected.start).unwrap_or_default();
-        let (started, theirs) = (&started["started"], &body["started"]);
-        for (field, right) in [("protocol", started["protocol"].clone()), ("machine", self.machine.into())] {
-            if theirs.get(field) != Some(&right) {
-                return Err(Finding::Broken(Broken::WrongReply("started", shorten(&reply))));
-            }
-        }
-        self.differ(compare_cycles(self.machine, started, theirs))?;
-        Ok(true)
+        Ok(opened == Opened::Both)
     }
 
     fn step(&mut self, step: &Value, output: &str) -> Result<(), Finding> {
         let reply = self.ask(&step_line(step))?;
-        if reply == output {
+        let judged = self.judge.output(self.machine, output, &reply, &mut self.agreed);
+        if !matches!(judged, Err(Finding::Broken(_))) {
             self.replies.push(reply);
-            return Ok(());
         }
-        let theirs = kind_of(&reply, "output")?;
-        self.replies.push(reply);
-        let ours: Value = serde_json::from_str(output).unwrap_or_default();
-        self.differ(compare(self.machine, self.judge.level, &ours["output"], &theirs["output"]))
+        judged
     }
 
     fn ask(&mut self, line: &str) -> Result<String, Finding> {
         self.side.ask(line).map_err(Finding::Broken)
     }
+}
 
-    fn differ(&mut self, mut differences: Vec<Difference>) -> Result<(), Finding> {
-        self.judge.profile.without_ignored(self.machine, &mut differences);
-        self.agreed.known.extend(self.judge.profile.take_known(self.machine, &mut differences));
+/// Where a case is open after the replies to its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Opened {
+    /// On both sides.
+    Both,
+    /// On none: both reject the start.
+    None,
+    /// In the kernel only, as it is known.
+    Ours,
+    /// On the other side only, as it is known.
+    Theirs,
+}
+
+impl Judge<'_> {
+    /// Holds a reply to a start against the kernel's, a line each.
+    ///
+    /// # Errors
+    /// What differs and is not known, or that it is no reply to a start.
+    pub fn start(self, machine: &str, expected: &str, reply: &str, agreed: &mut Agreed) -> Result<Opened, Finding> {
+        let ours = if is_rejected(expected) { "rejected" } else { "started" };
+        let body = json(reply)?;
+        let theirs = if body.get("rejected").is_some() { "rejected" } else { "started" };
+        if theirs == "started" {
+            kind_of(reply, "started")?;
+        }
+        if ours != theirs {
+            if theirs == "rejected" {
+                agreed.rejected = Some(body["rejected"]["reason"].as_str().unwrap_or_default().to_owned());
+            }
+            self.differ(machine, vec![start_difference(machine, ours, theirs)], agreed)?;
+            return Ok(if theirs == "started" { Opened::Theirs } else { Opened::Ours });
+        }
+        if ours == "rejected" {
+            return Ok(Opened::None);
+        }
+        let started: Value = serde_json::from_str(expected).unwrap_or_default();
+        let (started, theirs) = (&started["started"], &body["started"]);
+        for (field, right) in [("protocol", started["protocol"].clone()), ("machine", machine.into())] {
+            if theirs.get(field) != Some(&right) {
+                return Err(Finding::Broken(Broken::WrongReply("started", shorten(reply))));
+            }
+        }
+        self.differ(machine, compare_cycles(machine, started, theirs), agreed)?;
+        Ok(Opened::Both)
+    }
+
+    /// Holds a reply to a step against the kernel's output, a line each.
+    ///
+    /// # Errors
+    /// What differs and is not known, or that it is no output.
+    pub fn output(self, machine: &str, expected: &str, reply: &str, agreed: &mut Agreed) -> Result<(), Finding> {
+        if reply == expected {
+            return Ok(());
+        }
+        let theirs = kind_of(reply, "output")?;
+        let ours: Value = serde_json::from_str(expected).unwrap_or_default();
+        self.differ(machine, compare(machine, self.level, &ours["output"], &theirs["output"]), agreed)
+    }
+
+    /// Looks whether a reply is one to a stop.
+    ///
+    /// # Errors
+    /// That it is none.
+    pub fn stop(self, reply: &str) -> Result<(), Finding> {
+        kind_of(reply, "stopped").map(drop)
+    }
+
+    fn differ(self, machine: &str, mut differences: Vec<Difference>, agreed: &mut Agreed) -> Result<(), Finding> {
+        self.profile.without_ignored(machine, &mut differences);
+        agreed.known.extend(self.profile.take_known(machine, &mut differences));
         if differences.is_empty() { Ok(()) } else { Err(Finding::Differs(differences)) }
     }
 }
@@ -205,7 +247,7 @@ fn json(reply: &str) -> Result<Value, Finding> {
 }
 
 /// The beginning of a reply, for a message.
-fn shorten(reply: &str) -> String {
+pub(crate) fn shorten(reply: &str) -> String {
     const MOST: usize = 160;
     if reply.chars().count() <= MOST {
         return reply.to_owned();

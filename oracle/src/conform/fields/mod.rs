@@ -6,7 +6,8 @@ mod tables;
 use std::collections::BTreeSet;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
 pub use tables::{TABLES, table};
@@ -101,20 +102,43 @@ pub enum Danger {
 }
 
 /// One field in which two replies differ.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Difference {
     /// The field's name, with the entry below a map.
     pub field: String,
     /// What the kernel says; absent: nothing.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "there_at_least", skip_serializing_if = "Option::is_none")]
     pub expected: Option<Value>,
     /// What the other side says; absent: nothing.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "there_at_least", skip_serializing_if = "Option::is_none")]
     pub got: Option<Value>,
     /// Whether it is on the dangerous side.
     pub dangerous: bool,
     /// The requirements that speak of the field.
+    #[serde(deserialize_with = "known_requirements")]
     pub requirements: Vec<&'static str>,
+}
+
+/// Reads a value that is there: null is one, and not the same as nothing.
+fn there_at_least<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
+    Value::deserialize(deserializer).map(Some)
+}
+
+/// Reads requirements: those that a table names.
+fn known_requirements<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static str>, D::Error> {
+    let named = Vec::<String>::deserialize(deserializer)?;
+    let listed = |table: &Table| -> Vec<&'static str> {
+        let fields = table.fields.iter().flat_map(|field| match field.shape {
+            Shape::Entries(inner) => inner.iter().chain([field]).flat_map(|field| field.requirements).collect(),
+            _ => field.requirements.iter().collect::<Vec<_>>(),
+        });
+        table.start.iter().chain(table.cycles).chain(fields).copied().collect()
+    };
+    let find = |id: &String| TABLES.iter().flat_map(listed).find(|listed| listed == id);
+    named
+        .iter()
+        .map(|id| find(id).ok_or_else(|| D::Error::custom(format_args!("no field has a requirement {id:?}"))))
+        .collect()
 }
 
 impl Difference {

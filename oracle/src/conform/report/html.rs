@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::text::value;
 use super::{First, OfMachine, Report, Word, badge, charts};
+use crate::conform::fields::Difference;
 use crate::conform::run::{Run, Verdict};
 
 /// An earlier run, for the table at the foot.
@@ -31,37 +32,44 @@ code{font-size:13px;word-break:break-word}.ok{color:#1c6b30}.bad{color:#b3261e;f
 /// The page of a run; `past` are the runs before it, the oldest first.
 pub fn page(run: &Run, report: &Report, past: &[Past]) -> String {
     let who = report.implementation.clone().unwrap_or_else(|| report.command.clone());
+    let title = format!("Conformance of {who}");
+    let body = html! {
+        p { (PreEscaped(badge(report))) }
+        h1 { (title) }
+        (summary(report))
+        (machines(report))
+        @for (machine, of) in run.machines.iter().zip(&report.machines) {
+            @if let (Verdict::Differs(trace, _), Some(first)) = (&machine.verdict, &of.difference) {
+                (difference(of, first, &charts(trace)))
+            }
+        }
+        @if !report.stderr.is_empty() {
+            h2 { "Standard error of the other side, the last of it" }
+            pre { (report.stderr) }
+        }
+        (history(past))
+    };
+    frame(&title, &body)
+}
+
+/// A page of this style.
+pub(crate) fn frame(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Conformance of " (who) }
+                title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
-            body {
-                p { (PreEscaped(badge(report))) }
-                h1 { "Conformance of " (who) }
-                (summary(report))
-                (machines(report))
-                @for (machine, of) in run.machines.iter().zip(&report.machines) {
-                    @if let (Verdict::Differs(trace, _), Some(first)) = (&machine.verdict, &of.difference) {
-                        (difference(of, first, &charts(trace)))
-                    }
-                }
-                @if !report.stderr.is_empty() {
-                    h2 { "Standard error of the other side, the last of it" }
-                    pre { (report.stderr) }
-                }
-                (history(past))
-            }
+            body { (body) }
         }
     };
     page.into_string()
 }
 
-fn class(word: Word) -> &'static str {
+pub(crate) fn class(word: Word) -> &'static str {
     match word {
         Word::Agrees => "ok",
         Word::NotCompared => "left",
@@ -120,19 +128,7 @@ fn difference(of: &OfMachine, first: &First, charts: &(Option<String>, Option<St
     html! {
         h2 id=(of.machine) { (of.machine) ": first difference at " (place) }
         @if let Some((_, sentence)) = &first.broken { p.bad { (sentence) } }
-        @if !first.fields.is_empty() {
-            table {
-                tr { th { "field" } th { "expected" } th { "got" } th { "requirements" } }
-                @for field in &first.fields {
-                    tr {
-                        td { (field.field) @if field.dangerous { br; span.danger { "dangerous" } } }
-                        td { code { (value(field.expected.as_ref())) } }
-                        td { code { (value(field.got.as_ref())) } }
-                        td { (field.requirements.join(", ")) }
-                    }
-                }
-            }
-        }
+        @if !first.fields.is_empty() { (fields_table(&first.fields)) }
         @for guess in &first.as_if { p { "The kernel would say the same with " b { (guess) } "." } }
         p {
             @if !first.again { "It did not show a second time; the trace is as it was. " }
@@ -143,6 +139,23 @@ fn difference(of: &OfMachine, first: &First, charts: &(Option<String>, Option<St
         pre { (first.trace.join("\n")) }
         @for (chart, caption) in [(&charts.0, "The kernel."), (&charts.1, "The other side; what differs is red. The last step is drawn twice, for its output to be seen.")] {
             @if let Some(chart) = chart { figure { (PreEscaped(chart)) figcaption { (caption) } } }
+        }
+    }
+}
+
+/// The fields of a difference.
+pub(crate) fn fields_table(fields: &[Difference]) -> Markup {
+    html! {
+        table {
+            tr { th { "field" } th { "expected" } th { "got" } th { "requirements" } }
+            @for field in fields {
+                tr {
+                    td { (field.field) @if field.dangerous { br; span.danger { "dangerous" } } }
+                    td { code { (value(field.expected.as_ref())) } }
+                    td { code { (value(field.got.as_ref())) } }
+                    td { (field.requirements.join(", ")) }
+                }
+            }
         }
     }
 }
@@ -166,7 +179,7 @@ fn history(past: &[Past]) -> Markup {
 }
 
 /// A time in UTC, from seconds since 1970 (the civil calendar from days, after Howard Hinnant).
-fn instant(seconds: u64) -> String {
+pub(crate) fn instant(seconds: u64) -> String {
     let days = seconds / 86_400 + 719_468;
     let (era, of_era) = (days / 146_097, days % 146_097);
     let year_of_era = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;

@@ -6,7 +6,7 @@ mod junit;
 mod text;
 
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::alike::Alike;
 use super::case::{Expected, step_line};
@@ -19,7 +19,10 @@ use crate::trace::Replies;
 
 pub use badge::badge;
 pub use html::{Past, page};
+pub(crate) use html::{class, fields_table, frame, instant};
 pub use junit::junit;
+pub(crate) use junit::{Entry, write_junit};
+pub(crate) use text::fields_text;
 pub use text::text;
 
 /// The version of the form of the JSON report.
@@ -54,7 +57,7 @@ pub struct Report {
 }
 
 /// The verdict on a machine, as one word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Word {
     /// Everything that was compared is the same.

@@ -52,12 +52,7 @@ fn of_machine(text: &mut String, report: &Report, machine: &OfMachine) {
 fn difference(text: &mut String, report: &Report, first: &First) {
     let place = first.step.map_or_else(|| first.at.to_owned(), |step| format!("step {step}"));
     let _ = writeln!(text, "  at {place} of the trace below (seed {}):", report.seed);
-    for field in &first.fields {
-        let Difference { field: name, dangerous, .. } = field;
-        let mark = if *dangerous { "  DANGEROUS" } else { "" };
-        let (expected, got) = (value(field.expected.as_ref()), value(field.got.as_ref()));
-        let _ = writeln!(text, "    {name}: expected {expected}, got {got}{mark}");
-    }
+    fields_text(text, &first.fields);
     if let Some((_, sentence)) = &first.broken {
         let _ = writeln!(text, "    {sentence}");
     }
@@ -77,6 +72,16 @@ fn difference(text: &mut String, report: &Report, first: &First) {
     let _ = writeln!(text, "  trace of {} steps, {how}:", first.steps);
     for line in &first.trace {
         let _ = writeln!(text, "{line}");
+    }
+}
+
+/// A line for each field.
+pub(crate) fn fields_text(text: &mut String, fields: &[Difference]) {
+    for field in fields {
+        let Difference { field: name, dangerous, .. } = field;
+        let mark = if *dangerous { "  DANGEROUS" } else { "" };
+        let (expected, got) = (value(field.expected.as_ref()), value(field.got.as_ref()));
+        let _ = writeln!(text, "    {name}: expected {expected}, got {got}{mark}");
     }
 }
 
