@@ -4,6 +4,7 @@ mod conformance;
 mod explore;
 mod layout;
 mod line;
+mod position;
 mod simulate;
 
 use std::fmt;
@@ -49,6 +50,9 @@ enum Command {
     /// Checks the data of a whole line, and what its stations and trains count on of each other
     #[command(subcommand)]
     Line(line::LineCommand),
+    /// Makes the attenuation table of train positions from measured levels
+    #[command(subcommand)]
+    Position(position::PositionCommand),
     /// Prints a JSON Schema: of protocol 1, or of what `conform` and `vectors` write
     Schema {
         /// Of which form
@@ -169,6 +173,7 @@ fn main() -> ExitCode {
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
         Command::Line(command) => line(&command),
+        Command::Position(position::PositionCommand::Calibrate(args)) => calibrate(&args),
         Command::Conform(args) => conformance::conform(&args),
         Command::Vectors(args) => conformance::vectors(&args),
         Command::Schema { of } => print(&match of {
@@ -301,6 +306,18 @@ fn line(command: &line::LineCommand) -> Result<(), Failure> {
     print(&done.text)?;
     remark(&done.remarks);
     if done.code == 0 { Ok(()) } else { Err(Failure::Line(done.code)) }
+}
+
+fn calibrate(args: &position::CalibrateArgs) -> Result<(), Failure> {
+    let done = position::calibrate(args, &read(&args.levels)?).map_err(|wrong| match wrong {
+        position::Wrong::Levels(reason) => Failure::Signal(reason),
+        position::Wrong::Asked(reason) => Failure::Asked(reason),
+    })?;
+    // All of it is made before anything is written.
+    for (path, text) in [(&args.output, &done.table), (&args.svg, &done.svg)] {
+        path.as_ref().zip(text.as_ref()).map_or(Ok(()), |(path, text)| write(path, text))?;
+    }
+    print(&done.text)
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

@@ -4,4 +4,5 @@ mod conform;
 mod layout;
 mod line;
 mod oracle;
+mod position;
 mod simulate;
