@@ -49,8 +49,8 @@ pub struct CalibrateArgs {
     /// The distance between knots: 1.6, 3.2, … 204.8 m [default: the least with which the table reaches the end]
     #[arg(long, value_name = "METRES")]
     spacing_m: Option<f64>,
-    /// The section's length, if no train beyond it hears this transmitter: intervals end there [default: the position is unknown
-    /// where it may be beyond the last knot]
+    /// The section's length, if no train beyond it hears this transmitter: intervals end there [default: the position
+    /// is unknown where it may be beyond the last knot]
     #[arg(long, value_name = "METRES")]
     section_m: Option<f64>,
     /// The level under which a signal is noise [default: the lowest level of the file, less the tolerance]
@@ -227,16 +227,21 @@ fn told(name: &str, levels: &Levels, error: &FitError) -> String {
         FitError::Falls { pass, measurement, .. } => {
             format!("{}column {column} ({head}): pass {}: {error}", at(*pass, *measurement), of(*pass))
         }
-        FitError::Section { pass, measurement, .. } => format!("{}pass {}: {error}", at(*pass, *measurement), of(*pass)),
+        FitError::Section { pass, measurement, .. } => {
+            format!("{}pass {}: {error}", at(*pass, *measurement), of(*pass))
+        }
         FitError::Gap { pass, before, after, .. } => {
-            let between = match (before.and_then(|place| line(*pass, place)), after.and_then(|place| line(*pass, place))) {
-                (Some(before), Some(after)) => format!(" (between lines {before} and {after})"),
-                _ => String::new(),
-            };
+            let between =
+                match (before.and_then(|place| line(*pass, place)), after.and_then(|place| line(*pass, place))) {
+                    (Some(before), Some(after)) => format!(" (between lines {before} and {after})"),
+                    _ => String::new(),
+                };
             let place = before.or(*after).unwrap_or(0);
             format!("{}pass {}: {error}{between}", at(*pass, place), of(*pass))
         }
-        FitError::Few { pass, .. } | FitError::Flat { pass, .. } => format!("{}pass {}: {error}", at(*pass, 0), of(*pass)),
+        FitError::Few { pass, .. } | FitError::Flat { pass, .. } => {
+            format!("{}pass {}: {error}", at(*pass, 0), of(*pass))
+        }
         _ => format!("{name}: {error}"),
     }
 }
@@ -347,10 +352,13 @@ fn notes(levels: &Levels, fit: &Fit, sides: &[Side]) -> Vec<String> {
     for (number, pass) in fit.passes.iter().enumerate() {
         if pass.levelled {
             let name = levels.passes.get(number).map_or("", |pass| &pass.name);
-            notes.push(format!("pass {name}: the difference falls in places, within the spread; the fit is level there"));
+            notes.push(format!(
+                "pass {name}: the difference falls in places, within the spread; the fit is level there"
+            ));
         }
     }
-    let silent: u32 = sides.iter().filter(|side| side.change_percent == 0.0).map(|side| side.asked - side.answered).sum();
+    let silent: u32 =
+        sides.iter().filter(|side| side.change_percent == 0.0).map(|side| side.asked - side.answered).sum();
     if silent > 0 {
         notes.push(format!(
             "in the steepest pass itself {silent} of {} positions are unknown: there a flatter one may be beyond the table{}",

@@ -152,10 +152,7 @@ fn columns(heads: &[String]) -> Result<Vec<Column>, String> {
         };
         let same = |other: &Column| std::mem::discriminant(other) == std::mem::discriminant(&column);
         if let Some(before) = columns.iter().position(same) {
-            wrong.push(format!(
-                "column {number} ({head}): column {} is the same; each must be there once",
-                before + 1
-            ));
+            wrong.push(format!("column {number} ({head}): column {} is the same; each must be there once", before + 1));
         }
         columns.push(column);
     }

@@ -1,23 +1,26 @@
 //! From measured level differences of a railway's own line to the table that the kernel reads.
 //!
-//! A *pass* is one run over the section in one weather. Through each pass goes a broken line with its corners at the table's
-//! knots: least squares, rising. The table's curves are the lowest and the highest of these lines at each knot, and as much
-//! wider as the lines themselves are uncertain there.
+//! A *pass* is one run over the section in one weather. Through each pass goes a broken line with its corners at the
+//! table's knots: least squares, rising. The table's curves are the lowest and the highest of these lines at each knot,
+//! and as much wider as the lines themselves are uncertain there.
 //!
-//! *The spread of a line.* With hat functions as columns of A, the normal matrix AᵀA has its inverse C, and a knot of the line is
-//! known to s·√C_kk (one standard deviation), s² being the residuals' sum of squares over their degrees of freedom. The curves
-//! are [`DEVIATIONS`] of them wider. This supposes that the errors of two measurements have nothing to do with each other.
+//! *The spread of a line.* With hat functions as columns of A, the normal matrix AᵀA has its inverse C, and a knot of
+//! the line is known to s·√C_kk (one standard deviation), s² being the residuals' sum of squares over their degrees of
+//! freedom. The curves are [`DEVIATIONS`] of them wider. This supposes that the errors of two measurements have nothing
+//! to do with each other.
 //!
-//! *Rising.* Where the line of a pass falls from one knot to a later one by more than [`DEVIATIONS`] of that fall, the measurements
-//! contradict the principle and are refused. A fall within the spread is levelled: the knots become one (pooling of adjacent
-//! violators), and the line is fitted again. The curves rise by 0.01 dB a knot at least, and are wider for it where they must.
+//! *Rising.* Where the line of a pass falls from one knot to a later one by more than [`DEVIATIONS`] of that fall, the
+//! measurements contradict the principle and are refused. A fall within the spread is levelled: the knots become one
+//! (pooling of adjacent violators), and the line is fitted again. The curves rise by 0.01 dB a knot at least, and are
+//! wider for it where they must.
 //!
-//! *The tolerance.* A difference is two levels, and the kernel takes each to be off by the tolerance. So twice the tolerance is the
-//! largest residual, or [`DEVIATIONS`] times their root mean square if that is more.
+//! *The tolerance.* A difference is two levels, and the kernel takes each to be off by the tolerance. So twice the
+//! tolerance is the largest residual, or [`DEVIATIONS`] times their root mean square if that is more.
 //!
-//! *The ends.* A knot is a part of the table if the measurements reach it in every pass. What is nearer and what is farther is made
-//! flat, and there the position is unknown (POS-6, POS-7). With [`Wanted::section`] no train that hears the transmitter is beyond
-//! the section's far end: there the curves rise out of the way, so that in wet weather, too, an interval ends with the section.
+//! *The ends.* A knot is a part of the table if the measurements reach it in every pass. What is nearer and what is
+//! farther is made flat, and there the position is unknown (POS-6, POS-7). With [`Wanted::section`] no train that hears
+//! the transmitter is beyond the section's far end: there the curves rise out of the way, so that in wet weather, too,
+//! an interval ends with the section.
 
 use super::{KNOTS, ROUNDING, millibels};
 use crate::rail::{Decibels, Metres};
@@ -275,8 +278,8 @@ impl Fit {
     /// Fits a table to one or more passes.
     ///
     /// # Errors
-    /// See [`FitError`]. Distances or differences that are not in their ranges are not looked for: what is no number gives no
-    /// table.
+    /// See [`FitError`]. Distances or differences that are not in their ranges are not looked for: what is no number
+    /// gives no table.
     pub fn new(passes: &[Vec<Measurement>], wanted: Wanted) -> Result<Self, FitError> {
         let (from, measured) = common(passes)?;
         if let Some(section) = wanted.section {
@@ -300,10 +303,9 @@ impl Fit {
         if last < first + LEAST_SPANS {
             return Err(FitError::Short { from: Metres(from), to: Metres(to), spacing: Metres(span) });
         }
-        let grid = Grid { span, first, last };
+        let grid = Grid { spacing, first, last };
         let mut lines = Vec::new();
-        let (mut lowest, mut highest) =
-            (vec![f64::INFINITY; grid.count()], vec![f64::NEG_INFINITY; grid.count()]);
+        let (mut lowest, mut highest) = (vec![f64::INFINITY; grid.count()], vec![f64::NEG_INFINITY; grid.count()]);
         for (number, pass) in passes.iter().enumerate() {
             let (line, spreads) = grid.line(number, pass)?;
             for (k, (value, spread)) in line.knots.iter().zip(spreads).enumerate() {
@@ -314,17 +316,17 @@ impl Fit {
         }
         let residuals = summary(&lines).ok_or(FitError::Nothing)?;
         let off = residuals.largest.0.abs().max(DEVIATIONS * residuals.rms.0);
-        let tolerance = millibels((off * 100.0 / 2.0 - ROUNDING).ceil().max(1.0)).ok_or(FitError::TooWide { knot: first })?;
-        let table = grid.table(spacing, &lowest, &highest, wanted.section.map(|_| tolerance))?;
+        let tolerance =
+            millibels((off * 100.0 / 2.0 - ROUNDING).ceil().max(1.0)).ok_or(FitError::TooWide { knot: first })?;
+        let table = grid.table(&lowest, &highest, wanted.section.map(|_| tolerance))?;
         let to = wanted.section.map_or(Metres(grid.distance(last)), |_| Metres(to));
         let bounded = wanted.section.is_some();
         Ok(Self { table, tolerance, first, last, from: Metres(from), to, bounded, passes: lines })
     }
 
     /// The distance of a knot.
-    #[allow(clippy::cast_precision_loss, reason = "a knot is 0 to 16")]
     pub fn distance(&self, knot: usize) -> Metres {
-        Metres(f64::from(self.table.spacing().decimetres()) / 10.0 * knot as f64)
+        Metres(at_knot(self.table.spacing(), knot))
     }
 
     /// Where the table begins to tell a position.
@@ -335,7 +337,7 @@ impl Fit {
     /// The line of a pass at a distance between [`Self::first`] and [`Self::last`], dB.
     pub fn line(&self, pass: usize, distance: Metres) -> Option<Decibels> {
         let knots = &self.passes.get(pass)?.knots;
-        let grid = Grid { span: self.distance(1).0, first: self.first, last: self.last };
+        let grid = Grid { spacing: self.table.spacing(), first: self.first, last: self.last };
         let (k, part) = grid.place(distance.0);
         Some(Decibels(knots.get(k)? * (1.0 - part) + knots.get(k + 1)? * part))
     }
@@ -392,6 +394,11 @@ fn knot(spans: f64, round: fn(f64) -> f64) -> usize {
     (if (spans - nearest).abs() < 1e-6 { nearest } else { round(spans) }) as usize
 }
 
+/// The distance of a knot, metres: whole decimetres, so that it is written as it is.
+fn at_knot(spacing: Spacing, knot: usize) -> f64 {
+    f64::from(spacing.decimetres().saturating_mul(u32::try_from(knot).unwrap_or(u32::MAX))) / 10.0
+}
+
 /// The distances that every pass has.
 fn common(passes: &[Vec<Measurement>]) -> Result<(f64, f64), FitError> {
     let (mut from, mut to) = (0.0_f64, f64::INFINITY);
@@ -432,8 +439,7 @@ fn least_spacing(to: f64, section: bool) -> Result<Spacing, FitError> {
 /// The knots that are measured.
 #[derive(Clone, Copy)]
 struct Grid {
-    /// The distance between two, metres.
-    span: f64,
+    spacing: Spacing,
     first: usize,
     last: usize,
 }
@@ -443,15 +449,19 @@ impl Grid {
         self.last - self.first + 1
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "a knot is 0 to 16")]
+    /// The distance between two, metres.
+    fn span(self) -> f64 {
+        at_knot(self.spacing, 1)
+    }
+
     fn distance(self, knot: usize) -> f64 {
-        self.span * knot as f64
+        at_knot(self.spacing, knot)
     }
 
     /// The span of a distance, counted from the first knot, and the part of it that is gone by.
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 15")]
     fn place(self, distance: f64) -> (usize, f64) {
-        let spans = (distance - self.distance(self.first)) / self.span;
+        let spans = (distance - self.distance(self.first)) / self.span();
         let k = (spans.max(0.0) as usize).min(self.count() - 2);
         (k, spans - k as f64)
     }
@@ -468,7 +478,7 @@ impl Grid {
         self.no_gap(number, &used)?;
         let needed = FOR_EACH_KNOT * self.count();
         if used.len() < needed {
-            return Err(FitError::Few { pass: number, found: used.len(), needed, spacing: Metres(self.span) });
+            return Err(FitError::Few { pass: number, found: used.len(), needed, spacing: Metres(self.span()) });
         }
         let rows = used.iter().map(|&(_, distance, difference)| {
             let (k, part) = self.place(distance);
@@ -476,7 +486,7 @@ impl Grid {
         });
         let normal = solve::Normal::new(self.count(), rows);
         let (Some(free), Some(inverse)) = (normal.solve(), normal.inverse()) else {
-            return Err(FitError::Few { pass: number, found: used.len(), needed, spacing: Metres(self.span) });
+            return Err(FitError::Few { pass: number, found: used.len(), needed, spacing: Metres(self.span()) });
         };
         let at = |knots: &[f64], distance: f64| {
             let (k, part) = self.place(distance);
@@ -495,7 +505,7 @@ impl Grid {
                     let (start, end) = (self.distance(self.first + from), self.distance(self.first + to));
                     let worst = used
                         .iter()
-                        .filter(|(_, distance, _)| (start - self.span..=end + self.span).contains(distance))
+                        .filter(|(_, distance, _)| (start - self.span()..=end + self.span()).contains(distance))
                         .max_by(|a, b| (a.2 - at(&rising, a.1)).abs().total_cmp(&(b.2 - at(&rising, b.1)).abs()));
                     return Err(FitError::Falls {
                         pass: number,
@@ -527,7 +537,7 @@ impl Grid {
             let mut inside: Vec<f64> =
                 used.iter().map(|(_, distance, _)| *distance).filter(|x| (from..=to).contains(x)).collect();
             inside.sort_by(f64::total_cmp);
-            inside.dedup_by(|a, b| (*a - *b).abs() < self.span * 1e-3);
+            inside.dedup_by(|a, b| (*a - *b).abs() < self.span() * 1e-3);
             if inside.len() >= 2 {
                 continue;
             }
@@ -551,21 +561,15 @@ impl Grid {
     }
 
     /// The kernel's table; `bounded` is the tolerance where no train is beyond the last knot.
-    fn table(
-        self,
-        spacing: Spacing,
-        lowest: &[f64],
-        highest: &[f64],
-        bounded: Option<Millibels>,
-    ) -> Result<Table, FitError> {
+    fn table(self, lowest: &[f64], highest: &[f64], bounded: Option<Millibels>) -> Result<Table, FitError> {
         let (mut low, mut high) = ([Millibels(0); KNOTS], [Millibels(0); KNOTS]);
         for ((k, least), most) in (self.first..).zip(lowest).zip(highest) {
             let wide = FitError::TooWide { knot: k };
             low[k] = millibels((least * 100.0 - ROUNDING).floor()).ok_or_else(|| wide.clone())?;
             high[k] = millibels((most * 100.0 + ROUNDING).ceil()).ok_or(wide)?;
         }
-        // The kernel finds distances only where both curves rise. What is uncertain at one knot must not make a curve fall behind it:
-        // so it is wider there, never narrower.
+        // The kernel finds distances only where both curves rise. What is uncertain at one knot must not make a curve
+        // fall behind it: so it is wider there, never narrower.
         for k in (self.first..self.last).rev() {
             low[k].0 = low[k].0.min(low[k + 1].0.saturating_sub(1));
         }
@@ -578,7 +582,8 @@ impl Grid {
             if k < self.first {
                 (low[k], high[k]) = (low[self.first], high[self.first]);
             } else if let (true, Some(tolerance)) = (k > self.last, bounded) {
-                // Above all that a train in the section can measure: its difference, and twice what both levels may be off.
+                // Above all that a train in the section can measure: its difference, and twice what both levels may be
+                // off.
                 let above = i16::try_from(k - self.last).unwrap_or(0);
                 low[k].0 = top.saturating_add(tolerance.0.saturating_mul(4)).saturating_add(above);
                 high[k] = low[k];
@@ -586,6 +591,6 @@ impl Grid {
                 (low[k], high[k]) = (low[self.last], high[self.last]);
             }
         }
-        Table::new(spacing, low, high).map_err(FitError::Table)
+        Table::new(self.spacing, low, high).map_err(FitError::Table)
     }
 }

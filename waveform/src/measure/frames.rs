@@ -55,8 +55,7 @@ impl FramePoint {
 
 /// Counts frames at one ratio, clock recovery and all. The first two frames of each carrier are not counted.
 pub fn frames(config: &TransmitterConfig, table: &CodeTable, run: &FrameRun, ratio: Decibels) -> FramePoint {
-    let mut point =
-        FramePoint { eb_n0_db: ratio.0, offset_hz: run.offset.0, sent: 2 * run.frames, heard: 0, wrong: 0 };
+    let mut point = FramePoint { eb_n0_db: ratio.0, offset_hz: run.offset.0, sent: 2 * run.frames, heard: 0, wrong: 0 };
     let Some((main, sub)) = telegrams() else { return point };
     let mut random = Pcg64Mcg::seed_from_u64(run.seed.0);
     let mut transmitter = Transmitter::new(config, run.codes, main, sub);
@@ -90,8 +89,8 @@ pub fn frames(config: &TransmitterConfig, table: &CodeTable, run: &FrameRun, rat
     point
 }
 
-/// The part of reports of a conventional receiver that name the codes' speed, while the signal lasts (`seconds`, less the first one).
-/// The ratio is that of the main carrier. Nothing if the table names no speed for the codes.
+/// The part of reports of a conventional receiver that name the codes' speed, while the signal lasts (`seconds`, less
+/// the first one). The ratio is that of the main carrier. Nothing if the table names no speed for the codes.
 pub fn codes_heard(
     config: &TransmitterConfig,
     table: &CodeTable,
@@ -130,8 +129,8 @@ fn table_frequency(code: Hertz) -> atc_kernel::code::Millihertz {
     atc_kernel::code::Millihertz((code.0 * 1000.0).round() as u32)
 }
 
-/// From the last bit of a telegram at the receiver's input to its report: the longest of ten telegrams on each carrier, without noise.
-/// Nothing if no telegram is heard.
+/// From the last bit of a telegram at the receiver's input to its report: the longest of ten telegrams on each carrier,
+/// without noise. Nothing if no telegram is heard.
 pub fn latency(config: &TransmitterConfig, table: &CodeTable) -> Option<Seconds> {
     let (main, sub) = telegrams()?;
     let mut transmitter = Transmitter::new(config, Codes::NONE, main, sub);

@@ -4,7 +4,8 @@ use super::{Fit, Measurement};
 use crate::plot::{Axis, COLOURS, Chart, Legend, PlotError, Scale, Series, Style, draw};
 use crate::rail::Metres;
 
-/// Measurements, lines, the table's band and, below, the residuals with twice the tolerance, as SVG. `names` are those of the passes.
+/// Measurements, lines, the table's band and, below, the residuals with twice the tolerance, as SVG. `names` are those
+/// of the passes.
 ///
 /// # Errors
 /// [`PlotError`] if it cannot be drawn.

@@ -1,5 +1,5 @@
-//! On which side an interval is wrong where the rails are not those that were measured: the kernel itself, on the table that was
-//! fitted, with errors that are the measurements' own residuals.
+//! On which side an interval is wrong where the rails are not those that were measured: the kernel itself, on the table
+//! that was fitted, with errors that are the measurements' own residuals.
 
 use super::Fit;
 use crate::rail::Metres;
@@ -35,14 +35,15 @@ impl Without {
 /// What the kernel says where the rails are otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Side {
-    /// How much more steeply the difference rises, in per cent, against the steepest pass; where it is negative, against the
-    /// flattest one.
+    /// How much more steeply the difference rises, in per cent, against the steepest pass; where it is negative,
+    /// against the flattest one.
     pub change_percent: f64,
     /// How often the kernel was asked.
     pub asked: u32,
     /// How often it gave an interval.
     pub answered: u32,
-    /// The whole interval is farther from the transmitter than the train: the train is nearer to its stopping point than it thinks.
+    /// The whole interval is farther from the transmitter than the train: the train is nearer to its stopping point
+    /// than it thinks.
     pub beyond: Without,
     /// The whole interval is nearer than the train: it brakes too early.
     pub before: Without,
@@ -50,8 +51,8 @@ pub struct Side {
     pub mean_width_m: f64,
 }
 
-/// Asks the kernel for each of [`CHANGES`]. `floor`: the lowest level that is no noise. Each cycle counts for itself, without an
-/// odometer.
+/// Asks the kernel for each of [`CHANGES`]. `floor`: the lowest level that is no noise. Each cycle counts for itself,
+/// without an odometer.
 pub fn sides(fit: &Fit, floor: Millibels) -> Vec<Side> {
     let Some(position) = Position::new(fit.table, fit.tolerance, floor, Correction::NONE) else { return Vec::new() };
     let residuals: Vec<f64> =
@@ -76,8 +77,7 @@ fn side(fit: &Fit, position: &Position, residuals: &[f64], change: f64) -> Side 
             side.asked += 1;
             let Some(measured) = levels(position.floor(), difference + error) else { continue };
             let Some(interval) = step(position, None, measured) else { continue };
-            let [nearest, farthest] =
-                [interval.nearest(), interval.farthest()].map(|end| f64::from(end.0) / 1000.0);
+            let [nearest, farthest] = [interval.nearest(), interval.farthest()].map(|end| f64::from(end.0) / 1000.0);
             side.answered += 1;
             side.mean_width_m += farthest - nearest;
             side.beyond.note(nearest - truth);
@@ -88,7 +88,8 @@ fn side(fit: &Fit, position: &Position, residuals: &[f64], change: f64) -> Side 
     side
 }
 
-/// The difference of the steepest or the flattest pass at a distance, rising by so many per cent more from the transmitter on.
+/// The difference of the steepest or the flattest pass at a distance, rising by so many per cent more from the
+/// transmitter on.
 fn changed(fit: &Fit, distance: Metres, change: f64) -> Option<f64> {
     let lines = (0..fit.passes.len()).filter_map(|pass| {
         let knots = &fit.passes[pass].knots;

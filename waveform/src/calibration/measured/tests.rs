@@ -1,4 +1,5 @@
-//! Lines through measurements that were made up: what is fitted, what is refused, and that the curves are around the truth.
+//! Lines through measurements that were made up: what is fitted, what is refused, and that the curves are around the
+//! truth.
 
 use super::*;
 use rand::{Rng, SeedableRng};
@@ -30,8 +31,7 @@ const SECTION: Wanted = Wanted { spacing: None, section: Some(Metres(400.0)) };
 #[test]
 fn the_curves_are_around_the_truth() {
     for seed in 0..40 {
-        let passes =
-            [pass((0.0, 400.0), 5.0, 0.05, seed, wet), pass((0.0, 400.0), 5.0, 0.05, seed + 100, dry)];
+        let passes = [pass((0.0, 400.0), 5.0, 0.05, seed, wet), pass((0.0, 400.0), 5.0, 0.05, seed + 100, dry)];
         for wanted in [Wanted::default(), SECTION] {
             let fit = Fit::new(&passes, wanted).expect("a table");
             for k in fit.first..=fit.last {
