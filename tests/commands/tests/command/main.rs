@@ -1,5 +1,6 @@
 //! The commands of `oracle`: arguments, exit codes, and what is written where.
 
+mod budget;
 mod conform;
 mod layout;
 mod line;
