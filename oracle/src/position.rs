@@ -358,7 +358,7 @@ fn notes(levels: &Levels, fit: &Fit, sides: &[Side]) -> Vec<String> {
         }
     }
     let silent: u32 =
-        sides.iter().filter(|side| side.change_percent == 0.0).map(|side| side.asked - side.answered).sum();
+        sides.iter().filter(|side| side.change_percent.abs() < 0.1).map(|side| side.asked - side.answered).sum();
     if silent > 0 {
         notes.push(format!(
             "in the steepest pass itself {silent} of {} positions are unknown: there a flatter one may be beyond the table{}",
