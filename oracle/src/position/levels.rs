@@ -107,7 +107,7 @@ pub fn read(name: &str, text: &str) -> Result<Levels, String> {
 /// A head in the one form: `Distance (m)` is `distance_m`.
 fn plain(head: &str) -> String {
     let mut plain = String::new();
-    for letter in head.trim().to_lowercase().replace("ω", "ohm").replace("Ω", "ohm").chars() {
+    for letter in head.trim().to_lowercase().replace('ω', "ohm").chars() {
         match letter {
             ')' | ']' => {}
             'a'..='z' | '0'..='9' => plain.push(letter),

@@ -100,7 +100,7 @@ pub fn codes_heard(
     seed: Seed,
 ) -> Option<f64> {
     let (main, sub) = telegrams()?;
-    let millihertz = |carrier| codes.of(carrier).map(|code| table_frequency(code));
+    let millihertz = |carrier| codes.of(carrier).map(table_frequency);
     let expected = table.heard(millihertz(Carrier::Main), millihertz(Carrier::Sub))?;
     let mut transmitter = Transmitter::new(config, codes, main, sub);
     let mut noise = Noise::eb_n0(config, Carrier::Main, codes, ratio, seed);
