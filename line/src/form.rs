@@ -3,6 +3,8 @@
 //! The values here are as the file gives them. Each group becomes the one configuration that a session of the oracle gives too, and is
 //! checked there; [`crate::places::Places`] knows where each value stands.
 
+use std::collections::BTreeMap;
+
 use serde::Deserialize;
 
 /// A line. Milliseconds, metres and km/h; a speed has at most one decimal.
@@ -24,6 +26,7 @@ pub struct File {
     pub position: Option<Position>,
     pub codes: Option<Codes>,
     pub train: Option<Train>,
+    pub budget: Option<Budget>,
     #[serde(default, rename = "station")]
     pub stations: Vec<Station>,
     #[serde(default, rename = "border")]
@@ -149,6 +152,13 @@ pub struct Train {
     pub brake_mm_s2: u32,
     /// The longest for which one may not be detected where it stands.
     pub shunt_loss_ms: u32,
+}
+
+/// `[budget]`: numbers by name; [`crate::budget`] knows the names.
+#[derive(Debug, Deserialize)]
+#[serde(transparent)]
+pub struct Budget {
+    pub values: BTreeMap<String, f64>,
 }
 
 /// `[[station]]`.

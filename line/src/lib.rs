@@ -3,6 +3,7 @@
 //! * [`read`] and [`parse`]: a line's file in TOML. The layouts of stations that it names are read by `atc-layout`.
 //! * [`aspect`], [`supervision`], [`block`], [`permitted`], [`position`], [`code`]: each group of parameters, as a session of the oracle
 //!   gives it in JSON. One conversion to the kernel's parameters, and one explanation of what the kernel refuses ([`Refusal`]).
+//! * [`budget`]: the levels of the train control signal, for `oracle signal budget`.
 //! * [`Line`]: the parameters in the kernel's form, what follows from them, and [`Line::checks`].
 //! * [`DataCheck`]: a rule and what it came to, for lines and for stations. [`Rule`] lists the rules of lines.
 //! * [`seam`]: what the stations count on, held against what the trains do; both places are named.
@@ -14,6 +15,7 @@
 pub mod aspect;
 pub mod block;
 pub mod blocks;
+pub mod budget;
 pub mod check;
 pub mod code;
 pub mod decimal;

@@ -13,6 +13,7 @@ use atc_kernel::supervision::Supervision;
 use atc_layout::lives::TrainLives;
 
 use crate::blocks::{self, Detection};
+use crate::budget::{self, Budget};
 use crate::check::{DataCheck, Finding, Outcome};
 use crate::code::{self, Names, Pair};
 use crate::decimal::{given, list};
@@ -91,6 +92,7 @@ pub struct Line {
     position: Option<Calibration>,
     codes: Option<(CodeTable, Vec<Pair>)>,
     train: Option<Train>,
+    budget: Budget,
     stations: Vec<Station>,
     borders: Borders,
     telegrams: Vec<Telegram>,
@@ -171,14 +173,17 @@ impl Reader {
         let position = position.map(|position| self.keep_in(|field| format!("position.{field}"), positioned(position)));
         let codes = file.codes.as_ref().map(|codes| self.codes(codes));
         let train = file.train.as_ref().map(|train| self.train(train));
+        let budget = self.keep(budget::checked(file.budget.as_ref()));
         let stations = self.stations(file, folder);
         let borders = self.keep(Borders::of(&file.borders)).unwrap_or_default();
         let telegrams = file.telegrams.iter().map(Telegram::of).collect();
         if !self.problems.is_empty() {
             return Err(Problems(self.problems));
         }
-        let all = (aspect, times, table, supervision, detection, signal);
-        let (Some(aspect), Some(times), Some(table), Some(supervision), Some(detection), Some(signal)) = all else {
+        let all = (aspect, times, table, supervision, detection, signal, budget);
+        let (Some(aspect), Some(times), Some(table), Some(supervision), Some(detection), Some(signal), Some(budget)) =
+            all
+        else {
             return Err(Problems(self.problems));
         };
         let longest = signal.as_ref().and_then(Signal::longest);
@@ -194,6 +199,7 @@ impl Reader {
             position,
             codes: codes.flatten(),
             train: train.flatten(),
+            budget,
             stations,
             borders,
             telegrams,
@@ -320,6 +326,16 @@ impl Line {
     /// The code table, if the file gives one.
     pub fn codes(&self) -> Option<&CodeTable> {
         self.codes.as_ref().map(|(table, _)| table)
+    }
+
+    /// The pairs of code frequencies, if the file gives them.
+    pub fn code_pairs(&self) -> &[Pair] {
+        self.codes.as_ref().map_or(&[], |(_, pairs)| pairs)
+    }
+
+    /// The levels of the train control signal.
+    pub const fn budget(&self) -> &Budget {
+        &self.budget
     }
 
     /// What is true of every train, if the file says it.

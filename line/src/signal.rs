@@ -206,6 +206,16 @@ impl Signal {
         &self.permitted
     }
 
+    /// One telegram takes so long, ms.
+    pub const fn frame_ms(&self) -> u64 {
+        self.frame
+    }
+
+    /// From the last bit of a telegram in the rail to its arrival in the logic, ms.
+    pub const fn delay_ms(&self) -> u64 {
+        self.delay
+    }
+
     /// For how long the wayside keeps a withdrawn stretch free, in ms.
     pub const fn release_ms(&self) -> u64 {
         self.release

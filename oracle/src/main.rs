@@ -4,6 +4,7 @@ mod conformance;
 mod explore;
 mod layout;
 mod line;
+mod position;
 mod replaying;
 mod simulate;
 
@@ -43,7 +44,7 @@ enum Command {
     Vectors(conformance::VectorsArgs),
     /// Holds the logs of recorders against the kernel, in bulk
     Replay(Box<replaying::ReplayArgs>),
-    /// Makes the train control signal as a WAV file, or reads one
+    /// Makes the train control signal as a WAV file, or reads one; the link budget of a line
     #[command(subcommand)]
     Signal(SignalCommand),
     /// Checks, imports, tabulates or draws the layout of a station
@@ -52,6 +53,9 @@ enum Command {
     /// Checks the data of a whole line, and what its stations and trains count on of each other
     #[command(subcommand)]
     Line(line::LineCommand),
+    /// Makes the attenuation table of train positions from measured levels
+    #[command(subcommand)]
+    Position(position::PositionCommand),
     /// Prints a JSON Schema: of protocol 1, or of what `conform`, `replay` and `vectors` write
     Schema {
         /// Of which form
@@ -98,6 +102,22 @@ enum SignalCommand {
         /// The configuration of the signal and the line [default: the standard ones]
         #[arg(long)]
         config: Option<PathBuf>,
+    },
+    /// Says what is left of a line's signal at the far end of its longest section, and what telegrams and codes need
+    #[command(after_help = "Example:\n  \
+        oracle signal budget my-line.toml --svg budget.svg\n\
+        Levels, noise, ballast and the least margin are the line's [budget] (line/README.md); what is not given there is a default, and \
+        the output says so. What the receiver needs is measured in the run.\n\
+        Exit code: 0 every margin is enough, 1 one is not (the section is named), 2 the file cannot be read as a line.")]
+    Budget {
+        /// The line (TOML)
+        line: PathBuf,
+        /// Where the picture goes
+        #[arg(long, value_name = "FILE.svg")]
+        svg: Option<PathBuf>,
+        /// Prints the report as JSON
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -174,6 +194,7 @@ fn main() -> ExitCode {
         Command::Signal(command) => signal(&command),
         Command::Layout(command) => layout(command),
         Command::Line(command) => line(&command),
+        Command::Position(position::PositionCommand::Calibrate(args)) => calibrate(&args),
         Command::Conform(args) => conformance::conform(&args),
         Command::Replay(args) => replaying::replay(&args),
         Command::Vectors(args) => conformance::vectors(&args),
@@ -252,6 +273,7 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
             let config = path.map(config).transpose()?.unwrap_or_default();
             (signal::decode(&config, input, io::stdout().lock()), path)
         }
+        SignalCommand::Budget { line, svg, json } => return budget(line, svg.as_deref(), *json),
     };
     done.or_else(|error| match error {
         SignalError::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -260,6 +282,29 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
         // Only a configuration that was named can be wrong.
         SignalError::Config(reason) => Err(Failure::Config(path.unwrap_or(Path::new("-")).to_owned(), reason)),
     })
+}
+
+fn budget(path: &Path, svg: Option<&Path>, json: bool) -> Result<(), Failure> {
+    let line = atc_line::read(path).map_err(|problems| {
+        remark(&format!("{problems}\n"));
+        Failure::Line(if problems.is_unreadable() { 2 } else { 1 })
+    })?;
+    let report = signal::budget(&line).map_err(|reason| Failure::Config(path.to_owned(), reason))?;
+    let picture = svg.map(|svg| report.picture().map(|text| (svg, text))).transpose();
+    let picture = picture.map_err(|error| Failure::Signal(error.to_string()))?;
+    if let Some((svg, text)) = picture {
+        write(svg, &text)?;
+    }
+    if json {
+        let text = serde_json::to_string_pretty(&report).map_err(|error| Failure::Signal(error.to_string()))?;
+        print(&(text + "\n"))?;
+    } else {
+        print(&report.words())?;
+    }
+    for broken in &report.broken {
+        remark(&format!("{}: {broken}\n", path.display()));
+    }
+    if report.broken.is_empty() { Ok(()) } else { Err(Failure::Line(1)) }
 }
 
 fn simulate(args: &simulate::SimulateArgs) -> Result<(), Failure> {
@@ -308,6 +353,18 @@ fn line(command: &line::LineCommand) -> Result<(), Failure> {
     print(&done.text)?;
     remark(&done.remarks);
     if done.code == 0 { Ok(()) } else { Err(Failure::Told(done.code)) }
+}
+
+fn calibrate(args: &position::CalibrateArgs) -> Result<(), Failure> {
+    let done = position::calibrate(args, &read(&args.levels)?).map_err(|wrong| match wrong {
+        position::Wrong::Levels(reason) => Failure::Signal(reason),
+        position::Wrong::Asked(reason) => Failure::Asked(reason),
+    })?;
+    // All of it is made before anything is written.
+    for (path, text) in [(&args.output, &done.table), (&args.svg, &done.svg)] {
+        path.as_ref().zip(text.as_ref()).map_or(Ok(()), |(path, text)| write(path, text))?;
+    }
+    print(&done.text)
 }
 
 fn read(path: &Path) -> Result<String, Failure> {

@@ -38,6 +38,7 @@ use atc_kernel::position::{Correction, KNOTS, Millibels, Spacing, Table, TableEr
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+pub mod measured;
 mod text;
 
 pub use text::TextError;

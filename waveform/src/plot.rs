@@ -28,6 +28,8 @@ pub enum Style {
     Thin,
     /// Round marks.
     Points,
+    /// An area in the background; its points go around it.
+    Area,
 }
 
 /// One curve.
@@ -186,6 +188,9 @@ impl Chart {
             for (place, piece) in pieces.enumerate() {
                 let points = piece.iter().copied();
                 let drawn = match series.style {
+                    Style::Area => {
+                        context.draw_series([Polygon::new(points.collect::<Vec<_>>(), colour.mix(0.18).filled())])
+                    }
                     Style::Points => {
                         let marks = points.map(|point| Circle::new(point, 4, colour.filled()));
                         context.draw_series(marks)
@@ -204,10 +209,12 @@ impl Chart {
                     Style::Dashed => (TRANSPARENT, colour.to_rgba(), TRANSPARENT),
                     Style::Thin => (TRANSPARENT, colour.mix(0.45), colour.mix(0.45)),
                     Style::Line => (TRANSPARENT, colour.to_rgba(), colour.to_rgba()),
+                    Style::Area => (TRANSPARENT, colour.mix(0.18), colour.mix(0.18)),
                 };
+                let width = if series.style == Style::Area { 10 } else { 2 };
                 drawn.label(&series.name).legend(move |at| {
                     let part = |from, to, colour: RGBAColor| {
-                        PathElement::new(vec![(from, 0), (to, 0)], colour.stroke_width(2))
+                        PathElement::new(vec![(from, 0), (to, 0)], colour.stroke_width(width))
                     };
                     EmptyElement::at(at)
                         + Circle::new((10, 0), 4, mark.filled())

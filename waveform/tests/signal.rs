@@ -347,3 +347,53 @@ fn levels_are_measured() {
         assert!((level / 0.25 - 1.0).abs() < 0.1, "{carrier:?}: {level}");
     }
 }
+
+/// Half a hertz beside its band a code names no speed, also in the first hops, in which the window is not full yet: they used to read up to
+/// 0.75 Hz high, and to name 45 km/h for 50 ms.
+#[test]
+fn a_code_beside_its_band_is_never_named() {
+    let config = TransmitterConfig::default();
+    for (main, sub) in [(20.5, 21.0), (23.5, 21.0), (22.0, 19.5), (40.0, 38.5)] {
+        let codes = Codes::new(Some(Hertz(main)), Some(Hertz(sub))).expect("in range");
+        for step in 0..16_u32 {
+            let mut signal = samples(&config, 1.5);
+            let mut transmitter = Transmitter::new(&config, codes, main_telegram(OWN), sub_telegram(OWN));
+            transmitter.generator().advance_phase(0.0, f64::from(step % 8) / 8.0);
+            // At once, or after a silence that is no whole number of hops.
+            let start = if step < 8 { 0 } else { 2900 + 57 * step as usize };
+            transmitter.fill(&mut signal[start..]);
+            let log = Log::of(&config, &signal);
+            assert!(log.speeds.iter().all(|(_, speed)| speed.is_none()), "{main} {sub} {step}: {:?}", log.speeds);
+        }
+    }
+}
+
+/// At the edge of its band a code is kept and no new one taken; outside it there is none.
+#[test]
+fn a_code_in_use_is_kept_within_its_band() {
+    let config = TransmitterConfig::default();
+    let codes = |main: f64| Codes::new(Some(Hertz(main)), Some(Hertz(21.0))).expect("in range");
+    let named = table().heard(Some(MAIN_CODES[2]), Some(SUB_CODES[2]));
+    let frequencies = [22.88, 22.0, 22.3, 22.6, 22.88, 23.3, 22.88];
+    let mut transmitter = Transmitter::new(&config, codes(22.88), main_telegram(OWN), sub_telegram(OWN));
+    let mut signal = Vec::new();
+    for frequency in frequencies {
+        transmitter.set_codes(codes(frequency));
+        let mut piece = samples(&config, 1.0);
+        transmitter.fill(&mut piece);
+        signal.extend(piece);
+    }
+    let log = Log::of(&config, &signal);
+    let mut at_the_end = (1..=7_u8).map(|second| {
+        let until = f64::from(second) + 0.01;
+        log.speeds.iter().rfind(|(time, _)| *time < until).expect("a report").1
+    });
+    for expected in [None, named, named, named, named, None, None] {
+        assert_eq!(at_the_end.next(), Some(expected), "{:?}", log.speeds);
+    }
+    // The conventional receiver holds it the same way.
+    let mut conventional = Vec::new();
+    let mut receiver = Conventional::new(&config, table(), CodeConfidence::default());
+    receiver.process(&signal, |event| conventional.push((event.at.time(config.sample_rate()).0, event.speed)));
+    assert_eq!(conventional, log.speeds);
+}

@@ -218,7 +218,7 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
     for (rule, changes, at, against) in [
         ("telegram-lives", &[(line, "life_ms = 2500", "life_ms = 2870")][..], west, line),
         // A telegram that is slow on its way; a code that is displayed for long after it was last heard.
-        ("telegram-lives", &[(line, "delay_ms = 100", "delay_ms = 470")], west, line),
+        ("telegram-lives", &[(line, "delay_ms = 120", "delay_ms = 470")], west, line),
         ("telegram-lives", &[(line, "mask_ms = 400", "mask_ms = 3110")], west, line),
         (
             "release-promised",

@@ -1,9 +1,12 @@
-//! `oracle signal`: the train control signal as a WAV file, made from a configuration and read back to telegrams and speeds.
+//! `oracle signal`: the train control signal as a WAV file, made from a configuration and read back to telegrams and
+//! speeds; and the link budget of a line.
 
+mod budget;
 mod config;
 mod decode;
 mod generate;
 
+pub use budget::{BudgetReport, Link, Parameter, SectionMargin, budget};
 pub use config::{Config, Line};
 pub use decode::decode;
 pub use generate::generate;

@@ -61,7 +61,7 @@ pub struct DetectionPoint {
 }
 
 /// The telegrams that measurements send.
-fn telegrams() -> Option<(Main, Sub)> {
+pub(super) fn telegrams() -> Option<(Main, Sub)> {
     let section = SectionId(1234);
     let counter = Counter(0);
     let speed = AspectId::new(5)?;

@@ -4,6 +4,7 @@
 mod bench;
 mod ber;
 mod detection;
+mod frames;
 mod spectrum;
 mod theory;
 mod throughput;
@@ -11,8 +12,10 @@ mod throughput;
 pub use bench::{Bench, BitErrorCurve, Extent, bench};
 pub use ber::{BitErrorPoint, BitErrorRun, bit_errors};
 pub use detection::{DetectionPoint, DetectionRun, FalseCodes, Times, detection, false_codes};
+pub use frames::{FramePoint, FrameRun, codes_heard, frames, latency};
 pub use spectrum::{Picture, envelope, picture, spectrum};
 pub use theory::{
-    coherent, differentially_decoded, differentially_decoded_under_code, one_bit_differential, q_function,
+    coherent, differentially_decoded, differentially_decoded_under_code, frames_lost, one_bit_differential, q_function,
+    ratio_for,
 };
 pub use throughput::{Throughput, throughput};

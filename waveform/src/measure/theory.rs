@@ -59,12 +59,7 @@ pub fn one_bit_differential(ratio: Decibels) -> f64 {
 /// a bit, the modulation included.
 pub fn differentially_decoded_under_code(ratio: Decibels, depth: f64, code: Hertz, bit_rate: Hertz) -> f64 {
     let cycles = code.0 / bit_rate.0;
-    // What the matched filter, a half cosine squared over two bits, leaves of the code.
-    let kept = sinc(2.0 * cycles) + 0.5 * (sinc(2.0 * cycles - 1.0) + sinc(2.0 * cycles + 1.0));
-    let wrong = |phase: f64| {
-        let envelope = 1.0 + depth * kept * (TAU * phase).cos();
-        q_function(envelope * (2.0 * ratio.power() / (1.0 + depth * depth / 2.0)).sqrt())
-    };
+    let wrong = sign_under_code(ratio, depth, cycles);
     (0..STEPS)
         .map(|step| {
             let phase = f64::from(step) / f64::from(STEPS);
@@ -75,8 +70,33 @@ pub fn differentially_decoded_under_code(ratio: Decibels, depth: f64, code: Hert
         / f64::from(STEPS)
 }
 
-/// The ratio at which a falling curve has this error rate, from −20 to 30 dB.
-pub(super) fn ratio_for(curve: impl Fn(Decibels) -> f64, rate: f64) -> Decibels {
+/// The probability that the sign at this phase of the code (0 to 1) is wrong; `cycles` of the code go by in a bit.
+fn sign_under_code(ratio: Decibels, depth: f64, cycles: f64) -> impl Fn(f64) -> f64 {
+    // What the matched filter, a half cosine squared over two bits, leaves of the code.
+    let kept = sinc(2.0 * cycles) + 0.5 * (sinc(2.0 * cycles - 1.0) + sinc(2.0 * cycles + 1.0));
+    move |phase: f64| {
+        let envelope = 1.0 + depth * kept * (TAU * phase).cos();
+        q_function(envelope * (2.0 * ratio.power() / (1.0 + depth * depth / 2.0)).sqrt())
+    }
+}
+
+/// The part of frames of so many bits that have an error: one sign more than bits, each wrong by itself, averaged over the phase of
+/// the code at which the frame begins. `ratio` is of the mean energy of a bit, the modulation included. Without a code the depth is 0.
+///
+/// Under a code it is far more than the mean bit error rate tells: every frame crosses the places where the envelope is low.
+pub fn frames_lost(ratio: Decibels, depth: f64, code: Hertz, bit_rate: Hertz, bits: u32) -> f64 {
+    /// Phases over which is averaged: what a frame crosses is nearly the same for each.
+    const PHASES: u32 = 48;
+    let cycles = code.0 / bit_rate.0;
+    let wrong = sign_under_code(ratio, depth, cycles);
+    let whole = |phase: f64| -> f64 {
+        (0..=bits).map(|bit| (-wrong(phase + cycles * f64::from(bit))).ln_1p()).sum::<f64>().exp()
+    };
+    1.0 - (0..PHASES).map(|step| whole(f64::from(step) / f64::from(PHASES))).sum::<f64>() / f64::from(PHASES)
+}
+
+/// The ratio at which a falling curve has this error rate, from −20 to 30 dB; the end of that range if it has it nowhere there.
+pub fn ratio_for(curve: impl Fn(Decibels) -> f64, rate: f64) -> Decibels {
     let (mut low, mut high) = (-20.0, 30.0);
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
@@ -129,6 +149,15 @@ mod tests {
     fn no_depth_is_no_modulation() {
         let ratio = Decibels(5.0);
         near(differentially_decoded_under_code(ratio, 0.0, Hertz(10.0), Hertz(200.0)), differentially_decoded(ratio));
+    }
+
+    /// A frame of one bit is lost with the error of two signs; of many bits without a code with that of each of them.
+    #[test]
+    fn frames_are_lost_as_their_signs_are() {
+        let ratio = Decibels(6.0);
+        let sign = coherent(ratio);
+        near(frames_lost(ratio, 0.0, Hertz(10.0), Hertz(200.0), 1), 1.0 - (1.0 - sign).powi(2));
+        near(frames_lost(ratio, 0.0, Hertz(10.0), Hertz(200.0), 106), 1.0 - (1.0 - sign).powi(107));
     }
 
     /// A slow deep modulation costs: errors come where the envelope is low.

@@ -1,9 +1,13 @@
 //! The code frequency of one carrier, from the magnitude of its envelope.
 //!
-//! A window of the envelope is compared with sine waves of all frequencies from 5 to 60 Hz, in steps of half the window's
-//! resolution. The strongest is reported if it stands for enough of everything that varies, if it modulates the carrier
-//! deeply enough, and if it lies where codes can lie; otherwise there is no code. Never the nearest code: what a frequency
-//! means is the business of the kernel's table.
+//! A window of the envelope is compared with sine waves of all frequencies from 5 to 60 Hz, in steps of half the
+//! window's resolution. The strongest is reported if it stands for enough of everything that varies, if it modulates
+//! the carrier deeply enough, and if it lies where codes can lie; otherwise there is no code. Never the nearest code:
+//! what a frequency means is the business of the kernel's table.
+//!
+//! A window that the carrier does not fill is not *settled*: the part without it bends the sine wave, and its frequency
+//! would read up to 0.75 Hz wrong. So the carrier must be about as strong in each quarter of the window; until then
+//! there is no code, after a start, after a gap, and where a section with another level begins.
 
 use std::f64::consts::TAU;
 
@@ -15,6 +19,9 @@ const RATE: f64 = 200.0;
 /// The band in which everything that varies is counted, in hertz.
 const BAND: (f64, f64) = (5.0, 60.0);
 
+/// Parts of a window in each of which the carrier must be there. With the default window a part is as long as one
+/// period of a code of 10 Hz, so that the code itself hardly shows in the means.
+const PARTS: usize = 4;
 /// How sure the detector must be. The default is the project's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CodeConfidence {
@@ -28,11 +35,15 @@ pub struct CodeConfidence {
     pub least_share: f64,
     /// Least amplitude of the carrier, as a part of full scale.
     pub least_level: f64,
+    /// Least mean amplitude of a quarter of the window over the greatest of them; 0: a carrier that comes or goes is no
+    /// reason to doubt the frequency. With the default a step of the level bends a frequency by 0.25 Hz at most, which
+    /// is what a new code must be inside its band. A code of 8 or 12 Hz at a depth of 2/3 alone makes it 0.73.
+    pub least_steadiness: f64,
 }
 
 impl Default for CodeConfidence {
     fn default() -> Self {
-        Self { window: 0.4, hop: 0.05, least_depth: 0.4, least_share: 0.6, least_level: 0.001 }
+        Self { window: 0.4, hop: 0.05, least_depth: 0.4, least_share: 0.6, least_level: 0.001, least_steadiness: 0.65 }
     }
 }
 
@@ -152,7 +163,8 @@ impl CodeDetector {
         let all = self.powers.iter().sum::<f32>();
         reading.depth = f64::from(power.sqrt() / mean);
         reading.share = f64::from(near / all);
-        let sure = reading.depth >= self.confidence.least_depth
+        let sure = steadiness(window) >= self.confidence.least_steadiness
+            && reading.depth >= self.confidence.least_depth
             && reading.share >= self.confidence.least_share
             && reading.level >= self.confidence.least_level;
         if sure {
@@ -174,6 +186,15 @@ impl CodeDetector {
         let frequency = self.bins[peak].frequency + offset.clamp(-0.5, 0.5) * self.step;
         (LOWEST_CODE.0..=HIGHEST_CODE.0).contains(&frequency).then(|| (frequency * 1000.0).round() as u32)
     }
+}
+
+/// How evenly the carrier fills a window: the least mean amplitude of its parts over the greatest, 0 to 1.
+#[allow(clippy::cast_precision_loss)]
+fn steadiness(window: &[f32]) -> f64 {
+    let length = window.len().div_ceil(PARTS).max(1);
+    let means = window.chunks(length).map(|part| part.iter().sum::<f32>() / part.len() as f32);
+    let (least, most) = means.fold((f32::INFINITY, 0.0_f32), |(least, most), mean| (least.min(mean), most.max(mean)));
+    if most > 0.0 { f64::from(least.max(0.0) / most) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -200,6 +221,32 @@ mod tests {
     fn two_codes() {
         let reading = last(|t| 0.2 * (1.0 + 0.5 * (TAU * 15.0 * t).cos() + 0.5 * (TAU * 29.0 * t).cos()));
         assert!(reading.millihertz.is_none() && reading.depth > 0.45, "{reading:?}");
+    }
+
+    /// From the first report on a frequency is near the true one: after a start, after a gap, and after a step of the
+    /// level.
+    #[test]
+    fn what_is_reported_is_settled() {
+        for frequency in [10.0, 12.0, 20.5, 29.0, 41.5] {
+            for phase in [0.0, 0.25, 0.5, 0.75] {
+                for before in [0.0, 0.3, 0.55, 0.7, 1.8] {
+                    let mut detector = CodeDetector::new(1000.0, CodeConfidence::default());
+                    let mut reports = 0;
+                    for i in 0..2000 {
+                        let t = f64::from(i) / 1000.0;
+                        let level = if t < 0.613 { before } else { 1.0 };
+                        #[allow(clippy::cast_possible_truncation)]
+                        let sample = level * (1.0 + 2.0 / 3.0 * (TAU * (frequency * t + phase)).cos()) as f32;
+                        let Some(reading) = detector.push(sample) else { continue };
+                        let Some(millihertz) = reading.millihertz else { continue };
+                        reports += 1;
+                        let off = f64::from(millihertz) / 1000.0 - frequency;
+                        assert!(off.abs() < 0.25, "{frequency} Hz, phase {phase}, {before} before, {t} s: {off:+} Hz");
+                    }
+                    assert!(reports > 15, "{reports}");
+                }
+            }
+        }
     }
 
     /// Outside the range of codes there is none, however clear it is.

@@ -12,6 +12,7 @@ mod carrier;
 mod code;
 mod conventional;
 mod front;
+mod keeper;
 mod level;
 mod msk;
 mod on_board;

@@ -7,6 +7,7 @@ use atc_kernel::telegram::{Main, Reception, Sub};
 use super::branch::{Branch, OnCarrier};
 use super::carrier::{Keying, Squelch};
 use super::code::{CodeConfidence, CodeReading};
+use super::keeper::Keeper;
 use crate::config::{Carrier, TransmitterConfig};
 use crate::units::SampleIndex;
 
@@ -30,7 +31,8 @@ pub enum Heard {
     Sub(Sub),
     /// The code of a carrier, once a hop.
     Code(Carrier, CodeReading),
-    /// The speed that both codes name, after those of the same hop.
+    /// The speed that both codes name, after those of the same hop; a code that was not in use is taken only in the
+    /// inner three quarters of its band.
     Speed(Option<KmhTenths>),
 }
 
@@ -41,6 +43,8 @@ pub struct OnBoard {
     table: CodeTable,
     at: u64,
     main_code: Option<Millihertz>,
+    /// Of the main and of the sub carrier.
+    keepers: [Keeper; 2],
 }
 
 impl OnBoard {
@@ -57,7 +61,8 @@ impl OnBoard {
         squelch: Squelch,
     ) -> Self {
         let branch = |carrier| Branch::new(config, carrier, Keying::Heard, confidence, squelch);
-        Self { main: branch(Carrier::Main), sub: branch(Carrier::Sub), table, at: 0, main_code: None }
+        let keepers = [Keeper::default(); 2];
+        Self { main: branch(Carrier::Main), sub: branch(Carrier::Sub), table, at: 0, main_code: None, keepers }
     }
 
     /// The mean amplitude of a carrier over the last 0.2 s, as a part of full scale.
@@ -82,10 +87,13 @@ impl OnBoard {
             });
             // Both carriers are analysed in step, the main one first.
             let (main_code, table) = (self.main_code, &self.table);
+            let [main_keeper, sub_keeper] = &mut self.keepers;
             self.sub.push(sample, |on| {
                 events(Event { at, heard: Heard::on(Carrier::Sub, on) });
                 if let OnCarrier::Code(reading) = on {
-                    let speed = table.heard(main_code, reading.millihertz.map(Millihertz));
+                    let sub_code = reading.millihertz.map(Millihertz);
+                    let main = main_keeper.hear(table.main(), main_code);
+                    let speed = table.heard(main, sub_keeper.hear(table.sub(), sub_code));
                     events(Event { at, heard: Heard::Speed(speed) });
                 }
             });

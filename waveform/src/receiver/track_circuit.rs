@@ -19,8 +19,8 @@ pub struct TrackCircuitParams {
     pub pick_up: Level,
     /// A free circuit with less than this on either carrier becomes occupied; at most `pick_up`.
     pub drop_away: Level,
-    /// On a digital line: how long after the last telegram of its own, on either carrier, the circuit stays free. What came
-    /// before or while the signal was too faint does not count.
+    /// On a digital line: how long after the last telegram of its own, on either carrier, the circuit stays free. What
+    /// came before or while the signal was too faint does not count.
     pub telegram_lifetime: Seconds,
 }
 
@@ -70,8 +70,8 @@ pub enum TrackState {
 
 /// The receiver. It starts occupied.
 ///
-/// On every line both carriers must carry a code: a harmonic of the traction current can stand exactly on a carrier, but it is
-/// not modulated.
+/// On every line both carriers must carry a code: a harmonic of the traction current can stand exactly on a carrier,
+/// but it is not modulated.
 pub struct TrackCircuit {
     params: TrackCircuitParams,
     main: Branch,
@@ -105,7 +105,8 @@ impl TrackCircuit {
             return Err(TrackCircuitError::Lifetime { seconds, least });
         }
         let keying = if params.own.is_some() { Keying::Heard } else { Keying::Ignored };
-        let confidence = CodeConfidence::default();
+        // Here it counts that there is a code, and not which one: a step of the level is no reason to say occupied.
+        let confidence = CodeConfidence { least_steadiness: 0.0, ..CodeConfidence::default() };
         let receiver = |carrier| Branch::new(config, carrier, keying, confidence, Squelch::default());
         Ok(Self {
             params,

@@ -43,9 +43,10 @@ Commands:
   conform      Holds another implementation against the kernel, down to the first difference
   vectors      Writes test vectors: cases with the kernel's replies and the requirements that they are about
   replay       Holds the logs of recorders against the kernel, in bulk
-  signal       Makes the train control signal as a WAV file, or reads one
+  signal       Makes the train control signal as a WAV file, or reads one; the link budget of a line
   layout       Checks, imports, tabulates or draws the layout of a station
   line         Checks the data of a whole line, and what its stations and trains count on of each other
+  position     Makes the attenuation table of train positions from measured levels
   schema       Prints a JSON Schema: of protocol 1, or of what `conform`, `replay` and `vectors` write
   simulate     Runs a line with trains under the kernel's devices, judged by the truth and not by the devices; exit code 1 if it is unsafe
   explore      Makes a page that plays a session, a trace of a model or a simulated line: track plan, trains, signals, rows over time
