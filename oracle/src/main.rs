@@ -287,7 +287,7 @@ fn signal(command: &SignalCommand) -> Result<(), Failure> {
 fn budget(path: &Path, svg: Option<&Path>, json: bool) -> Result<(), Failure> {
     let line = atc_line::read(path).map_err(|problems| {
         remark(&format!("{problems}\n"));
-        Failure::Line(if problems.is_unreadable() { 2 } else { 1 })
+        Failure::Told(if problems.is_unreadable() { 2 } else { 1 })
     })?;
     let report = signal::budget(&line).map_err(|reason| Failure::Config(path.to_owned(), reason))?;
     let picture = svg.map(|svg| report.picture().map(|text| (svg, text))).transpose();
@@ -304,7 +304,7 @@ fn budget(path: &Path, svg: Option<&Path>, json: bool) -> Result<(), Failure> {
     for broken in &report.broken {
         remark(&format!("{}: {broken}\n", path.display()));
     }
-    if report.broken.is_empty() { Ok(()) } else { Err(Failure::Line(1)) }
+    if report.broken.is_empty() { Ok(()) } else { Err(Failure::Told(1)) }
 }
 
 fn simulate(args: &simulate::SimulateArgs) -> Result<(), Failure> {

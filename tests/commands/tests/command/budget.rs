@@ -45,7 +45,8 @@ fn the_example_has_margins() {
             - number(&link["noise_density_db"])
             - 10.0 * 200.0_f64.log10();
         assert!((sum - number(&link["eb_n0_db"])).abs() < 1e-9, "{link}");
-        assert!((0.5..4.0).contains(&number(&link["rail_db"])), "{link}");
+        // 14 dB in a wet kilometre at 1200 Hz.
+        assert!((0.5..5.0).contains(&number(&link["rail_db"])), "{link}");
         // About 8 dB, as an outsider measured.
         assert!((6.5..9.5).contains(&number(&link["code_costs_db"])), "{link}");
         assert!((0.0..1.0).contains(&number(&link["receiver_loss_db"])), "{link}");
