@@ -1,0 +1,5 @@
+//! The border from outside: the header, C programs, the kernel beside it, and calls that no program should make.
+#![allow(unsafe_code, reason = "what is tested is called as C calls it")]
+
+mod header;
+mod tools;
