@@ -34,7 +34,10 @@ pub fn library() -> PathBuf {
     let test = std::env::current_exe().expect("a test knows where it is");
     let deps = test.parent().unwrap_or(Path::new("."));
     let made = |folder: &Path| folder.join("libatc_c.a");
-    [made(deps), made(deps.parent().unwrap_or(deps))].into_iter().find(|path| path.exists()).expect("cargo made libatc_c.a")
+    [made(deps), made(deps.parent().unwrap_or(deps))]
+        .into_iter()
+        .find(|path| path.exists())
+        .expect("cargo made libatc_c.a")
 }
 
 /// Runs a tool; `None` if it is not here.

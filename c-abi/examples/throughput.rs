@@ -1,0 +1,295 @@
+//! Steps per second of each machine through the C border, and of the kernel called from Rust, in one run:
+//! `cargo run --release -p atc-c --example throughput`. The border reads the state back and checks it in every step.
+#![allow(unsafe_code, reason = "the border is called as C calls it")]
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use atc_c::aspect::{atc_aspect, atc_aspect_config, atc_aspect_input, atc_aspect_output};
+use atc_c::block::{atc_block, atc_block_config, atc_block_input, atc_block_output};
+use atc_c::interlocking::{atc_interlocking, atc_interlocking_input, atc_interlocking_output};
+use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
+use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
+use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output};
+use atc_c::telegram::{atc_deframer, atc_deframer_input, atc_telegram};
+use atc_c::{atc_status, border};
+use atc_kernel::Machine;
+use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Times, TimesMs};
+use atc_kernel::block::{self, Block, Hold, SectionSet};
+use atc_kernel::distance::{Metres, Millimetres};
+use atc_kernel::interlocking::{CircuitSet, Combined, Input, Orders, Positions, SegmentSet};
+use atc_kernel::pattern::{Deceleration, pattern};
+use atc_kernel::permitted::{Heard, Permitted, Settings};
+use atc_kernel::speed::{KmhTenths, RawKmhTenths};
+use atc_kernel::supervision::{Speeds, Supervision};
+use atc_kernel::telegram::{Deframer, Gradient, Reception, Sequence};
+use atc_kernel::time::{Millis, Ticks};
+
+#[path = "../tests/c_abi/arrays.rs"]
+mod arrays;
+
+/// How long each side is measured.
+const TIME: Duration = Duration::from_millis(400);
+
+/// Calls per second.
+#[expect(clippy::cast_precision_loss, reason = "a rate is shown with three digits")]
+fn rate(mut call: impl FnMut(u64)) -> f64 {
+    let (start, mut calls) = (Instant::now(), 0_u64);
+    loop {
+        for _ in 0..64 {
+            call(calls);
+            calls += 1;
+        }
+        let spent = start.elapsed();
+        if spent >= TIME {
+            return calls as f64 / spent.as_secs_f64();
+        }
+    }
+}
+
+fn row(name: &str, border: f64, kernel: f64) {
+    println!("| {name} | {border:.2e} | {kernel:.2e} | {:.2} |", border / kernel);
+}
+
+/// Steps of the border; the states are new.
+fn through<S, I, O>(
+    start: impl Fn(*mut S) -> atc_status,
+    step: unsafe extern "C" fn(*mut S, *const I, *mut O) -> atc_status,
+    input: impl Fn(u64) -> I,
+) -> f64 {
+    let mut state = Box::<S>::new_uninit();
+    let mut output = Box::<O>::new_uninit();
+    assert_eq!(start(state.as_mut_ptr()), atc_status::Ok);
+    let step = black_box(step);
+    rate(|number| {
+        let input = input(number);
+        // SAFETY: a state that was started, an input and room for an output.
+        let status = unsafe { step(state.as_mut_ptr(), black_box(&raw const input), output.as_mut_ptr()) };
+        assert_eq!(status, atc_status::Ok);
+        black_box(output.as_ptr());
+    })
+}
+
+/// Steps of the kernel.
+fn beside<M: Machine>(machine: &M, input: impl Fn(u64) -> M::Input) -> f64 {
+    let machine = black_box(machine);
+    let mut state = machine.initial();
+    rate(|number| {
+        let (next, output) = machine.step(state, black_box(input(number)));
+        state = black_box(next);
+        black_box(output);
+    })
+}
+
+macro_rules! starts {
+    ($function:ident, $config:expr) => {
+        // SAFETY: room for a state, and a configuration that is there.
+        |state| unsafe { border::$function(state.cast(), size_of_val(&*state), &raw const $config) }
+    };
+}
+
+fn narrow(number: u64) -> u8 {
+    number.to_le_bytes()[0]
+}
+
+fn main() {
+    println!("| machine | steps per second through C | in the kernel | ratio |\n|---|---|---|---|");
+    let mut speeds = [0; 16];
+    speeds[..8].copy_from_slice(&[0, 150, 250, 450, 550, 650, 750, 900]);
+    let table = AspectTable::new(&speeds[..8].iter().copied().map(KmhTenths).collect::<Vec<_>>()).expect("it rises");
+    aspect(speeds);
+    supervision();
+    count();
+    brake();
+    permitted(speeds, table);
+    let step = |number: u64| (number / 7 + number / 3) % 2;
+    // SAFETY: room for a deframer.
+    let start = |state: *mut atc_deframer| unsafe { border::atc_deframer_start(state.cast(), size_of_val(&*state)) };
+    let input = |number| atc_deframer_input { reception: narrow(step(number)).into() };
+    let through = through::<_, _, atc_telegram>(start, border::atc_deframer_step, input);
+    let bit = |number| if step(number) == 0 { Reception::Zero } else { Reception::One };
+    row("deframer", through, beside(&Deframer, bit));
+    for name in ["passing-loop", "station-30"] {
+        station(name);
+    }
+}
+
+fn aspect(speeds: [u16; 16]) {
+    let config = atc_aspect_config {
+        cycle_ms: 10,
+        operate_ms: 300,
+        recovery_ms: 400,
+        mask_ms: 400,
+        interruption_ms: 800,
+        shortened_operate_ms: 100,
+        aspect_count: 8,
+        speeds,
+    };
+    let heard = |number: u64| if number % 100 < 60 { 0x12 } else { 0 };
+    let start = starts!(atc_aspect_start, config);
+    let input = |number| atc_aspect_input { detected: heard(number) };
+    let c = through::<atc_aspect, _, atc_aspect_output>(start, border::atc_aspect_step, input);
+    let times = Times::from_millis(Millis(10), TimesMs::default()).expect("the patent's times");
+    row("aspect", c, beside(&Acceptance::<16> { times }, |number| AspectSet::from_bits(heard(number))));
+}
+
+fn supervision() {
+    let config = atc_supervision_config { maximum: 4000, margin: 5 };
+    let input = |number| atc_supervision_input {
+        measured: narrow(number).into(),
+        permitted: 120,
+        has_measured: 1,
+        has_permitted: 1,
+    };
+    let start = starts!(atc_supervision_start, config);
+    let c = through::<atc_supervision, _, atc_supervision_output>(start, border::atc_supervision_step, input);
+    let machine = Supervision::new(KmhTenths(4000), KmhTenths(5)).expect("in range");
+    let speed = |speed| Some(RawKmhTenths(speed));
+    row(
+        "supervision",
+        c,
+        beside(&machine, |number| Speeds { measured: speed(narrow(number).into()), permitted: speed(120) }),
+    );
+}
+
+fn count() {
+    let config = atc_block_config { cycle_ms: 10, pass_ms: 10_000, sections: 8, max_trains: 4, tail_hold_sections: 1 };
+    let on = |number: u64, at: u64| number % 64 / 8 == at;
+    let input = |number| atc_block_input {
+        present: 1 << (number % 64 / 8),
+        check_in: on(number, 0).into(),
+        check_out: on(number, 7).into(),
+        ahead_entered: 1,
+        ..atc_block_input::default()
+    };
+    let start = starts!(atc_block_start, config);
+    let c = through::<atc_block, _, atc_block_output>(start, border::atc_block_step, input);
+    let machine = Block::new(8, 4, Hold::new(1).expect("at most 16"), Ticks(1000)).expect("in range");
+    row(
+        "block",
+        c,
+        beside(&machine, |number| block::Input {
+            check_in: on(number, 0),
+            check_out: on(number, 7),
+            present: SectionSet::from_bits(1 << (number % 64 / 8)),
+            reset: None,
+            ahead_hold: Hold::NONE,
+            ahead_entered: true,
+        }),
+    );
+}
+
+fn brake() {
+    let mut output = atc_pattern_output::default();
+    let ask = black_box(border::atc_pattern as unsafe extern "C" fn(*const atc_pattern_input, *mut _) -> atc_status);
+    let c = rate(|number| {
+        let distance_m = u16::from(narrow(number)) * 100;
+        let input = atc_pattern_input { brake_mm_s2: 800, distance_m, gradient_permille: -10 };
+        // SAFETY: both are there.
+        let status = unsafe { ask(black_box(&raw const input), &raw mut output) };
+        assert_eq!(status, atc_status::Ok);
+        black_box(&output);
+    });
+    let brake = Deceleration::brake(800).expect("in range");
+    row(
+        "pattern",
+        c,
+        rate(|number| {
+            let distance = Metres(u16::from(narrow(number)) * 100);
+            black_box(pattern(black_box(brake.on(Gradient(-10))), black_box(distance)));
+        }),
+    );
+}
+
+fn permitted(speeds: [u16; 16], table: AspectTable) {
+    let config = atc_permitted_config {
+        cycle_ms: 10,
+        fresh_ms: 2200,
+        life_ms: 5000,
+        fixed_life_ms: 10_000,
+        memory_ms: 2000,
+        speed_count: 8,
+        speeds,
+        brake_mm_s2: 800,
+        margin_m: 10,
+        lowest_rank: 2,
+        worst_gradient_permille: -35,
+        window: 3,
+        run: 1,
+    };
+    let main = |number: u64| atc_c::telegram::atc_main_telegram {
+        section: 7,
+        beyond_exit_m: 400,
+        counter: narrow(number / 53),
+        route_open: 1,
+        speed_rank: 4,
+    };
+    let input = |number: u64| atc_permitted_input {
+        moved_mm: 50,
+        analog: 450,
+        has_analog: 1,
+        has_main: (number % 53 == 0).into(),
+        main_data: main(number),
+        ..atc_permitted_input::default()
+    };
+    let start = starts!(atc_permitted_start, config);
+    let c = through::<atc_permitted, _, atc_permitted_output>(start, border::atc_permitted_step, input);
+    let machine = Permitted::new(Settings {
+        speeds: table,
+        lowest: atc_kernel::aspect::AspectId::new(2).expect("at most 15"),
+        brake: Deceleration::brake(800).expect("in range"),
+        worst: Gradient(-35),
+        margin: Metres(10),
+        fresh: Ticks(220),
+        life: Ticks(500),
+        fixed_life: Ticks(1000),
+        sequence: Sequence::new(3, 1, Ticks(200)).expect("in range"),
+    });
+    row(
+        "permitted",
+        c,
+        beside(&machine.expect("in range"), |number| Heard {
+            line: None,
+            analog: Some(KmhTenths(450)),
+            main: (number % 53 == 0).then_some(atc_kernel::telegram::Main {
+                section: atc_kernel::telegram::SectionId(7),
+                counter: atc_kernel::telegram::Counter(narrow(number / 53)),
+                route: atc_kernel::telegram::Route::OpenFor(Metres(400)),
+                speed: atc_kernel::aspect::AspectId::new(4).expect("at most 15"),
+            }),
+            sub: None,
+            to_exit: None,
+            moved: Millimetres(50),
+        }),
+    );
+}
+
+fn station(name: &str) {
+    let path = format!("{}/../layouts/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let compiled = atc_layout::read(path).expect("it is a layout").compile().expect("it keeps every rule");
+    let arrays = arrays::Arrays::of(&compiled.plan, &compiled.names);
+    let config = arrays.config();
+    let circuits = (1_u64 << (arrays.lengths_m.len() - 1)) * 2 - 1;
+    let occupied = |number: u64| 1 << (number / 16 % 8);
+    let input = |number| atc_interlocking_input {
+        occupied: occupied(number),
+        unblock: circuits,
+        lift: circuits,
+        ..atc_interlocking_input::default()
+    };
+    let start = starts!(atc_interlocking_start, config);
+    let c = through::<atc_interlocking, _, atc_interlocking_output>(start, border::atc_interlocking_step, input);
+    let layout = compiled.layout();
+    let all = CircuitSet::from_bits(circuits);
+    row(
+        &format!("interlocking, {name}"),
+        c,
+        beside(&Combined(&layout), |number| Input {
+            occupied: CircuitSet::from_bits(occupied(number)),
+            detected: Positions::NONE,
+            request: None,
+            orders: Orders { unblock: all, lift: all, ..Orders::default() },
+            consent: SegmentSet::EMPTY,
+        }),
+    );
+}
