@@ -4,6 +4,7 @@
 mod arrays;
 mod call;
 mod header;
+mod lockstep;
 mod malformed;
 mod programs;
 mod station;

@@ -118,12 +118,12 @@ fn interlockings() {
     assert!(steps > 1000 && cases > rejected + 2 * unsafe_plans, "{steps} steps in {cases} cases");
 }
 
-/// The arrays of the passing loop, which keep every rule.
-pub fn passing_loop() -> Arrays {
+/// The arrays of the passing loop, which keep every rule, and its layout.
+pub fn passing_loop() -> (Arrays, Box<Station>) {
     let text = include_str!("../../../layouts/passing-loop.toml");
     let described = atc_layout::Description::from_toml("passing-loop.toml", text).expect("it is a layout");
     let compiled = described.compile().expect("it keeps every rule");
-    Arrays::of(&compiled.plan, &compiled.names)
+    (Arrays::of(&compiled.plan, &compiled.names), compiled.layout())
 }
 
 /// Every broken rule comes out under its own status, and at its place.
@@ -149,9 +149,9 @@ fn broken_rules_have_a_status_and_a_place() {
         (|plan| plan.lengths_m.resize(65, 100), atc_status::TooManyEntries, Some((0, 0))),
         (|plan| plan.segment_circuits.clear(), atc_status::BeyondArray, None),
     ];
-    assert_eq!(place(&passing_loop()), (atc_status::Ok, atc_place::default()));
+    assert_eq!(place(&passing_loop().0), (atc_status::Ok, atc_place::default()));
     for (number, (break_it, status, at)) in cases.into_iter().enumerate() {
-        let mut plan = passing_loop();
+        let mut plan = passing_loop().0;
         break_it(&mut plan);
         let (found, place) = place(&plan);
         assert_eq!(found, status, "case {number}");
@@ -165,7 +165,7 @@ fn broken_rules_have_a_status_and_a_place() {
 /// A set of points that is detected both ways, and everything at once, is an input like any other.
 #[test]
 fn what_is_not_plausible_is_an_input() {
-    let arrays = passing_loop();
+    let (arrays, _) = passing_loop();
     let mut state = start(&arrays).expect("it keeps every rule");
     let points = PointSet::from_bits((1 << arrays.detectors.len()) - 1).bits();
     let read = atc_interlocking_input {
