@@ -82,9 +82,9 @@ fn beside<M: Machine>(machine: &M, input: impl Fn(u64) -> M::Input) -> f64 {
 }
 
 macro_rules! starts {
-    ($function:ident, $config:expr) => {
+    ($function:ident, $state:ty, $config:expr) => {
         // SAFETY: room for a state, and a configuration that is there.
-        |state| unsafe { border::$function(state.cast(), size_of_val(&*state), &raw const $config) }
+        |state: *mut $state| unsafe { border::$function(state.cast(), size_of::<$state>(), &raw const $config) }
     };
 }
 
@@ -104,7 +104,8 @@ fn main() {
     permitted(speeds, table);
     let step = |number: u64| (number / 7 + number / 3) % 2;
     // SAFETY: room for a deframer.
-    let start = |state: *mut atc_deframer| unsafe { border::atc_deframer_start(state.cast(), size_of_val(&*state)) };
+    let start =
+        |state: *mut atc_deframer| unsafe { border::atc_deframer_start(state.cast(), size_of::<atc_deframer>()) };
     let input = |number| atc_deframer_input { reception: narrow(step(number)).into() };
     let through = through::<_, _, atc_telegram>(start, border::atc_deframer_step, input);
     let bit = |number| if step(number) == 0 { Reception::Zero } else { Reception::One };
@@ -126,7 +127,7 @@ fn aspect(speeds: [u16; 16]) {
         speeds,
     };
     let heard = |number: u64| if number % 100 < 60 { 0x12 } else { 0 };
-    let start = starts!(atc_aspect_start, config);
+    let start = starts!(atc_aspect_start, atc_aspect, config);
     let input = |number| atc_aspect_input { detected: heard(number) };
     let c = through::<atc_aspect, _, atc_aspect_output>(start, border::atc_aspect_step, input);
     let times = Times::from_millis(Millis(10), TimesMs::default()).expect("the patent's times");
@@ -141,7 +142,7 @@ fn supervision() {
         has_measured: 1,
         has_permitted: 1,
     };
-    let start = starts!(atc_supervision_start, config);
+    let start = starts!(atc_supervision_start, atc_supervision, config);
     let c = through::<atc_supervision, _, atc_supervision_output>(start, border::atc_supervision_step, input);
     let machine = Supervision::new(KmhTenths(4000), KmhTenths(5)).expect("in range");
     let speed = |speed| Some(RawKmhTenths(speed));
@@ -156,13 +157,13 @@ fn count() {
     let config = atc_block_config { cycle_ms: 10, pass_ms: 10_000, sections: 8, max_trains: 4, tail_hold_sections: 1 };
     let on = |number: u64, at: u64| number % 64 / 8 == at;
     let input = |number| atc_block_input {
-        present: 1 << (number % 64 / 8),
+        present: 1_u16 << (number % 64 / 8),
         check_in: on(number, 0).into(),
         check_out: on(number, 7).into(),
         ahead_entered: 1,
         ..atc_block_input::default()
     };
-    let start = starts!(atc_block_start, config);
+    let start = starts!(atc_block_start, atc_block, config);
     let c = through::<atc_block, _, atc_block_output>(start, border::atc_block_step, input);
     let machine = Block::new(8, 4, Hold::new(1).expect("at most 16"), Ticks(1000)).expect("in range");
     row(
@@ -171,7 +172,7 @@ fn count() {
         beside(&machine, |number| block::Input {
             check_in: on(number, 0),
             check_out: on(number, 7),
-            present: SectionSet::from_bits(1 << (number % 64 / 8)),
+            present: SectionSet::from_bits(1_u16 << (number % 64 / 8)),
             reset: None,
             ahead_hold: Hold::NONE,
             ahead_entered: true,
@@ -232,7 +233,7 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
         main_data: main(number),
         ..atc_permitted_input::default()
     };
-    let start = starts!(atc_permitted_start, config);
+    let start = starts!(atc_permitted_start, atc_permitted, config);
     let c = through::<atc_permitted, _, atc_permitted_output>(start, border::atc_permitted_step, input);
     let machine = Permitted::new(Settings {
         speeds: table,
@@ -270,14 +271,14 @@ fn station(name: &str) {
     let arrays = arrays::Arrays::of(&compiled.plan, &compiled.names);
     let config = arrays.config();
     let circuits = (1_u64 << (arrays.lengths_m.len() - 1)) * 2 - 1;
-    let occupied = |number: u64| 1 << (number / 16 % 8);
+    let occupied = |number: u64| 1_u64 << (number / 16 % 8);
     let input = |number| atc_interlocking_input {
         occupied: occupied(number),
         unblock: circuits,
         lift: circuits,
         ..atc_interlocking_input::default()
     };
-    let start = starts!(atc_interlocking_start, config);
+    let start = starts!(atc_interlocking_start, atc_interlocking, config);
     let c = through::<atc_interlocking, _, atc_interlocking_output>(start, border::atc_interlocking_step, input);
     let layout = compiled.layout();
     let all = CircuitSet::from_bits(circuits);

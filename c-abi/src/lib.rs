@@ -8,6 +8,7 @@
 #![no_std]
 #![deny(unsafe_code)]
 #![allow(non_camel_case_types, reason = "these are C's names")]
+#![allow(clippy::trivially_copy_pass_by_ref, reason = "C's structures come through pointers, small ones too")]
 
 // Not used by name. The static library needs a panic handler, and the unwinder's part of `core` a personality; that is all that
 // `std` is here for. Should there be a panic after all, it does not cross the border: `extern "C"` ends the process.

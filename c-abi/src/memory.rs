@@ -76,9 +76,10 @@ pub(crate) fn step<M: Machine>(memory: &mut [u8], input: &M::Input) -> Result<M:
     let (header, rest) = memory.split_first_chunk_mut::<HEADER>().ok_or(atc_status::TooSmall)?;
     let place = rest.get_mut(M::PARAMETERS..).ok_or(atc_status::TooSmall)?;
     M::put_state(&state, &mut Writer(place));
-    let [.., a, b, c, d, e, f, g, h, _, _, _, _, _, _, _, _] = *header;
-    *header.last_chunk_mut::<8>().ok_or(atc_status::TooSmall)? =
-        check(u64::from_le_bytes([a, b, c, d, e, f, g, h]), place).to_le_bytes();
+    // The check word of the parameters, which the one of the state begins with.
+    let (_, words) = header.split_at_mut(8);
+    let (parameters, sum) = words.split_at_mut(8);
+    sum.copy_from_slice(&check(word(parameters), place).to_le_bytes());
     Ok(output)
 }
 
@@ -103,17 +104,22 @@ pub(crate) fn load<M: Machine>(memory: &[u8]) -> Result<(M::Parameters, M::State
 }
 
 /// The first word of a state: the machine and the version.
-const fn tag<M: Machine>() -> u64 {
-    let [a, b, c, d] = M::TAG;
-    let [e, f, g, h] = ATC_VERSION.to_le_bytes();
-    u64::from_le_bytes([a, b, c, d, e, f, g, h])
+fn tag<M: Machine>() -> u64 {
+    u64::from(u32::from_le_bytes(M::TAG)) | u64::from(ATC_VERSION) << 32
+}
+
+/// The number that stands in 8 bytes.
+fn word(bytes: &[u8]) -> u64 {
+    u64::from_le_bytes(bytes.try_into().unwrap_or_default())
 }
 
 /// A check word over `bytes`, a multiple of 8. Each round is one-to-one in what is read and in what came before: a change
 /// within one word of 8 bytes always shows. Any other change is overlooked once in 2^64.
 fn check(seed: u64, bytes: &[u8]) -> u64 {
-    let words = bytes.chunks_exact(8).map(|word| u64::from_le_bytes(word.try_into().unwrap_or_default()));
-    words.fold(seed, |sum, word| (sum ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29))
+    bytes
+        .chunks_exact(8)
+        .map(word)
+        .fold(seed, |sum, word| (sum ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29))
 }
 
 /// Writes numbers one after the other, the lowest byte first. What does not fit is left out: then the state is not read back,

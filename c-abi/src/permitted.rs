@@ -179,16 +179,18 @@ fn put_target(target: Option<Target>, to: &mut Writer<'_>) {
     to.u32(target.to_stop.0);
 }
 
-fn take_target(from: &mut Reader<'_>) -> Option<Option<Target>> {
+/// Reads into `target`; `None` if there is none to be read.
+fn take_target(from: &mut Reader<'_>, target: &mut Option<Target>) -> Option<()> {
     let there = from.flag()?;
-    let target = Target {
+    let read = Target {
         section: SectionId(from.u16()?),
         beyond: Metres(from.u16()?),
         limit: KmhTenths(from.u16()?),
         age: Ticks(from.u16()?),
         to_stop: Millimetres(from.u32()?),
     };
-    Some(there.then_some(target))
+    *target = there.then_some(read);
+    Some(())
 }
 
 fn put_fixed(fixed: Option<Fixed>, to: &mut Writer<'_>) {
@@ -201,15 +203,16 @@ fn put_fixed(fixed: Option<Fixed>, to: &mut Writer<'_>) {
     to.i8(fixed.gradient.0);
 }
 
-fn take_fixed(from: &mut Reader<'_>) -> Option<Option<Fixed>> {
+fn take_fixed(from: &mut Reader<'_>, fixed: &mut Option<Fixed>) -> Option<()> {
     let there = from.flag()?;
-    let fixed = Fixed {
+    let read = Fixed {
         section: SectionId(from.u16()?),
         limit: KmhTenths(from.u16()?),
         age: Ticks(from.u16()?),
         gradient: Gradient(from.i8()?),
     };
-    Some(there.then_some(fixed))
+    *fixed = there.then_some(read);
+    Some(())
 }
 
 fn put_stream(stream: Stream, to: &mut Writer<'_>) {
@@ -282,15 +285,14 @@ impl Machine for Permitting {
     fn take_state(permitted: &Permitted, from: &mut Reader<'_>) -> Option<State> {
         let line = if from.flag()? { LineKind::Digital } else { LineKind::Analog };
         let (there, fix) = (from.flag()?, Millimetres(from.u32()?));
-        let state = State {
-            line,
-            fix: there.then_some(fix),
-            target: take_target(from)?,
-            behind: take_target(from)?,
-            fixed: [take_fixed(from)?, take_fixed(from)?],
-            main_stream: take_stream(from)?,
-            sub_stream: take_stream(from)?,
-        };
+        let mut state = State { line, fix: there.then_some(fix), ..State::INITIAL };
+        take_target(from, &mut state.target)?;
+        take_target(from, &mut state.behind)?;
+        for fixed in &mut state.fixed {
+            take_fixed(from, fixed)?;
+        }
+        state.main_stream = take_stream(from)?;
+        state.sub_stream = take_stream(from)?;
         state.is_valid(permitted).then_some(state)
     }
 

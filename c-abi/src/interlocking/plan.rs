@@ -127,9 +127,9 @@ fn segment(counts: Counts, given: &atc_segment, circuits: &[u8], kept: &mut Segm
 }
 
 fn route(counts: Counts, given: &atc_route, elements: &[atc_element], kept: &mut Route<16>) -> Result<(), atc_status> {
-    let routes = |bits| match within(bits, counts.routes) {
-        true => Ok(RouteSet::from_bits(bits)),
-        false => Err(atc_status::UnknownRoute),
+    let routes = |bits| {
+        let known = within(bits, counts.routes).then_some(RouteSet::from_bits(bits));
+        known.ok_or(atc_status::UnknownRoute)
     };
     let (path, length) = part(elements, given.path_first, given.path_length)?;
     for (kept, given) in kept.path.iter_mut().zip(path) {

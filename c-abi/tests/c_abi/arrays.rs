@@ -5,7 +5,7 @@ use std::ptr;
 use atc_c::interlocking::{
     ATC_HEADING_LEFT, ATC_HEADING_RIGHT, atc_element, atc_interlocking_config, atc_route, atc_segment,
 };
-use atc_kernel::interlocking::{CircuitSet, Element, Heading, Plan, Positions};
+use atc_kernel::interlocking::{CircuitId, CircuitSet, Element, Heading, Plan, Positions};
 use atc_layout::Names;
 
 /// The arrays of a plan, as a C program has them.
@@ -63,7 +63,7 @@ impl Arrays {
         for segment in plan.segments.iter().take(names.segments.len()) {
             let circuits_first = u16::try_from(segment_circuits.len()).expect("at most 128");
             let numbers = segment.circuits.iter().take(segment.length.into());
-            segment_circuits.extend(numbers.map(|circuit| circuit.first().map_or(u8::MAX, |first| first.number())));
+            segment_circuits.extend(numbers.map(|circuit| circuit.first().map_or(u8::MAX, CircuitId::number)));
             segments.push(atc_segment {
                 throat: segment.throat.bits(),
                 circuits_first,

@@ -304,7 +304,7 @@ fn settings(config: &atc_permitted_config) -> Option<Permitted> {
     .ok()
 }
 
-fn main(main: &atc_main_telegram) -> Option<Main> {
+fn main(main: atc_main_telegram) -> Option<Main> {
     let beyond = Metres(main.beyond_exit_m);
     let route = match main.route_open {
         1 => Route::OpenFor(beyond),
@@ -315,7 +315,7 @@ fn main(main: &atc_main_telegram) -> Option<Main> {
     Some(Main { section, counter, route, speed: AspectId::new(main.speed_rank)? })
 }
 
-fn sub(sub: &atc_sub_telegram) -> Option<Sub> {
+fn sub(sub: atc_sub_telegram) -> Option<Sub> {
     Some(Sub {
         section: SectionId(sub.section),
         counter: Counter(sub.counter),
@@ -374,8 +374,8 @@ fn permitted_speed() {
                 2 => Some(Some(LineKind::Digital)),
                 _ => None,
             };
-            let main = if input.has_main == 1 { main(&input.main_data).map(Some) } else { Some(None) };
-            let sub = if input.has_sub == 1 { sub(&input.sub_data).map(Some) } else { Some(None) };
+            let main = if input.has_main == 1 { main(input.main_data).map(Some) } else { Some(None) };
+            let sub = if input.has_sub == 1 { sub(input.sub_data).map(Some) } else { Some(None) };
             let (Some(line), Some(main), Some(sub)) = (line, main, sub) else {
                 assert!(said.0 != atc_status::Ok && said.1 == may(Permitted::SAFE), "{input:?}: {said:?}");
                 continue;

@@ -107,7 +107,7 @@ fn block() {
         let step = json!({"check_in": check_in, "check_out": check_out, "present": present, "reset": reset});
         let output = block.step(&step);
         let occupied = output["occupied"].as_array().expect("a list").iter();
-        let occupied: String = occupied.map(|section| format!(" {section}")).collect();
+        let occupied = occupied.fold(String::new(), |list, section| format!("{list} {section}"));
         let counting = if output["counting"] == true { "" } else { ", not counting" };
         let (count, behind) = (&output["count"], &output["behind_hold_sections"]);
         writeln!(said, "cycle {number}: occupied{occupied}; trains {count}, behind {behind}{counting}")

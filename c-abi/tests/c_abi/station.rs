@@ -129,8 +129,8 @@ pub fn passing_loop() -> (Arrays, Box<Station>) {
 /// Every broken rule comes out under its own status, and at its place.
 #[test]
 fn broken_rules_have_a_status_and_a_place() {
-    type Break = fn(&mut Arrays);
-    let cases: [(Break, atc_status, Option<(u32, u32)>); 17] = [
+    type Break = (fn(&mut Arrays), atc_status, Option<(u32, u32)>);
+    let cases: [Break; 17] = [
         (|plan| plan.scalars.turn_cycles = 0, atc_status::PlanNoTime, Some((0, 0))),
         (|plan| plan.routes[2].drive_cycles = 0, atc_status::PlanNoTime, Some((ATC_PLACE_ROUTE, 2))),
         (|plan| plan.routes[1].speed_code = 0, atc_status::PlanCodeOutOfTable, Some((ATC_PLACE_ROUTE, 1))),
