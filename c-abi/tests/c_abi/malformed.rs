@@ -129,10 +129,20 @@ impl<S: Copy, C: Copy, I: Copy, O: Copy + PartialEq + Debug> Target<S, C, I, O> 
         output.get()
     }
 
-    /// A start with something wrong in it, or not; what it leaves is a state or none.
-    fn attack_start(&self, random: &mut Random, tally: &mut Tally, wild: &mut impl FnMut(&mut Random, &mut Place)) {
+    /// A start with something wrong in it, or not, where a state may have been before; what it leaves is a new state or none.
+    fn attack_start(
+        &self,
+        random: &mut Random,
+        tally: &mut Tally,
+        before: &S,
+        wild: &mut impl FnMut(&mut Random, &mut Place),
+    ) {
         let (mut state, mut config) = (Place::of::<S>(), Place::of::<C>());
-        state.randomise(random);
+        if random.one_in(2) {
+            state.put(before);
+        } else {
+            state.randomise(random);
+        }
         config.put(&self.config);
         wild(random, &mut config);
         let leads = [Leads::some(random), Leads::some(random)];
@@ -353,7 +363,7 @@ fn calls_that_no_program_should_make() {
             let safe = $target.safe();
             move |random: &mut Random, tally: &mut Tally, wild: &mut dyn FnMut(&mut Random, &mut Place)| {
                 if random.one_in(3) {
-                    $target.attack_start(random, tally, &mut |random, place| wild(random, place));
+                    $target.attack_start(random, tally, &started, &mut |random, place| wild(random, place));
                 } else {
                     $target.attack_step(random, tally, &started, &safe, $other);
                 }

@@ -1,13 +1,17 @@
 //! Steps per second of each machine through the C border, and of the kernel called from Rust, in one run:
-//! `cargo run --release -p atc-c --example throughput`. The border reads the state back and checks it in every step.
+//! `cargo run --release -p atc-c --bin throughput`. The border reads the state back and checks it in every step.
 #![allow(unsafe_code, reason = "the border is called as C calls it")]
 
 use std::hint::black_box;
+use std::ptr;
 use std::time::{Duration, Instant};
 
 use atc_c::aspect::{atc_aspect, atc_aspect_config, atc_aspect_input, atc_aspect_output};
 use atc_c::block::{atc_block, atc_block_config, atc_block_input, atc_block_output};
-use atc_c::interlocking::{atc_interlocking, atc_interlocking_input, atc_interlocking_output};
+use atc_c::interlocking::{
+    ATC_HEADING_RIGHT, ATC_MAX_CIRCUITS, ATC_REQUEST_SET, atc_element, atc_interlocking, atc_interlocking_config,
+    atc_interlocking_input, atc_interlocking_output, atc_route,
+};
 use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output};
@@ -17,7 +21,9 @@ use atc_kernel::Machine;
 use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Times, TimesMs};
 use atc_kernel::block::{self, Block, Hold, SectionSet};
 use atc_kernel::distance::{Metres, Millimetres};
-use atc_kernel::interlocking::{CircuitSet, Combined, Input, Orders, Positions, SegmentSet};
+use atc_kernel::interlocking::{
+    CircuitSet, Combined, Input, Orders, Plan, Positions, Request, Route, RouteId, SegmentSet, SpeedCode, Station,
+};
 use atc_kernel::pattern::{Deceleration, pattern};
 use atc_kernel::permitted::{Heard, Permitted, Settings};
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
@@ -25,26 +31,30 @@ use atc_kernel::supervision::{Speeds, Supervision};
 use atc_kernel::telegram::{Deframer, Gradient, Reception, Sequence};
 use atc_kernel::time::{Millis, Ticks};
 
-#[path = "../tests/c_abi/arrays.rs"]
-mod arrays;
-
 /// How long each side is measured.
 const TIME: Duration = Duration::from_millis(400);
 
-/// Calls per second.
-#[expect(clippy::cast_precision_loss, reason = "a rate is shown with three digits")]
+/// Calls per second in the fastest of many short stretches: others on the machine take the slow ones.
 fn rate(mut call: impl FnMut(u64)) -> f64 {
-    let (start, mut calls) = (Instant::now(), 0_u64);
-    loop {
-        for _ in 0..64 {
+    let mut calls = 0_u64;
+    let mut stretch = |length: u32| {
+        let start = Instant::now();
+        for _ in 0..length {
             call(calls);
             calls += 1;
         }
-        let spent = start.elapsed();
-        if spent >= TIME {
-            return calls as f64 / spent.as_secs_f64();
-        }
+        start.elapsed()
+    };
+    // As many calls as make some 50 microseconds.
+    let mut length = 1;
+    while length < 4096 && stretch(length) < Duration::from_micros(50) {
+        length *= 2;
     }
+    let (start, mut best) = (Instant::now(), Duration::MAX);
+    while start.elapsed() < TIME {
+        best = best.min(stretch(length));
+    }
+    f64::from(length) / best.as_secs_f64()
 }
 
 fn row(name: &str, border: f64, kernel: f64) {
@@ -110,8 +120,8 @@ fn main() {
     let through = through::<_, _, atc_telegram>(start, border::atc_deframer_step, input);
     let bit = |number| if step(number) == 0 { Reception::Zero } else { Reception::One };
     row("deframer", through, beside(&Deframer, bit));
-    for name in ["passing-loop", "station-30"] {
-        station(name);
+    for routes in [1, 8, 60] {
+        station(routes);
     }
 }
 
@@ -265,32 +275,91 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
     );
 }
 
-fn station(name: &str) {
-    let path = format!("{}/../layouts/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let compiled = atc_layout::read(path).expect("it is a layout").compile().expect("it keeps every rule");
-    let arrays = arrays::Arrays::of(&compiled.plan, &compiled.names);
-    let config = arrays.config();
-    let circuits = (1_u64 << (arrays.lengths_m.len() - 1)) * 2 - 1;
-    let occupied = |number: u64| 1_u64 << (number / 16 % 8);
+/// A line of circuits, with so many routes of one circuit each, one behind the other.
+fn station(count: u8) {
+    let circuit = |number: u8| CircuitSet::nth(number.into());
+    let circuits = usize::from(count) + 2;
+    let mut plan = Plan { clear: 2, turn: Ticks(1), ..Plan::EMPTY };
+    plan.braking[..2].copy_from_slice(&[Metres(0), Metres(100)]);
+    plan.lengths[..circuits].fill(Metres(200));
+    for (number, route) in (0..count).zip(&mut plan.routes) {
+        *route = Route {
+            entry: circuit(number),
+            approach: circuit(number),
+            beyond: circuit(number + 2),
+            length: 1,
+            drive: Ticks(20),
+            release: Ticks(30),
+            stay: Ticks(10),
+            speed: SpeedCode(1),
+            ..Route::NONE
+        };
+        route.path[0].circuits = circuit(number + 1);
+    }
+    let layout = Box::new(Station::new(plan).expect("it keeps every rule"));
+
+    let (lengths, braking) = ([200; ATC_MAX_CIRCUITS], [0, 100]);
+    let elements: Vec<_> =
+        (1..=count).map(|number| atc_element { circuits: 1 << number, ..atc_element::default() }).collect();
+    let one = |number: u8| atc_route {
+        entry: 1 << number,
+        approach: 1 << number,
+        beyond: 4 << number,
+        path_first: number.into(),
+        path_length: 1,
+        drive_cycles: 20,
+        release_cycles: 30,
+        stay_cycles: 10,
+        heading: ATC_HEADING_RIGHT,
+        speed_code: 1,
+        ..atc_route::default()
+    };
+    let routes: Vec<_> = (0..count).map(one).collect();
+    let config = atc_interlocking_config {
+        lengths_m: lengths.as_ptr(),
+        line_codes: ptr::null(),
+        detectors: ptr::null(),
+        segments: ptr::null(),
+        segment_circuits: ptr::null(),
+        routes: routes.as_ptr(),
+        elements: elements.as_ptr(),
+        braking_m: braking.as_ptr(),
+        circuit_count: circuits,
+        point_count: 0,
+        segment_count: 0,
+        segment_circuit_count: 0,
+        route_count: routes.len(),
+        element_count: elements.len(),
+        code_count: 2,
+        turn_cycles: 1,
+        start_cycles: 0,
+        residual_cycles: 0,
+        standstill_cycles: 0,
+        clear_cycles: 2,
+        settle_cycles: 0,
+        loss_cycles: 0,
+    };
+    let all = u64::MAX >> (ATC_MAX_CIRCUITS - circuits);
+    let occupied = |number: u64| 1_u64 << (number / 16 % u64::from(count));
+    // Every route is set in its turn, behind the train.
+    let asked = |number: u64| narrow(number % u64::from(count));
     let input = |number| atc_interlocking_input {
         occupied: occupied(number),
-        unblock: circuits,
-        lift: circuits,
+        unblock: all,
+        lift: all,
+        request: ATC_REQUEST_SET,
+        number: asked(number),
         ..atc_interlocking_input::default()
     };
     let start = starts!(atc_interlocking_start, atc_interlocking, config);
     let c = through::<atc_interlocking, _, atc_interlocking_output>(start, border::atc_interlocking_step, input);
-    let layout = compiled.layout();
-    let all = CircuitSet::from_bits(circuits);
-    row(
-        &format!("interlocking, {name}"),
-        c,
-        beside(&Combined(&layout), |number| Input {
-            occupied: CircuitSet::from_bits(occupied(number)),
-            detected: Positions::NONE,
-            request: None,
-            orders: Orders { unblock: all, lift: all, ..Orders::default() },
-            consent: SegmentSet::EMPTY,
-        }),
-    );
+    let all = CircuitSet::from_bits(all);
+    let read = |number| Input {
+        occupied: CircuitSet::from_bits(occupied(number)),
+        detected: Positions::NONE,
+        request: RouteId::new(asked(number)).map(Request::Set),
+        orders: Orders { unblock: all, lift: all, ..Orders::default() },
+        consent: SegmentSet::EMPTY,
+    };
+    row(&format!("interlocking, {count} routes"), c, beside(&Combined(&layout), read));
 }
