@@ -1,4 +1,4 @@
-/* A train hears 45 and 90 km/h for a second and then nothing: what is displayed, and the brake that follows at 50 km/h. */
+/* A train at 50 km/h hears 45 and 90 km/h for a second and then nothing: what is displayed, and the brake. */
 #include <stdio.h>
 
 #include "atc.h"

@@ -263,7 +263,8 @@
 
 /// What became of a call. Every function of this library returns one, and 0 is the only success.
 ///
-/// A call that does not return `ATC_STATUS_OK` has changed no state, and has written the safe output wherever an output can
+/// A call that does not return `ATC_STATUS_OK` has changed no state, and has written the safe output wherever an
+/// output can
 /// be written. `atc_status_text` says in a sentence what is wrong and what would be right.
 typedef enum atc_status {
   /// The call was carried out.
@@ -442,7 +443,8 @@ typedef struct atc_aspect_config {
   uint32_t shortened_operate_ms;
   /// How many aspects the line has: 1 to 16.
   uint32_t aspect_count;
-  /// The permitted speeds that the aspects name, in tenths of km/h, strictly rising. From `aspect_count` on not looked at.
+  /// The permitted speeds that the aspects name, in tenths of km/h, strictly rising. From `aspect_count` on not
+  /// looked at.
   uint16_t speeds[16];
 } atc_aspect_config;
 
@@ -496,7 +498,8 @@ typedef struct atc_supervision_input {
 
 /// One logic cycle's output. The safe one is the emergency brake.
 typedef struct atc_supervision_output {
-  /// The brake command from the end of the cycle on: `ATC_BRAKE_RELEASE`, `ATC_BRAKE_SERVICE` or `ATC_BRAKE_EMERGENCY`.
+  /// The brake command from the end of the cycle on: `ATC_BRAKE_RELEASE`, `ATC_BRAKE_SERVICE` or
+  /// `ATC_BRAKE_EMERGENCY`.
   uint32_t brake;
 } atc_supervision_output;
 
@@ -760,7 +763,8 @@ typedef struct atc_route {
   uint8_t cab_signalled;
 } atc_route;
 
-/// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an entry
+/// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an
+/// entry
 /// may be null.
 typedef struct atc_interlocking_config {
   /// The length of each circuit in metres: `circuit_count` entries.
@@ -894,7 +898,8 @@ extern "C" {
 /// The version of this library's border: `ATC_VERSION` of its header. A program compares the two once.
 uint32_t atc_version(void);
 
-/// What a status means, as a sentence in ASCII that ends with a zero byte. Any number may be asked for. The text is never
+/// What a status means, as a sentence in ASCII that ends with a zero byte. Any number may be asked for. The text is
+/// never
 /// freed.
 const char *atc_status_text(int32_t status);
 
@@ -904,17 +909,17 @@ size_t atc_aspect_size(void);
 /// The alignment of an aspect acceptance in bytes: `ATC_ASPECT_ALIGN`.
 size_t atc_aspect_align(void);
 
-/// Starts an aspect acceptance in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts an aspect acceptance in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
 /// Of the caller:
 /// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
-enum atc_status atc_aspect_start(void *state,
-                                 size_t size,
-                                 const struct atc_aspect_config *config);
+enum atc_status atc_aspect_start(void *state, size_t size, const struct atc_aspect_config *config);
 
-/// One logic cycle of an aspect acceptance: reads the aspects that were heard, and puts out the aspect that is displayed.
+/// One logic cycle of an aspect acceptance: reads the aspects that were heard, and puts out the aspect that is
+/// displayed.
 ///
 /// If anything is wrong, the state is as before and the output is the safe one.
 ///
@@ -930,15 +935,14 @@ size_t atc_supervision_size(void);
 /// The alignment of a speed supervision in bytes: `ATC_SUPERVISION_ALIGN`.
 size_t atc_supervision_align(void);
 
-/// Starts a speed supervision in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a speed supervision in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
 /// Of the caller:
 /// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
-enum atc_status atc_supervision_start(void *state,
-                                      size_t size,
-                                      const struct atc_supervision_config *config);
+enum atc_status atc_supervision_start(void *state, size_t size, const struct atc_supervision_config *config);
 
 /// One logic cycle of a speed supervision: reads the measured and the permitted speed, and puts out the brake command.
 ///
@@ -956,15 +960,14 @@ size_t atc_block_size(void);
 /// The alignment of a block in bytes: `ATC_BLOCK_ALIGN`.
 size_t atc_block_align(void);
 
-/// Starts a block in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a block in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these
+/// parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
 /// Of the caller:
 /// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
-enum atc_status atc_block_start(void *state,
-                                size_t size,
-                                const struct atc_block_config *config);
+enum atc_status atc_block_start(void *state, size_t size, const struct atc_block_config *config);
 
 /// One logic cycle of a block: reads what its checks and detectors say, and puts out what is occupied.
 ///
@@ -982,15 +985,14 @@ size_t atc_permitted_size(void);
 /// The alignment of a permitted speed in bytes: `ATC_PERMITTED_ALIGN`.
 size_t atc_permitted_align(void);
 
-/// Starts a permitted speed in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a permitted speed in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
 /// Of the caller:
 /// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
-enum atc_status atc_permitted_start(void *state,
-                                    size_t size,
-                                    const struct atc_permitted_config *config);
+enum atc_status atc_permitted_start(void *state, size_t size, const struct atc_permitted_config *config);
 
 /// One logic cycle of a permitted speed: reads what is heard and measured, and puts out the permitted speed.
 ///
@@ -1002,13 +1004,13 @@ enum atc_status atc_permitted_step(struct atc_permitted *state,
                                    const struct atc_permitted_input *input,
                                    struct atc_permitted_output *output);
 
-/// The braking pattern: the highest speed from which a train stops in a distance. It needs no state. If anything is wrong, the
+/// The braking pattern: the highest speed from which a train stops in a distance. It needs no state. If anything is
+/// wrong, the
 /// output is 0.
 ///
 /// Of the caller:
 /// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
-enum atc_status atc_pattern(const struct atc_pattern_input *input,
-                            struct atc_pattern_output *output);
+enum atc_status atc_pattern(const struct atc_pattern_input *input, struct atc_pattern_output *output);
 
 /// The frame of a telegram. It needs no state. If anything is wrong, the frame is 106 zeros, which are no frame.
 ///
@@ -1034,7 +1036,8 @@ size_t atc_deframer_align(void);
 /// `state` leads to `size` bytes of the caller's. Nobody else uses them during the call.
 enum atc_status atc_deframer_start(void *state, size_t size);
 
-/// One bit time of a deframer: reads what the receiver decided, and puts out the telegram whose last bit this one is, or none.
+/// One bit time of a deframer: reads what the receiver decided, and puts out the telegram whose last bit this one
+/// is, or none.
 ///
 /// If anything is wrong, the state is as before and the telegram is none.
 ///
@@ -1056,19 +1059,21 @@ size_t atc_interlocking_align(void);
 /// The pointers lead to what they say, and each array of the configuration has as many entries as it says.
 enum atc_status atc_interlocking_check_plan(const struct atc_interlocking_config *config, struct atc_place *place);
 
-/// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on this plan.
+/// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
+/// this plan.
 ///
-/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_interlocking_check_plan` says where
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_interlocking_check_plan`
+/// says where
 /// a plan is wrong.
 ///
 /// Of the caller:
-/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many entries as it
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
+/// entries as it
 /// says. Nobody else uses them during the call.
-enum atc_status atc_interlocking_start(void *state,
-                                       size_t size,
-                                       const struct atc_interlocking_config *config);
+enum atc_status atc_interlocking_start(void *state, size_t size, const struct atc_interlocking_config *config);
 
-/// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points and telegrams.
+/// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points
+/// and telegrams.
 ///
 /// If anything is wrong, the state is as before and the output is the safe one.
 ///

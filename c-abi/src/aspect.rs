@@ -40,7 +40,8 @@ pub struct atc_aspect_config {
     pub shortened_operate_ms: u32,
     /// How many aspects the line has: 1 to 16.
     pub aspect_count: u32,
-    /// The permitted speeds that the aspects name, in tenths of km/h, strictly rising. From `aspect_count` on not looked at.
+    /// The permitted speeds that the aspects name, in tenths of km/h, strictly rising. From `aspect_count` on not
+    /// looked at.
     pub speeds: [u16; 16],
 }
 

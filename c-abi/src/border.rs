@@ -1,7 +1,9 @@
 //! The border: every function of the header, and the only place where a pointer of C is followed.
 //!
-//! What can be told of a pointer is checked: null, alignment, the size that goes with it, overlap. That it leads to memory of
-//! the caller's, which nobody else uses during the call, cannot be told from here: that is the caller's part of each function.
+//! What can be told of a pointer is checked: null, alignment, the size that goes with it, overlap. That it leads to
+//! memory of
+//! the caller's, which nobody else uses during the call, cannot be told from here: that is the caller's part of each
+//! function.
 #![allow(unsafe_code)]
 
 use core::ffi::{c_char, c_void};
@@ -83,7 +85,8 @@ unsafe fn array<'a, T: Plain>(pointer: *const T, count: usize, most: usize) -> R
         return Ok(&[]);
     }
     usable(pointer)?;
-    // SAFETY: not null, aligned, at most 1024 entries, by the contract of this function the caller's; any bytes are a `T`.
+    // SAFETY: not null, aligned, at most 1024 entries, by the contract of this function the caller's; any bytes are
+    // a `T`.
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
 
@@ -119,7 +122,8 @@ unsafe fn ask<I: Plain, O: Plain>(
 /// Starts a machine of type `T` in the caller's memory. If that fails, what was there is no state any more.
 ///
 /// # Safety
-/// A pointer that is not null and is aligned leads to `size` bytes of the caller's, which nobody else uses during the call.
+/// A pointer that is not null and is aligned leads to `size` bytes of the caller's, which nobody else uses during
+/// the call.
 unsafe fn start<M: Machine, T>(
     state: *mut c_void,
     size: usize,
@@ -133,7 +137,8 @@ unsafe fn start<M: Machine, T>(
     }
     // Before the state's bytes are borrowed: the arrays of a configuration may lie among them.
     let parameters = parameters();
-    // SAFETY: not null, long enough, by the contract of this function the caller's; C's memory has a value in every byte.
+    // SAFETY: not null, long enough, by the contract of this function the caller's; C's memory has a value in every
+    // byte.
     let bytes = unsafe { slice::from_raw_parts_mut(state.cast::<u8>(), size_of::<T>()) };
     match parameters {
         Ok(parameters) => {
@@ -150,7 +155,8 @@ unsafe fn start<M: Machine, T>(
 /// One logic cycle of the machine in the state.
 ///
 /// # Safety
-/// Pointers that are not null and are aligned lead to a `T`, an input and an output of the caller's, which nobody else uses
+/// Pointers that are not null and are aligned lead to a `T`, an input and an output of the caller's, which nobody
+/// else uses
 /// during the call.
 unsafe fn step<M: Machine, T>(state: *mut T, input: *const M::Input, output: *mut M::Output) -> atc_status
 where
@@ -209,7 +215,8 @@ pub extern "C" fn atc_version() -> u32 {
     ATC_VERSION
 }
 
-/// What a status means, as a sentence in ASCII that ends with a zero byte. Any number may be asked for. The text is never
+/// What a status means, as a sentence in ASCII that ends with a zero byte. Any number may be asked for. The text is
+/// never
 /// freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn atc_status_text(status: i32) -> *const c_char {
@@ -228,7 +235,8 @@ pub extern "C" fn atc_aspect_align() -> usize {
     align_of::<atc_aspect>()
 }
 
-/// Starts an aspect acceptance in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts an aspect acceptance in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
@@ -244,7 +252,8 @@ pub unsafe extern "C" fn atc_aspect_start(
     unsafe { start::<Aspect, atc_aspect>(state, size, || aspect::parameters(&read(config)?)) }
 }
 
-/// One logic cycle of an aspect acceptance: reads the aspects that were heard, and puts out the aspect that is displayed.
+/// One logic cycle of an aspect acceptance: reads the aspects that were heard, and puts out the aspect that is
+/// displayed.
 ///
 /// If anything is wrong, the state is as before and the output is the safe one.
 ///
@@ -272,7 +281,8 @@ pub extern "C" fn atc_supervision_align() -> usize {
     align_of::<atc_supervision>()
 }
 
-/// Starts a speed supervision in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a speed supervision in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
@@ -316,7 +326,8 @@ pub extern "C" fn atc_block_align() -> usize {
     align_of::<atc_block>()
 }
 
-/// Starts a block in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a block in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these
+/// parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
@@ -360,7 +371,8 @@ pub extern "C" fn atc_permitted_align() -> usize {
     align_of::<atc_permitted>()
 }
 
-/// Starts a permitted speed in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these parameters.
+/// Starts a permitted speed in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
 ///
 /// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
 ///
@@ -392,7 +404,8 @@ pub unsafe extern "C" fn atc_permitted_step(
     unsafe { step::<Permitting, _>(state, input, output) }
 }
 
-/// The braking pattern: the highest speed from which a train stops in a distance. It needs no state. If anything is wrong, the
+/// The braking pattern: the highest speed from which a train stops in a distance. It needs no state. If anything is
+/// wrong, the
 /// output is 0.
 ///
 /// # Safety
@@ -445,7 +458,8 @@ pub unsafe extern "C" fn atc_deframer_start(state: *mut c_void, size: usize) -> 
     unsafe { start::<Deframing, atc_deframer>(state, size, || Ok(())) }
 }
 
-/// One bit time of a deframer: reads what the receiver decided, and puts out the telegram whose last bit this one is, or none.
+/// One bit time of a deframer: reads what the receiver decided, and puts out the telegram whose last bit this one
+/// is, or none.
 ///
 /// If anything is wrong, the state is as before and the telegram is none.
 ///
@@ -492,13 +506,16 @@ pub unsafe extern "C" fn atc_interlocking_check_plan(
     status
 }
 
-/// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on this plan.
+/// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
+/// this plan.
 ///
-/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_interlocking_check_plan` says where
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_interlocking_check_plan`
+/// says where
 /// a plan is wrong.
 ///
 /// # Safety
-/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many entries as it
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
+/// entries as it
 /// says. Nobody else uses them during the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn atc_interlocking_start(
@@ -510,7 +527,8 @@ pub unsafe extern "C" fn atc_interlocking_start(
     unsafe { start::<Interlocked, atc_interlocking>(state, size, || plan(config).map_err(|(status, _)| status)) }
 }
 
-/// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points and telegrams.
+/// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points
+/// and telegrams.
 ///
 /// If anything is wrong, the state is as before and the output is the safe one.
 ///

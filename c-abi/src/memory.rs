@@ -86,7 +86,8 @@ pub(crate) fn step<M: Machine>(memory: &mut [u8], input: &M::Input) -> Result<M:
 /// Reads what is in `memory`.
 ///
 /// # Errors
-/// [`atc_status::NotStarted`] if no state of this machine was put there, [`atc_status::Damaged`] if it has changed since.
+/// [`atc_status::NotStarted`] if no state of this machine was put there, [`atc_status::Damaged`] if it has changed
+/// since.
 pub(crate) fn load<M: Machine>(memory: &[u8]) -> Result<(M::Parameters, M::State), atc_status> {
     let (header, rest) = memory.split_first_chunk::<HEADER>().ok_or(atc_status::TooSmall)?;
     let mut header = Reader(header);
@@ -113,7 +114,8 @@ fn word(bytes: &[u8]) -> u64 {
     u64::from_le_bytes(bytes.try_into().unwrap_or_default())
 }
 
-/// A check word over `bytes`, a multiple of 8. Each round is one-to-one in what is read and in what came before: a change
+/// A check word over `bytes`, a multiple of 8. Each round is one-to-one in what is read and in what came before: a
+/// change
 /// within one word of 8 bytes always shows. Any other change is overlooked once in 2^64.
 fn check(seed: u64, bytes: &[u8]) -> u64 {
     bytes
@@ -122,7 +124,8 @@ fn check(seed: u64, bytes: &[u8]) -> u64 {
         .fold(seed, |sum, word| (sum ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29))
 }
 
-/// Writes numbers one after the other, the lowest byte first. What does not fit is left out: then the state is not read back,
+/// Writes numbers one after the other, the lowest byte first. What does not fit is left out: then the state is not
+/// read back,
 /// and a test of every size shows it.
 pub(crate) struct Writer<'a>(pub(crate) &'a mut [u8]);
 

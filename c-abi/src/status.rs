@@ -4,7 +4,8 @@ use core::ffi::CStr;
 
 /// What became of a call. Every function of this library returns one, and 0 is the only success.
 ///
-/// A call that does not return `ATC_STATUS_OK` has changed no state, and has written the safe output wherever an output can
+/// A call that does not return `ATC_STATUS_OK` has changed no state, and has written the safe output wherever an
+/// output can
 /// be written. `atc_status_text` says in a sentence what is wrong and what would be right.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -54,7 +54,8 @@ pub struct atc_supervision_input {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct atc_supervision_output {
-    /// The brake command from the end of the cycle on: `ATC_BRAKE_RELEASE`, `ATC_BRAKE_SERVICE` or `ATC_BRAKE_EMERGENCY`.
+    /// The brake command from the end of the cycle on: `ATC_BRAKE_RELEASE`, `ATC_BRAKE_SERVICE` or
+    /// `ATC_BRAKE_EMERGENCY`.
     pub brake: u32,
 }
 

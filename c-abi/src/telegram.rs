@@ -1,4 +1,5 @@
-//! Telegrams behind the border: [`atc_kernel::telegram`]. Frames from telegrams, telegrams from frames, and telegrams found in a
+//! Telegrams behind the border: [`atc_kernel::telegram`]. Frames from telegrams, telegrams from frames, and
+//! telegrams found in a
 //! stream of bits.
 
 use atc_kernel::aspect::AspectId;

@@ -13,7 +13,8 @@ use crate::memory::{Reader, Writer};
 
 type KernelPlan = atc_kernel::interlocking::Plan<64, 16, 32, 8>;
 
-/// The bytes of a plan: 64 routes of 324, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times and counts;
+/// The bytes of a plan: 64 routes of 324, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times
+/// and counts;
 /// 1 to fill.
 pub(super) const PARAMETERS: usize = 22328;
 

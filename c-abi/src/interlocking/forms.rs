@@ -183,7 +183,8 @@ pub struct atc_segment {
     pub shared: u8,
 }
 
-/// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an entry
+/// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an
+/// entry
 /// may be null.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,7 @@
-//! The border beside the kernel itself, without the oracle: configurations and inputs drawn from the limits of their numbers,
-//! one below and one above. What the kernel's constructors refuse is refused; what they take says the same in every step.
+//! The border beside the kernel itself, without the oracle: configurations and inputs drawn from the limits of their
+//! numbers,
+//! one below and one above. What the kernel's constructors refuse is refused; what they take says the same in every
+//! step.
 
 use std::mem::MaybeUninit;
 use std::ptr;
@@ -326,20 +328,20 @@ fn sub(sub: atc_sub_telegram) -> Option<Sub> {
     })
 }
 
-fn permitted_input(draw: &mut Draw, counter: u8) -> atc_permitted_input {
+fn permitted_input(draw: &mut Draw, section: u16, counter: u8) -> atc_permitted_input {
     atc_permitted_input {
         line: draw.fit(&[0, 0, 0, 0, 1, 2]),
         to_exit_mm: draw.fit(&[0, 1000, 100_000, u32::MAX.into()]),
-        moved_mm: draw.fit(&[0, 500, u32::MAX.into()]),
+        moved_mm: if draw.0.one_in(32) { u32::MAX } else { draw.fit(&[0, 500]) },
         main_data: atc_main_telegram {
-            section: draw.fit(&[7, 7, 7, 8]),
+            section,
             beyond_exit_m: draw.fit(&[0, 400, 65535]),
             counter,
             route_open: (!draw.0.one_in(16)).into(),
             speed_rank: draw.fit(&[3, 3, 14]),
         },
         sub_data: atc_sub_telegram {
-            section: draw.fit(&[7, 7, 8]),
+            section,
             length_m: draw.fit(&[1, 250, 250]),
             counter,
             gradient_permille: draw.fit(&[-128, 0, 127]),
@@ -348,8 +350,9 @@ fn permitted_input(draw: &mut Draw, counter: u8) -> atc_permitted_input {
         },
         analog: draw.fit(&[0, 450, 65535]),
         has_analog: draw.flag().into(),
-        has_main: draw.flag().into(),
-        has_sub: draw.flag().into(),
+        has_main: (!draw.0.one_in(4)).into(),
+        // Rarely: at a border the target of the section behind counts until one comes.
+        has_sub: draw.0.one_in(8).into(),
         has_to_exit: draw.flag().into(),
     }
 }
@@ -363,10 +366,13 @@ fn permitted_speed() {
         assert_eq!(started.is_ok(), kernel.is_some(), "{config:?}");
         let (Ok(mut state), Some(machine)) = (started, kernel) else { return false };
         let mut before = machine.initial();
-        let mut counter = 0_u8;
+        let (mut section, mut counter) = (7, 0_u8);
         for _ in 0..STEPS {
             counter = counter.wrapping_add(draw.fit(&[1, 1, 3]));
-            let input = permitted_input(draw, counter);
+            if draw.0.one_in(10) {
+                section = draw.fit(&[7, 8]);
+            }
+            let input = permitted_input(draw, section, counter);
             let said = call::step(border::atc_permitted_step, &mut *state, &input);
             let line = match input.line {
                 0 => Some(None),

@@ -1,4 +1,5 @@
-//! Calls that no program should make: whatever is wrong in memory that is really there, the call says so, and nothing else
+//! Calls that no program should make: whatever is wrong in memory that is really there, the call says so, and
+//! nothing else
 //! changes. The seed is fixed; `ATC_MALFORMED_CALLS` sets the number of calls.
 
 use std::collections::BTreeMap;
@@ -129,7 +130,8 @@ impl<S: Copy, C: Copy, I: Copy, O: Copy + PartialEq + Debug> Target<S, C, I, O> 
         output.get()
     }
 
-    /// A start with something wrong in it, or not, where a state may have been before; what it leaves is a new state or none.
+    /// A start with something wrong in it, or not, where a state may have been before; what it leaves is a new state
+    /// or none.
     fn attack_start(
         &self,
         random: &mut Random,

@@ -1,4 +1,5 @@
-//! The examples in C: compiled, linked with the static library, run, and held against what the oracle says of the same steps;
+//! The examples in C: compiled, linked with the static library, run, and held against what the oracle says of the
+//! same steps;
 //! and run under valgrind.
 
 use std::ffi::OsString;

@@ -1,4 +1,5 @@
-//! The interlocking behind the border beside the kernel's, on the walks of `oracle conform` and on plans that break a rule.
+//! The interlocking behind the border beside the kernel's, on the walks of `oracle conform` and on plans that break
+//! a rule.
 
 use atc_c::atc_status;
 use atc_c::border;

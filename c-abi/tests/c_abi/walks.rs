@@ -1,4 +1,5 @@
-//! The walks of `oracle conform`, which drive every timer to its limits, over the C border: the same said of every step.
+//! The walks of `oracle conform`, which drive every timer to its limits, over the C border: the same said of every
+//! step.
 
 use atc_oracle::conform::case::Expected;
 use atc_oracle::conform::walk::{Sizes, case};

@@ -1,4 +1,5 @@
-//! The protocol of `oracle serve`, spoken by the C border: so that what the oracle says of a step can be held against it.
+//! The protocol of `oracle serve`, spoken by the C border: so that what the oracle says of a step can be held
+//! against it.
 
 use atc_c::aspect::{atc_aspect, atc_aspect_config, atc_aspect_input};
 use atc_c::atc_status;
