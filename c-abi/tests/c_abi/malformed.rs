@@ -415,10 +415,7 @@ fn calls_that_no_program_should_make() {
 }
 
 /// A deframer has no configuration.
-unsafe extern "C" fn start_deframer(state: *mut core::ffi::c_void, size: usize, config: *const u8) -> atc_status {
-    if config.is_null() {
-        return atc_status::Null;
-    }
+unsafe extern "C" fn start_deframer(state: *mut core::ffi::c_void, size: usize, _: *const u8) -> atc_status {
     // SAFETY: that of this function.
     unsafe { border::atc_deframer_start(state, size) }
 }
