@@ -1,0 +1,545 @@
+//! The border: every function of the header, and the only place where a pointer of C is followed.
+//!
+//! What can be told of a pointer is checked: null, alignment, the size that goes with it, overlap. That it leads to
+//! memory of
+//! the caller's, which nobody else uses during the call, cannot be told from here: that is the caller's part of each
+//! function.
+#![allow(unsafe_code)]
+
+use core::ffi::{c_char, c_void};
+use core::slice;
+
+use crate::aspect::{self, Aspect, atc_aspect, atc_aspect_config, atc_aspect_input, atc_aspect_output};
+use crate::atc_status;
+use crate::block::{self, Counted, atc_block, atc_block_config, atc_block_input, atc_block_output};
+use crate::interlocking::{
+    self as ilk, Arrays, Fault, Interlocked, atc_element, atc_interlocking, atc_interlocking_config,
+    atc_interlocking_input, atc_interlocking_output, atc_place, atc_route, atc_segment,
+};
+use crate::memory::{self, ATC_VERSION, Machine};
+use crate::pattern::{self, atc_pattern_input, atc_pattern_output};
+use crate::permitted::{
+    self, Permitting, atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output,
+};
+use crate::supervision::{
+    self, Supervised, atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output,
+};
+use crate::telegram::{self, Deframing, atc_deframer, atc_deframer_input, atc_frame, atc_telegram};
+
+/// Plain data of C.
+///
+/// # Safety
+/// Whatever bytes stand there are a value: numbers, and pointers that nobody follows unchecked.
+unsafe trait Plain: Copy {}
+
+macro_rules! plain {
+    ($($data:ty)*) => {
+        // SAFETY: a number, or a structure of C that has numbers, arrays of numbers and raw pointers only.
+        $(unsafe impl Plain for $data {})*
+    };
+}
+
+plain!(u8 u16 u64 atc_aspect_config atc_aspect_input atc_aspect_output);
+plain!(atc_supervision_config atc_supervision_input atc_supervision_output);
+plain!(atc_block_config atc_block_input atc_block_output atc_pattern_input atc_pattern_output);
+plain!(atc_permitted_config atc_permitted_input atc_permitted_output atc_telegram atc_frame atc_deframer_input);
+plain!(atc_element atc_route atc_segment atc_place);
+plain!(atc_interlocking_config atc_interlocking_input atc_interlocking_output);
+
+/// What can be told of a pointer.
+fn usable<T>(pointer: *const T) -> Result<(), atc_status> {
+    match (pointer.is_null(), pointer.is_aligned()) {
+        (true, _) => Err(atc_status::Null),
+        (false, false) => Err(atc_status::Misaligned),
+        (false, true) => Ok(()),
+    }
+}
+
+/// Whether two places have no byte in common.
+fn apart<T, U>(one: *const T, other: *const U) -> Result<(), atc_status> {
+    let (first, second) = (one.addr(), other.addr());
+    let before = first.checked_add(size_of::<T>()).is_some_and(|end| end <= second);
+    let after = second.checked_add(size_of::<U>()).is_some_and(|end| end <= first);
+    if before || after { Ok(()) } else { Err(atc_status::Overlap) }
+}
+
+/// Reads what C gives.
+///
+/// # Safety
+/// A pointer that is not null and is aligned leads to a `T` of the caller's.
+unsafe fn read<T: Plain>(pointer: *const T) -> Result<T, atc_status> {
+    usable(pointer)?;
+    // SAFETY: not null, aligned, and by the contract of this function the caller's; any bytes are a `T`.
+    Ok(unsafe { pointer.read() })
+}
+
+/// An array of C with `count` entries, at most `most`. It may be null if it has none.
+///
+/// # Safety
+/// A pointer that is not null and is aligned leads to `count` entries of the caller's, which nobody writes during `'a`.
+unsafe fn array<'a, T: Plain>(pointer: *const T, count: usize, most: usize) -> Result<&'a [T], atc_status> {
+    if count > most {
+        return Err(atc_status::TooManyEntries);
+    }
+    if count == 0 {
+        return Ok(&[]);
+    }
+    usable(pointer)?;
+    // SAFETY: not null, aligned, at most 1024 entries, by the contract of this function the caller's; any bytes are
+    // a `T`.
+    Ok(unsafe { slice::from_raw_parts(pointer, count) })
+}
+
+/// Writes what was put out, or the safe output, and says what became of the call.
+///
+/// # Safety
+/// `output` was found usable, and leads to an `O` of the caller's.
+unsafe fn put<O: Plain>(output: *mut O, safe: O, result: Result<O, atc_status>) -> atc_status {
+    // SAFETY: by the contract of this function.
+    unsafe { output.write(result.unwrap_or(safe)) };
+    result.err().unwrap_or(atc_status::Ok)
+}
+
+/// A question and its answer, without a state.
+///
+/// # Safety
+/// Pointers that are not null and are aligned lead to an `I` and an `O` of the caller's.
+unsafe fn ask<I: Plain, O: Plain>(
+    input: *const I,
+    output: *mut O,
+    safe: O,
+    answer: impl Fn(&I) -> Result<O, atc_status>,
+) -> atc_status {
+    if let Err(status) = usable(output).and_then(|()| apart(output, input)) {
+        return status;
+    }
+    // SAFETY: by the contract of this function.
+    let result = unsafe { read(input) }.and_then(|input| answer(&input));
+    // SAFETY: found usable above.
+    unsafe { put(output, safe, result) }
+}
+
+/// Starts a machine of type `T` in the caller's memory. If that fails, what was there is no state any more.
+///
+/// # Safety
+/// A pointer that is not null and is aligned leads to `size` bytes of the caller's, which nobody else uses during
+/// the call.
+unsafe fn start<M: Machine, T>(
+    state: *mut c_void,
+    size: usize,
+    parameters: impl FnOnce() -> Result<M::Parameters, atc_status>,
+) -> atc_status {
+    if let Err(status) = usable(state.cast::<T>()) {
+        return status;
+    }
+    if size < size_of::<T>() {
+        return atc_status::TooSmall;
+    }
+    // Before the state's bytes are borrowed: the arrays of a configuration may lie among them.
+    let parameters = parameters();
+    // SAFETY: not null, long enough, by the contract of this function the caller's; C's memory has a value in every
+    // byte.
+    let bytes = unsafe { slice::from_raw_parts_mut(state.cast::<u8>(), size_of::<T>()) };
+    match parameters {
+        Ok(parameters) => {
+            memory::start::<M>(bytes, &parameters);
+            atc_status::Ok
+        }
+        Err(status) => {
+            memory::forget(bytes);
+            status
+        }
+    }
+}
+
+/// One logic cycle of the machine in the state.
+///
+/// # Safety
+/// Pointers that are not null and are aligned lead to a `T`, an input and an output of the caller's, which nobody
+/// else uses
+/// during the call.
+unsafe fn step<M: Machine, T>(state: *mut T, input: *const M::Input, output: *mut M::Output) -> atc_status
+where
+    M::Input: Plain,
+    M::Output: Plain,
+{
+    let output_alone = usable(output).and_then(|()| apart(output, state)).and_then(|()| apart(output, input));
+    if let Err(status) = output_alone {
+        return status;
+    }
+    let stepped = usable(state).and_then(|()| usable(input)).and_then(|()| apart(state, input)).and_then(|()| {
+        // SAFETY: not null, aligned, apart from the state, by the contract of this function the caller's.
+        let input = unsafe { read(input)? };
+        // SAFETY: not null, by the contract of this function the caller's; C's memory has a value in every byte.
+        let bytes = unsafe { slice::from_raw_parts_mut(state.cast::<u8>(), size_of::<T>()) };
+        memory::step::<M>(bytes, &input)
+    });
+    // SAFETY: found usable above.
+    unsafe { put(output, M::SAFE, stepped) }
+}
+
+/// The plan of an interlocking.
+///
+/// # Safety
+/// Pointers that are not null and are aligned lead to a configuration and to its arrays, as long as it says.
+unsafe fn plan(config: *const atc_interlocking_config) -> Result<ilk::Plan, Fault> {
+    let gather = || {
+        // SAFETY: by the contract of this function, which is that of each of these too.
+        unsafe {
+            let given = read(config)?;
+            let codes = if given.line_codes.is_null() { 0 } else { given.circuit_count };
+            let arrays = Arrays {
+                lengths_m: array(given.lengths_m, given.circuit_count, ilk::ATC_MAX_CIRCUITS)?,
+                line_codes: array(given.line_codes, codes, ilk::ATC_MAX_CIRCUITS)?,
+                detectors: array(given.detectors, given.point_count, ilk::ATC_MAX_POINTS)?,
+                segments: array(given.segments, given.segment_count, ilk::ATC_MAX_SEGMENTS)?,
+                segment_circuits: array(
+                    given.segment_circuits,
+                    given.segment_circuit_count,
+                    ilk::ATC_MAX_SEGMENT_CIRCUITS,
+                )?,
+                routes: array(given.routes, given.route_count, ilk::ATC_MAX_ROUTES)?,
+                elements: array(given.elements, given.element_count, ilk::ATC_MAX_ELEMENTS)?,
+                braking_m: array(given.braking_m, given.code_count, ilk::ATC_MAX_CODES)?,
+            };
+            Ok((given, arrays))
+        }
+    };
+    let (given, arrays) = gather().map_err(|status| (status, atc_place::default()))?;
+    ilk::layout(&given, &arrays)
+}
+
+/// The version of this library's border: `ATC_VERSION` of its header. A program compares the two once.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_version() -> u32 {
+    ATC_VERSION
+}
+
+/// What a status means, as a sentence in ASCII that ends with a zero byte. Any number may be asked for. The text is
+/// never
+/// freed.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_status_text(status: i32) -> *const c_char {
+    atc_status::text(status).as_ptr()
+}
+
+/// The size of an aspect acceptance in bytes: `ATC_ASPECT_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_aspect_size() -> usize {
+    size_of::<atc_aspect>()
+}
+
+/// The alignment of an aspect acceptance in bytes: `ATC_ASPECT_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_aspect_align() -> usize {
+    align_of::<atc_aspect>()
+}
+
+/// Starts an aspect acceptance in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_aspect_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_aspect_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Aspect, atc_aspect>(state, size, || aspect::parameters(&read(config)?)) }
+}
+
+/// One logic cycle of an aspect acceptance: reads the aspects that were heard, and puts out the aspect that is
+/// displayed.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_aspect_step(
+    state: *mut atc_aspect,
+    input: *const atc_aspect_input,
+    output: *mut atc_aspect_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Aspect, _>(state, input, output) }
+}
+
+/// The size of a speed supervision in bytes: `ATC_SUPERVISION_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_supervision_size() -> usize {
+    size_of::<atc_supervision>()
+}
+
+/// The alignment of a speed supervision in bytes: `ATC_SUPERVISION_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_supervision_align() -> usize {
+    align_of::<atc_supervision>()
+}
+
+/// Starts a speed supervision in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_supervision_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_supervision_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Supervised, atc_supervision>(state, size, || supervision::parameters(&read(config)?)) }
+}
+
+/// One logic cycle of a speed supervision: reads the measured and the permitted speed, and puts out the brake command.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_supervision_step(
+    state: *mut atc_supervision,
+    input: *const atc_supervision_input,
+    output: *mut atc_supervision_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Supervised, _>(state, input, output) }
+}
+
+/// The size of a block in bytes: `ATC_BLOCK_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_block_size() -> usize {
+    size_of::<atc_block>()
+}
+
+/// The alignment of a block in bytes: `ATC_BLOCK_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_block_align() -> usize {
+    align_of::<atc_block>()
+}
+
+/// Starts a block in the `size` bytes at `state`, which must be aligned: in its most restrictive state, with these
+/// parameters.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_block_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_block_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Counted, atc_block>(state, size, || block::parameters(&read(config)?)) }
+}
+
+/// One logic cycle of a block: reads what its checks and detectors say, and puts out what is occupied.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_block_step(
+    state: *mut atc_block,
+    input: *const atc_block_input,
+    output: *mut atc_block_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Counted, _>(state, input, output) }
+}
+
+/// The size of a permitted speed in bytes: `ATC_PERMITTED_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_permitted_size() -> usize {
+    size_of::<atc_permitted>()
+}
+
+/// The alignment of a permitted speed in bytes: `ATC_PERMITTED_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_permitted_align() -> usize {
+    align_of::<atc_permitted>()
+}
+
+/// Starts a permitted speed in the `size` bytes at `state`, which must be aligned: in its most restrictive state,
+/// with these parameters.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_permitted_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_permitted_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Permitting, atc_permitted>(state, size, || permitted::parameters(&read(config)?)) }
+}
+
+/// One logic cycle of a permitted speed: reads what is heard and measured, and puts out the permitted speed.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_permitted_step(
+    state: *mut atc_permitted,
+    input: *const atc_permitted_input,
+    output: *mut atc_permitted_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Permitting, _>(state, input, output) }
+}
+
+/// The braking pattern: the highest speed from which a train stops in a distance. It needs no state. If anything is
+/// wrong, the
+/// output is 0.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_pattern(input: *const atc_pattern_input, output: *mut atc_pattern_output) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { ask(input, output, pattern::SAFE, pattern::answer) }
+}
+
+/// The frame of a telegram. It needs no state. If anything is wrong, the frame is 106 zeros, which are no frame.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_telegram_encode(telegram: *const atc_telegram, frame: *mut atc_frame) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { ask(telegram, frame, telegram::NO_FRAME, telegram::encode) }
+}
+
+/// The telegram of a frame. It needs no state. If the bits are no frame, the status says why, and the telegram is none.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_telegram_decode(frame: *const atc_frame, telegram: *mut atc_telegram) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { ask(frame, telegram, telegram::NONE, telegram::decode) }
+}
+
+/// The size of a deframer in bytes: `ATC_DEFRAMER_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_deframer_size() -> usize {
+    size_of::<atc_deframer>()
+}
+
+/// The alignment of a deframer in bytes: `ATC_DEFRAMER_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_deframer_align() -> usize {
+    align_of::<atc_deframer>()
+}
+
+/// Starts a deframer in the `size` bytes at `state`, which must be aligned: with no bit heard. It has no parameters.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_deframer_start(state: *mut c_void, size: usize) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Deframing, atc_deframer>(state, size, || Ok(())) }
+}
+
+/// One bit time of a deframer: reads what the receiver decided, and puts out the telegram whose last bit this one
+/// is, or none.
+///
+/// If anything is wrong, the state is as before and the telegram is none.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_deframer_step(
+    state: *mut atc_deframer,
+    input: *const atc_deframer_input,
+    telegram: *mut atc_telegram,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Deframing, _>(state, input, telegram) }
+}
+
+/// The size of an interlocking in bytes: `ATC_INTERLOCKING_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_interlocking_size() -> usize {
+    size_of::<atc_interlocking>()
+}
+
+/// The alignment of an interlocking in bytes: `ATC_INTERLOCKING_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_interlocking_align() -> usize {
+    align_of::<atc_interlocking>()
+}
+
+/// Checks a plan without starting anything, and says where it breaks a rule. If it breaks none, the place is all zeros.
+///
+/// # Safety
+/// The pointers lead to what they say, and each array of the configuration has as many entries as it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_interlocking_check_plan(
+    config: *const atc_interlocking_config,
+    place: *mut atc_place,
+) -> atc_status {
+    if let Err(status) = usable(place).and_then(|()| apart(place, config)) {
+        return status;
+    }
+    // SAFETY: the caller keeps the contract.
+    let (status, found) = unsafe { plan(config) }.err().unwrap_or((atc_status::Ok, atc_place::default()));
+    // SAFETY: found usable above; the caller keeps the contract.
+    unsafe { place.write(found) };
+    status
+}
+
+/// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
+/// this plan.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_interlocking_check_plan`
+/// says where
+/// a plan is wrong.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
+/// entries as it
+/// says. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_interlocking_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_interlocking_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<Interlocked, atc_interlocking>(state, size, || plan(config).map_err(|(status, _)| status)) }
+}
+
+/// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points
+/// and telegrams.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_interlocking_step(
+    state: *mut atc_interlocking,
+    input: *const atc_interlocking_input,
+    output: *mut atc_interlocking_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<Interlocked, _>(state, input, output) }
+}

@@ -1,0 +1,195 @@
+//! The examples in C: compiled, linked with the static library, run, and held against what the oracle says of the
+//! same steps;
+//! and run under valgrind.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+
+use atc_oracle::Session;
+use serde_json::{Value, json};
+
+use crate::tools::{self, Scratch};
+
+/// What `std` in the static library needs of the system.
+const SYSTEM: [&str; 4] = ["-lgcc_s", "-lpthread", "-ldl", "-lm"];
+
+/// A case of the oracle.
+struct Oracle(Session);
+
+impl Oracle {
+    fn start(machine: &str, config: &Value) -> Self {
+        let mut oracle = Self(Session::new());
+        oracle.say(&json!({"start": {"protocol": 1, "machine": machine, "config": config}}), "started");
+        oracle
+    }
+
+    fn step(&mut self, step: &Value) -> Value {
+        self.say(&json!({ "step": step }), "output")
+    }
+
+    fn say(&mut self, request: &Value, expected: &str) -> Value {
+        let mut reply = Vec::new();
+        self.0.answer(request.to_string().as_bytes(), &mut reply);
+        let mut reply: Value = serde_json::from_slice(&reply).expect("the oracle writes JSON");
+        assert!(reply.get(expected).is_some(), "{request}: {reply}");
+        reply[expected].take()
+    }
+}
+
+/// What a program prints; none if there is no compiler. It is run under valgrind as well, where there is one.
+fn printed(name: &str) -> Option<String> {
+    let scratch = Scratch::new();
+    let source = format!("{}/examples/{name}.c", env!("CARGO_MANIFEST_DIR"));
+    let program = OsString::from(scratch.path(name));
+    let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O1", "-g"].map(OsString::from);
+    let files = [tools::include(), source.into(), tools::library().into(), "-o".into(), program.clone()];
+    let options = strict.into_iter().chain(files).chain(SYSTEM.map(OsString::from));
+    let Some(compiled) = tools::run("gcc", options) else {
+        eprintln!("NOT RUN: no gcc here: nothing is known of the examples in C");
+        return None;
+    };
+    assert!(compiled.status.success(), "{name}: {}", String::from_utf8_lossy(&compiled.stderr));
+    let ran = tools::run(&program.to_string_lossy(), []).expect("the program was made");
+    let text = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(ran.status.success() && ran.stderr.is_empty(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
+    let watched = ["--error-exitcode=9", "--leak-check=full", "--quiet"].map(OsString::from);
+    match tools::run("valgrind", watched.into_iter().chain([program])) {
+        None => eprintln!("NOT RUN: no valgrind here: nothing is known of what {name} does to memory"),
+        Some(ran) => {
+            assert!(ran.status.success(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
+            assert_eq!(String::from_utf8_lossy(&ran.stdout), text, "{name} under valgrind");
+        }
+    }
+    Some(text)
+}
+
+#[test]
+fn aspect() {
+    let Some(printed) = printed("aspect") else { return };
+    let mut aspect = Oracle::start("aspect-acceptance", &json!({"aspects_km_h": [25, 45, 65, 90]}));
+    let mut supervision = Oracle::start("speed-supervision", &json!({}));
+    let (mut said, mut before) = (String::new(), (Value::Null, Value::Null));
+    for cycle in 1..=200 {
+        let heard = if cycle <= 100 { json!([45, 90]) } else { json!([]) };
+        let display = aspect.step(&json!({ "detected_km_h": heard }))["display_km_h"].take();
+        let brake = supervision.step(&json!({"speed_km_h": 50, "permitted_km_h": display}))["brake"].take();
+        let word = brake.as_str().expect("a brake is a word");
+        if cycle == 1 || (&display, &brake) != (&before.0, &before.1) {
+            match display.as_f64() {
+                Some(speed) => writeln!(said, "cycle {cycle}: {speed:.1} km/h, {word}"),
+                None => writeln!(said, "cycle {cycle}: no display, {word}"),
+            }
+            .expect("a text takes it");
+        }
+        before = (display, brake);
+    }
+    assert_eq!(printed, said);
+}
+
+#[test]
+fn block() {
+    let Some(printed) = printed("block") else { return };
+    let mut block = Oracle::start("block-count", &json!({"sections": 3, "max_trains": 3, "tail_hold_sections": 1}));
+    let cycles: [(bool, bool, bool, &[u8]); 10] = [
+        (false, false, false, &[]),
+        (false, false, true, &[]),
+        (true, false, false, &[]),
+        (true, false, false, &[0]),
+        (false, false, false, &[0]),
+        (false, false, false, &[1]),
+        (false, false, false, &[2]),
+        (false, true, false, &[2]),
+        (false, true, false, &[]),
+        (false, false, false, &[]),
+    ];
+    let mut said = String::new();
+    for (number, (check_in, check_out, reset, present)) in (1..).zip(cycles) {
+        let reset = reset.then_some(0);
+        let step = json!({"check_in": check_in, "check_out": check_out, "present": present, "reset": reset});
+        let output = block.step(&step);
+        let occupied = output["occupied"].as_array().expect("a list").iter();
+        let occupied = occupied.fold(String::new(), |list, section| format!("{list} {section}"));
+        let counting = if output["counting"] == true { "" } else { ", not counting" };
+        let (count, behind) = (&output["count"], &output["behind_hold_sections"]);
+        writeln!(said, "cycle {number}: occupied{occupied}; trains {count}, behind {behind}{counting}")
+            .expect("a text takes it");
+    }
+    assert_eq!(printed, said);
+}
+
+#[test]
+fn telegram() {
+    let Some(printed) = printed("telegram") else { return };
+    let mut codec = Oracle::start("telegram-codec", &json!({}));
+    let mut permitted = Oracle::start("permitted-speed", &json!({}));
+    let mut said = String::new();
+    for number in 1..=4 {
+        let telegram = json!({"main": {"section": 7, "counter": number, "beyond_exit_m": 400, "speed_rank": 4}});
+        let frame = codec.step(&json!({ "encode": telegram }))["frame"].take();
+        let mut bits = frame.as_str().expect("a text").to_owned().into_bytes();
+        if number == 3 {
+            bits[40] ^= 1;
+        }
+        let mut output = Value::Null;
+        for bit in bits {
+            let found = codec.step(&json!({"bits": char::from(bit).to_string()}))["telegrams"].take();
+            let main = found.get(0).map(|found| found["telegram"]["main"].clone());
+            output = permitted.step(&json!({"analog_km_h": 45, "main": main, "moved_m": 0.05}));
+        }
+        let speed = output["speed_km_h"].as_f64().expect("a code is heard");
+        let words = ["nothing", "analog", "pattern", "both", "running-down"];
+        let basis = words.iter().position(|word| output["basis"] == *word).expect("one of these");
+        writeln!(said, "telegram {number}: {speed:.1} km/h, basis {basis}").expect("a text takes it");
+    }
+    assert_eq!(printed, said);
+}
+
+#[test]
+fn interlocking() {
+    let Some(printed) = printed("interlocking") else { return };
+    let circuits = ["0", "1", "2", "3"].map(|name| json!({"name": name, "length_m": 200}));
+    let plan = json!({"plan": {
+        "station": "Example", "cycle_ms": 100, "clear_cycles": 2, "turn_cycles": 1,
+        "speeds_km_h": [0, 45, 90], "braking_m": [0, 100, 250], "circuits": circuits,
+        "points": [{"name": "P", "detectors": ["1"]}], "segments": [],
+        "routes": [{
+            "name": "R", "heading": "right", "entry": ["0"], "approach": ["0"],
+            "path": [{"circuits": ["1"], "points": {"P": "normal"}}, {"circuits": ["2"], "points": {}}],
+            "overlap": {"circuits": [], "points": {}}, "beyond": ["3"], "continuing": [], "conflicts": [],
+            "from": [], "to": [], "drive_cycles": 20, "release_cycles": 30, "stay_cycles": 10, "speed_code": 2,
+        }],
+    }});
+    let mut device = Oracle::start("interlocking", &plan);
+    let occupied = [1, 1, 1, 1, 1, 1, 1, 3, 3, 2, 6, 4, 4, 12, 8, 8, 8, 0, 0];
+    let all = json!(["0", "1", "2", "3"]);
+    let mut said = String::new();
+    for (number, occupied) in (0..).zip(occupied) {
+        let there: Vec<_> = (0..4).filter(|circuit| occupied >> circuit & 1 == 1).map(|one| one.to_string()).collect();
+        let side = if number >= 5 { "normal" } else { "reverse" };
+        let mut step = json!({"occupied": there, "detected": {"P": side}, "all_telegrams": true});
+        if number == 0 {
+            step["orders"] = json!({"unblock": all, "lift": all});
+        }
+        if number == 3 {
+            step["request"] = json!({"set": "R"});
+        }
+        let output = device.step(&step);
+        let words = ["idle", "provisional", "failed", "set", "in-use", "releasing"];
+        let phase = output["routes"].get("R").unwrap_or(&json!("idle")).clone();
+        let phase = words.iter().position(|word| phase == *word).expect("one of these");
+        let answer = u8::from(output["answer"] == "accepted");
+        let proceed = output["proceed"].as_array().expect("a list").len();
+        let drives = u8::from(output["drives"].get("P") == Some(&json!("normal")));
+        let telegram = &output["telegrams"]["0"];
+        let code = [0, 45, 90].iter().position(|speed| telegram["speed_km_h"] == *speed).expect("one of these");
+        let stop = telegram["stop"].as_str().expect("a name");
+        let cycle = number + 1;
+        writeln!(
+            said,
+            "cycle {cycle}: answer {answer}, phase {phase}, proceed {proceed}, drives {drives}, \
+             from 0 to {stop} at code {code}"
+        )
+        .expect("a text takes it");
+    }
+    assert_eq!(printed, said);
+}
