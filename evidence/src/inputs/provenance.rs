@@ -11,6 +11,7 @@ use std::process::Command;
 /// The folders whose contents are evidence or produce it, each with its own hash.
 pub const FOLDERS: &[&str] = &[
     "arithmetic",
+    "c-abi",
     "kernel",
     "layout",
     "line",

@@ -369,6 +369,9 @@ impl<'a> Bench<'a> {
     }
 }
 
+/// A figure of a link.
+type Figure = fn(&Link) -> f64;
+
 impl BudgetReport {
     /// The report in words.
     pub fn words(&self) -> String {
@@ -391,7 +394,7 @@ impl BudgetReport {
             self.links[0].slowest_code_hz, self.links[1].slowest_code_hz
         );
         let least = format!("telegrams, {lost} % lost: needed without a code (theory)");
-        let rows: [(&str, fn(&Link) -> f64); 13] = [
+        let rows: [(&str, Figure); 13] = [
             ("level at the transmitter", |link| link.transmitted_db),
             ("rails, wet (line theory)", |link| 0.0 - link.rail_db),
             ("other losses", |link| 0.0 - link.other_losses_db),

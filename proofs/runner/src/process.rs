@@ -85,7 +85,7 @@ impl Limits {
 
     /// From when on a program that did not end well is taken to have been ended for its time. The system counts time in two ways, and on a busy machine they
     /// differ: it has ended a program at 30 s that had taken 27.6 s. An answer (10, of CBMC) is thrown away for its last second only.
-    fn nearly(&self, status: &ExitStatus) -> Duration {
+    fn nearly(&self, status: ExitStatus) -> Duration {
         let limit = Duration::from_secs(self.cpu_seconds());
         let last = limit.saturating_sub(Duration::from_secs(1));
         if status.code() == Some(10) { last } else { last.min(limit * 7 / 8) }
@@ -202,7 +202,7 @@ pub fn run(job: &Job) -> Result<(End, Duration), String> {
         (None, _) => End::Late,
         (Some(status), _) if status.code() == Some(OUT_OF_TIME) => End::Late,
         // What a program says when one that it has started was out of time does not matter.
-        (Some(status), Some(took)) if !status.success() && took >= job.limits.nearly(&status) => End::Late,
+        (Some(status), Some(took)) if !status.success() && took >= job.limits.nearly(status) => End::Late,
         // The shell's word for a signal.
         (Some(status), _) => status.code().filter(|code| *code <= 128).map_or(End::Killed, End::Code),
     };

@@ -277,7 +277,7 @@ impl<'a> Asked<'a> {
     /// The cases, the first and the last in front: they differ most, and what passes in the one is often rejected in the other at once.
     fn in_order(&self) -> impl Iterator<Item = usize> + use<> {
         let last = self.harness.cases.saturating_sub(1);
-        (0..1).chain((last..last + 1).filter(|last| *last > 0)).chain(1..last)
+        std::iter::once(0).chain((last > 0).then_some(last)).chain(1..last)
     }
 
     fn silent(&self, silence: &Silence) -> Judged {

@@ -2,8 +2,8 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Heading, Input, Layout, MAX_CODES, Orders, Phase, Plan, Positions, Request, Route, RouteId,
-    Segment, SegmentId, SegmentSet, SpeedCode, State, Travel,
+    CircuitSet, Element, Heading, Input, Layout, MAX_CODES, Movement, Orders, Phase, Plan, Positions, Request, Route,
+    RouteId, Segment, SegmentId, SegmentSet, SpeedCode, State, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_layout::Description;
@@ -71,8 +71,8 @@ impl Line<'_> {
         }
         let fastest = SPEEDS[SPEEDS.len() - 1];
         let stopping_ms = (fastest * 1_000_000).div_ceil(3_600) * 1_000 / u32::from(self.brakes[0]);
-        let cycles = |ms: u32| Ticks(u16::try_from(ms.div_ceil(CYCLE_MS)).expect("some cycles"));
-        plan.residual = cycles(self.age_ms + stopping_ms);
+        let cycles = (self.age_ms + stopping_ms).div_ceil(CYCLE_MS);
+        plan.residual = Ticks(u16::try_from(cycles).expect("some cycles"));
         plan.standstill = Ticks(10);
         // What `layout` derives: the distance of the code, and what is run while the train is not reported.
         let needed = u32::from(self.braking[SPEEDS.len()].expect("a distance")) + (fastest * CYCLE_MS).div_ceil(3_600);
@@ -169,7 +169,7 @@ impl Line<'_> {
                 return (place == Place::Train || idle).then(|| self.stop(front - end, speed));
             }
             let telegrams = layout.telegrams(&output.table, state.epoch);
-            let told = telegrams[self.circuit(front)].filter(|movement| movement.is_open());
+            let told = telegrams[self.circuit(front)].filter(Movement::is_open);
             let told = told.map_or(0, |movement| usize::from(movement.speed.0));
             if told >= obeyed || (cycle - heard) * CYCLE_MS >= self.age_ms {
                 (obeyed, heard) = (told, cycle);

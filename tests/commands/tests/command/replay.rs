@@ -128,7 +128,7 @@ const FAULTS: &[Fault] = &[
     Fault {
         name: "a good step that was refused",
         seed: |lines| {
-            lines[OUTPUT] = r#"{"malformed":{"reason":"what?"}}"#.to_owned();
+            r#"{"malformed":{"reason":"what?"}}"#.clone_into(&mut lines[OUTPUT]);
             None
         },
         code: 1,
@@ -137,7 +137,7 @@ const FAULTS: &[Fault] = &[
     Fault {
         name: "start of a good configuration that was rejected",
         seed: |lines| {
-            lines[1] = r#"{"rejected":{"reason":"no"}}"#.to_owned();
+            r#"{"rejected":{"reason":"no"}}"#.clone_into(&mut lines[1]);
             None
         },
         code: 1,

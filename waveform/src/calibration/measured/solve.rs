@@ -80,7 +80,9 @@ impl Normal {
                 gone += usize::from(*fall);
                 renamed.push(place + 1 - gone);
             }
-            of.iter_mut().for_each(|group| *group = renamed[*group]);
+            for group in &mut of {
+                *group = renamed[*group];
+            }
         }
     }
 }
