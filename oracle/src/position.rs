@@ -37,7 +37,7 @@ pub enum PositionCommand {
 pub struct CalibrateArgs {
     /// The measured levels (CSV); "-" for standard input
     pub levels: PathBuf,
-    /// Where the table goes: .toml for the [position] of a line's file, .json for the configuration of `train-position`
+    /// Where the table goes: .toml for the position of a line's file, .json for the configuration of `train-position`
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Where the picture goes: measurements, table and residuals
