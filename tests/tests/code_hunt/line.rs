@@ -56,6 +56,8 @@ pub struct Line<'a> {
     pub age_ms: u32,
     /// The brake of every train, and the one that this train has for all but the last code, in mm/s².
     pub brakes: [u16; 2],
+    /// For how long the brake builds up, within the age (ms), and what the train gains meanwhile, on a fall (mm/s²).
+    pub builds_up: (u32, u16),
 }
 
 impl Line<'_> {
@@ -139,6 +141,8 @@ impl Line<'_> {
         // Twentieths of a millimetre: a cycle's way is the sum of two speeds of them.
         let mut way = (outermost + TRAIN_MM + 5_000) * 20;
         let (mut speed, mut obeyed, mut heard) = (0_i64, 0, 0);
+        let (build_up_ms, gain) = (self.builds_up.0, i64::from(self.builds_up.1) * i64::from(CYCLE_MS) / 1_000);
+        let mut too_fast_ms = 0;
         let mut state = State::INITIAL;
         let mut withdrawn = false;
         for cycle in 1..20_000_u32 {
@@ -171,13 +175,18 @@ impl Line<'_> {
             let telegrams = layout.telegrams(&output.table, state.epoch);
             let told = telegrams[self.circuit(front)].filter(Movement::is_open);
             let told = told.map_or(0, |movement| usize::from(movement.speed.0));
-            if told >= obeyed || (cycle - heard) * CYCLE_MS >= self.age_ms {
+            if told >= obeyed || (cycle - heard) * CYCLE_MS + build_up_ms >= self.age_ms {
                 (obeyed, heard) = (told, cycle);
             }
             let target = if obeyed == 0 { 0 } else { i64::from(SPEEDS[obeyed - 1]) * 1_000_000 / 3_600 };
             let before = speed;
             let brake = i64::from(self.brakes[usize::from(obeyed > 0)]) * i64::from(CYCLE_MS) / 1_000;
-            speed = if speed > target { (speed - brake).max(target) } else { (speed + 100).min(target) };
+            too_fast_ms = if speed > target { too_fast_ms + CYCLE_MS } else { 0 };
+            speed = match speed > target {
+                true if too_fast_ms <= build_up_ms => speed + gain,
+                true => (speed - brake).max(target),
+                false => (speed + 100).min(target),
+            };
             way += (before + speed) * i64::from(CYCLE_MS) / 100;
             if speed == 0 && obeyed == 0 && told == 0 && (withdrawn || place == Place::Train) {
                 break;

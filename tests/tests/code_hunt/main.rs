@@ -29,7 +29,18 @@ impl Dice {
 const TRAINS: [(u32, u16); 4] = [(1_000, 800), (5_000, 800), (5_000, 1_200), (8_000, 500)];
 
 /// How far beyond its place, in mm, a train comes on so many lines, at the worst; with `less` metres taken from the distance of each code.
-fn farthest(place: Place, (age_ms, brake): (u32, u16), less: u16, runs: usize) -> (i64, Vec<u16>) {
+fn farthest(place: Place, train: (u32, u16), less: u16, runs: usize) -> (i64, Vec<u16>) {
+    built_up(place, train, (0, 0), less, runs)
+}
+
+/// The same with a brake that builds up so long, in ms, while the train gains, in mm/s².
+fn built_up(
+    place: Place,
+    (age_ms, brake): (u32, u16),
+    builds_up: (u32, u16),
+    less: u16,
+    runs: usize,
+) -> (i64, Vec<u16>) {
     let braking = derived(age_ms, brake).map(|distance| distance.map(|metres| metres.saturating_sub(less)));
     let mut dice = Dice(0x0139_408d_cbbf_7a44);
     let mut worst = (i64::MIN, Vec::new(), 0);
@@ -45,7 +56,7 @@ fn farthest(place: Place, (age_ms, brake): (u32, u16), less: u16, runs: usize) -
             (lengths, known.2 + i64::from(dice.between(0, 20_000)) - 10_000)
         };
         let stronger = if dice.below(2) == 0 { brake } else { dice.between(brake, 2 * brake) };
-        let line = Line { lengths: &lengths, braking: &braking, age_ms, brakes: [brake, stronger] };
+        let line = Line { lengths: &lengths, braking: &braking, age_ms, brakes: [brake, stronger], builds_up };
         if let Some(beyond) = line.run(place, moment).filter(|beyond| *beyond > worst.0) {
             worst = (beyond, lengths, moment);
         }
@@ -83,4 +94,14 @@ fn without_the_steps_it_does_not() {
             assert!(beyond > 500, "{train:?}, {place:?}: {beyond} mm");
         }
     }
+}
+
+/// Why `codes-kept-from-below` is a condition: while its brake builds up a train gains speed on a fall, and was as fast as its code before (ninth attack).
+#[test]
+fn a_train_that_is_faster_than_its_code_before_it_brakes_comes_too_far() {
+    let (train, build_up_ms) = ((2_000, 800), 1_000);
+    let (beyond, _) = built_up(Place::Train, train, (build_up_ms, 200), 0, 300);
+    assert!(beyond > 500, "{beyond} mm");
+    let (beyond, lengths) = built_up(Place::Train, train, (build_up_ms, 0), 0, 300);
+    assert!(beyond <= 0, "{beyond} mm too far over circuits of {lengths:?} m without a gain");
 }
