@@ -17,7 +17,7 @@ const TRUST: f64 = 20.0;
 /// How many items are named.
 const NAMED: usize = 3;
 /// The programs that are named where no item is.
-const TOOLS: [&str; 6] = ["rustc", "wasm2c", "goto-cc", "cbmc", "kissat", "spin"];
+const TOOLS: [&str; 7] = ["rustc", "wasm2c", "goto-cc", "cbmc", "kissat", "z3", "spin"];
 
 /// A phase that is to come: its name, and its items with about how many seconds of a processor each takes.
 #[derive(Clone, Debug, Default)]

@@ -33,7 +33,7 @@ pub const FIRST: Duration = Duration::from_secs(45);
 /// Which solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Solver {
-    /// MiniSat, and where that has no answer in 45 s, Kissat: each is fast where the other is slow.
+    /// MiniSat, and where that has no answer in 45 s, Kissat; of some harnesses Z3 first. Each is fast where another is slow.
     Auto,
     /// MiniSat, in CBMC.
     Minisat,
@@ -49,28 +49,38 @@ impl Solver {
         let way = if matches!(ask, Ask::Proof | Ask::Control) { "--unsat" } else { "--default" };
         match self {
             Self::Auto | Self::Minisat => vec!["--sat-solver".to_owned(), "minisat2".to_owned()],
-            Self::Kissat => vec!["--external-sat-solver".to_owned(), tools.guarded("kissat", way)],
+            Self::Kissat => {
+                vec!["--external-sat-solver".to_owned(), tools.guarded("kissat", way).display().to_string()]
+            }
             Self::Z3 => vec!["--smt2".to_owned(), "--z3".to_owned()],
         }
     }
 
     /// CBMC calls Z3 by its name: it must find the one that was installed, wherever it was.
     fn path(self, tools: &Tools) -> Option<(&'static str, String)> {
-        let own = tools.path("z3").parent()?.display().to_string();
+        if self != Self::Z3 {
+            return None;
+        }
+        let own = tools.guarded("z3", "").parent()?.display().to_string();
         let others = std::env::var("PATH").unwrap_or_default();
-        (self == Self::Z3).then(|| ("PATH", format!("{own}:{others}")))
+        Some(("PATH", format!("{own}:{others}")))
     }
 
     /// The one for what the first solver is known to have no answer to in its time.
     #[must_use]
     pub fn at_once(self, tools: &Tools) -> Self {
-        if self == Self::Auto && tools.versions.contains_key("kissat") { Self::Kissat } else { self }
+        if self == Self::Auto && Self::Kissat.is_here(tools) { Self::Kissat } else { self }
+    }
+
+    /// Whether it was installed. MiniSat is a part of CBMC.
+    pub(crate) fn is_here(self, tools: &Tools) -> bool {
+        !matches!(self, Self::Kissat | Self::Z3) || tools.versions.contains_key(self.name())
     }
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Auto => "minisat2 or kissat",
+            Self::Auto => "minisat2, kissat or z3",
             Self::Minisat => "minisat2",
             Self::Kissat => "kissat",
             Self::Z3 => "z3",
@@ -128,6 +138,8 @@ pub struct Answer {
     pub values: BTreeMap<String, Vec<u16>>,
     /// The most iterations of a loop.
     pub unwound: usize,
+    /// Who gave it.
+    pub solver: Option<Solver>,
 }
 
 impl Answer {
@@ -148,7 +160,10 @@ impl Answer {
 
     /// The answer to [`Ask::Both`] as those to the proof and to what can be reached.
     fn apart(self) -> (Self, Self) {
-        let (mut proof, mut reach) = (Self { unwound: self.unwound, ..Self::default() }, Self::default());
+        let (mut proof, mut reach) = (
+            Self { unwound: self.unwound, solver: self.solver, ..Self::default() },
+            Self { solver: self.solver, ..Self::default() },
+        );
         for (description, holds) in self.holds {
             if let Some(number) = description.strip_prefix("reach ") {
                 reach.holds.insert(format!("claim {number}"), holds);
@@ -193,10 +208,10 @@ impl Silence {
 pub type Halves = (Result<(Answer, Duration), Silence>, Result<(Answer, Duration), Silence>);
 
 /// Asks CBMC both what holds and what can be reached: in one run if that has an answer in time, and otherwise one after the other.
-/// Of a harness that is known to be `hard`, one after the other at once.
-pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, hard: bool) -> Halves {
+/// Of a harness that is known to be hard, one after the other at once, and what holds of the solver that is `known` to find it.
+pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, known: Option<Solver>) -> Halves {
     let mut waited = Duration::ZERO;
-    if question.solver == Solver::Auto && !hard {
+    if question.solver == Solver::Auto && known.is_none() {
         let limit = question.limit.min(FIRST);
         let both = Question { ask: Ask::Both, solver: Solver::Minisat, limit, ..*question };
         if let Ok((answer, took)) = ask(tools, folder, &both) {
@@ -205,10 +220,31 @@ pub fn ask_both(tools: &Tools, folder: &Path, question: &Question, hard: bool) -
         }
         waited = limit;
     }
-    let proof = ask(tools, folder, &Question { solver: question.solver.at_once(tools), ..*question });
+    let proof = ask_knowing(tools, folder, question, known);
     // An incremental solver finds the many reachable points fastest.
     let reach = ask(tools, folder, &Question { ask: Ask::Reach, solver: Solver::Minisat, ..*question });
     (proof.map(|(answer, took)| (answer, took + waited)), reach)
+}
+
+/// Asks CBMC what holds, of a harness of which another solver than Kissat may be known to find it in a short time. That one may be missing,
+/// or have no answer this time: then Kissat.
+fn ask_knowing(
+    tools: &Tools,
+    folder: &Path,
+    question: &Question,
+    known: Option<Solver>,
+) -> Result<(Answer, Duration), Silence> {
+    let last = question.solver.at_once(tools);
+    if let Some(solver) =
+        known.filter(|known| question.solver == Solver::Auto && known.is_here(tools) && *known != last)
+    {
+        let limit = question.limit.min(FIRST);
+        match ask(tools, folder, &Question { solver, limit, ..*question }) {
+            Err(Silence::Late) => {}
+            answer => return answer,
+        }
+    }
+    ask(tools, folder, &Question { solver: last, ..*question })
 }
 
 /// Asks CBMC what holds: of MiniSat within `first`, and of Kissat if that has no answer by then; of Kissat at once without `first`. A
@@ -308,7 +344,8 @@ fn ask_for(tools: &Tools, folder: &Path, question: &Question, values: bool) -> R
     let answer = parse(&text).map_err(Silence::Broken)?;
     let all_hold = answer.holds.values().all(|holds| *holds);
     if all_hold == (end == End::Code(0)) {
-        Ok((answer, took))
+        let solver = if question.solver == Solver::Auto { Solver::Minisat } else { question.solver };
+        Ok((Answer { solver: Some(solver), ..answer }, took))
     } else {
         Err(Silence::Broken("cbmc's exit code and its results disagree".to_owned()))
     }

@@ -49,11 +49,9 @@ fn ways(tools: &Tools, solver: Solver, trap: &Trap) -> Vec<Way> {
     match (solver, trap.every_way) {
         (Solver::Auto, false) => vec![Way::Once(Solver::Auto)],
         (Solver::Auto, true) => {
-            // Two runs of MiniSat, and of the other solver that a campaign takes.
-            let mut ways = vec![Way::Once(Solver::Auto), Way::Twice(Solver::Minisat)];
-            let other = solver.at_once(tools);
-            ways.extend((other != solver).then_some(Way::Twice(other)));
-            ways
+            // Two runs of MiniSat, and of the other solvers that a campaign takes.
+            let others = [Solver::Minisat, Solver::Kissat, Solver::Z3].into_iter().filter(|other| other.is_here(tools));
+            std::iter::once(Way::Once(Solver::Auto)).chain(others.map(Way::Twice)).collect()
         }
         (solver, _) => vec![Way::Twice(solver)],
     }

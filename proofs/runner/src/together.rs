@@ -1,7 +1,7 @@
 //! Mutants that are compiled and judged together: one copy of the kernel with all of them in it, one symbolic execution of each harness, and
 //! one property of each mutant.
 
-use crate::campaign::{HARD, Options, in_parallel};
+use crate::campaign::{HARD, Options, in_parallel, known};
 use crate::cbmc::{self, Ask, Question, Silence, ask_in_turn};
 use crate::compile::{Compiled, Kernel, compile, copy, write};
 use crate::control::is_smaller;
@@ -107,7 +107,7 @@ pub fn judge(
         jobs.extend(group.harnesses.iter().map(|harness| (place, *harness)));
     }
     // Those that take longest first.
-    jobs.sort_by_key(|(_, harness)| HARD.iter().position(|name| *name == harness.name).unwrap_or(HARD.len()));
+    jobs.sort_by_key(|(_, harness)| HARD.iter().position(|(name, _)| *name == harness.name).unwrap_or(HARD.len()));
     let controls = in_parallel(options.jobs, jobs.len(), |job| {
         let (place, harness) = jobs[job];
         let started = Instant::now();
@@ -224,7 +224,7 @@ impl<'a> Asked<'a> {
     /// With none of the mutants selected every claim holds, and nothing else fails.
     fn control(&self) -> Result<(), String> {
         self.list([0])?;
-        let first = (!HARD.contains(&self.harness.name)).then_some(crate::cbmc::FIRST);
+        let first = known(self.harness.name).is_none().then_some(crate::cbmc::FIRST);
         for case in 0..self.harness.cases {
             let answer = ask_in_turn(self.tools, &self.folder, &self.question(case, Ask::Control), first);
             let (answer, _) = answer.map_err(|silence| silence.of(self.harness.name))?;

@@ -42,21 +42,22 @@ impl Tools {
         Ok(Self { bin: provers.join("bin"), include: provers.join("include"), versions })
     }
 
-    /// A wrapper of the solver `tool` with an option of it, that ends with the runner. Written when it is first asked for.
-    pub fn guarded(&self, tool: &str, option: &str) -> String {
-        let name = format!("guarded-{tool}{option}");
-        let script = self.bin.join(&name);
+    /// A wrapper of the solver `tool`, of the same name, with an option of it, that ends with the runner. Written when it is first asked for.
+    pub fn guarded(&self, tool: &str, option: &str) -> PathBuf {
+        let folder = self.bin.join(format!("guarded{option}"));
+        let script = folder.join(tool);
         let head = format!("\nsolver='{}'\nset -- {option} \"$@\"\n", self.path(tool).display());
         let text = SOLVER.replacen('\n', &head, 1);
         if std::fs::read_to_string(&script).is_ok_and(|known| known == text) {
-            return script.display().to_string();
+            return script;
         }
-        let part = self.bin.join(format!("{name}.{:?}", std::thread::current().id()));
-        let written = std::fs::write(&part, text)
+        let part = folder.join(format!("{tool}.{:?}", std::thread::current().id()));
+        let written = std::fs::create_dir_all(&folder)
+            .and_then(|()| std::fs::write(&part, text))
             .and_then(|()| std::fs::set_permissions(&part, std::fs::Permissions::from_mode(0o755)))
             .and_then(|()| std::fs::rename(&part, &script));
         // Without it the solver itself, which may outlive a runner that is killed.
-        written.map_or_else(|_| self.path(tool), |()| script).display().to_string()
+        written.map_or_else(|_| self.path(tool), |()| script)
     }
 
     /// The wrapper of `tool`.

@@ -118,9 +118,9 @@ fn to_c(tools: &Tools, trap: &Trap, sources: &Path, compiled: &Compiled, folder:
 }
 
 fn outcome(tools: &Tools, trap: &Trap, folder: &Path, way: Way, limit: Duration) -> Outcome {
-    let (solver, hard) = match way {
-        Way::Once(solver) => (solver, false),
-        Way::Twice(solver) => (solver, true),
+    let (solver, known) = match way {
+        Way::Once(solver) => (solver, None),
+        Way::Twice(solver) => (solver, Some(solver)),
         Way::Native => {
             return match &trap.not_native {
                 Some(reason) => Outcome::NotRun(reason.clone()),
@@ -129,7 +129,7 @@ fn outcome(tools: &Tools, trap: &Trap, folder: &Path, way: Way, limit: Duration)
         }
     };
     let question = Question::proof(&trap.name, solver, limit);
-    let (proof, reach) = ask_both(tools, folder, &question, hard);
+    let (proof, reach) = ask_both(tools, folder, &question, known);
     let found = proof.and_then(|(proof, _)| Ok((proof, reach?.0)));
     let unwound = found.as_ref().map_or(0, |(proof, _)| proof.unwound);
     match (trap.judge(&found), trap.turns) {
