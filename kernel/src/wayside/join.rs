@@ -58,7 +58,7 @@ impl<const B: usize, const K: usize> Counted<B, K> {
     /// Checks `join` against `layout`.
     ///
     /// # Errors
-    /// The first rule of WAY-11 to WAY-15 that is broken.
+    /// The first rule of WAY-11 to WAY-15 and WAY-25 that is broken.
     #[inline]
     pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
         layout: &Layout<R, P, N, S>,
@@ -76,10 +76,27 @@ impl<const B: usize, const K: usize> Counted<B, K> {
                 return Err(WaysideError::RouteAgainstTheLine(number));
             }
         }
-        Self::on(&chain, join)
+        let counted = Self::on(&chain, join)?;
+        let mut sections = CircuitSet::EMPTY;
+        for circuit in counted.sections.iter().flatten() {
+            sections = sections.or(*circuit);
+        }
+        //= spec/wayside.md#way-25-no-train-of-another-line
+        //# The constructor MUST reject a layout with a route over a circuit of the counted line, or with one in its overlap, that does not need the counted segment.
+        for (number, route) in (0_u8..).zip(&layout.plan().routes) {
+            let along = match join.travel {
+                Travel::Toward => route.from,
+                Travel::Away => route.to,
+            };
+            let over = route.held_from(0).circuits.or(route.overlap.circuits);
+            if route.exists() && !along.has(join.segment) && over.meets(sections) {
+                return Err(WaysideError::RouteOfAnotherLine(number));
+            }
+        }
+        Ok(counted)
     }
 
-    /// The same on the track of the segment, without WAY-15.
+    /// The same on the track of the segment, without WAY-15 and WAY-25.
     ///
     /// # Errors
     /// The first rule of WAY-11 to WAY-14 that is broken.

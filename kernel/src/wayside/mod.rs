@@ -54,13 +54,15 @@ pub struct Wayside<'a, const B: usize, const R: usize, const P: usize, const N: 
     session: Session,
 }
 
-/// Which rule the equipment breaks. Source: `spec/wayside.md`, WAY-11 to WAY-20.
+/// Which rule the equipment breaks. Source: `spec/wayside.md`, WAY-11 to WAY-20 and WAY-25.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WaysideError {
     /// The segment that is counted does not exist.
     NoSuchSegment,
     /// This route needs the counted segment in the other direction of travel.
     RouteAgainstTheLine(u8),
+    /// This route leads over a circuit of the counted line, or has one in its overlap, and does not need the counted segment.
+    RouteOfAnotherLine(u8),
     /// A section has no circuit.
     SectionWithoutCircuit(Spot),
     /// A circuit is given for a section that the block does not have.

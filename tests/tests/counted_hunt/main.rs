@@ -15,7 +15,7 @@ use atc_kernel::interlocking::{
     Travel,
 };
 use atc_kernel::time::Ticks;
-use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp};
+use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp, Wayside, WaysideError};
 use world::{
     Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, finds_none,
     finds_one, input, pieces, point, route, set, signals, stopping, withdraw,
@@ -473,4 +473,57 @@ fn each_broken_condition_ends_in_one() {
     for (broken, first) in BROKEN {
         finds_one(&format!("{broken:?}"), first..first + 4000, |seed, counts| episode(seed, Some(broken), counts));
     }
+}
+
+/// A double track whose two tracks join in the throat: the track that leads out is counted from the throat on. A train that comes in on the other one is
+/// heard in the throat, makes up for a train that is missed, and the next one is sent into that: found in the tenth attack.
+#[test]
+fn a_throat_that_another_line_uses_is_no_section() {
+    const THROAT: usize = 0;
+    const OUT: [usize; 4] = [1, 2, 3, 7];
+    const PLATFORM: usize = 4;
+    const IN: [usize; 2] = [5, 6];
+    let piece = |from: i64, to: i64| -> Piece { (from, to, None) };
+    let out = [piece(-100, 0), piece(-200, -100), piece(-300, -200)];
+    let before = [piece(0, 60), out[0], out[1], out[2], piece(60, 360), out[0], out[1], piece(-400, -300)];
+    let mut plan = draft(&pieces(&before));
+    plan.points = [point(THROAT), point(63)];
+    plan.routes[0] = route(Heading::Left, PLATFORM, &[PLATFORM], &[(THROAT, at(0, 0))], OUT[0]);
+    plan.routes[0].to = SegmentSet::nth(0);
+    plan.routes[1] = route(Heading::Right, IN[0], &IN, &[(THROAT, at(0, 1)), (PLATFORM, Positions::NONE)], 8);
+    plan.routes[1].from = SegmentSet::nth(1);
+    for (segment, its) in plan.segments.iter_mut().zip([&OUT[..], &IN[..]]) {
+        *segment = Segment { outward: Heading::Left, ..Segment::NONE };
+        segment.length = u8::try_from(its.len()).expect("few circuits");
+        for (place, circuit) in segment.circuits.iter_mut().zip(its) {
+            *place = CircuitSet::nth(*circuit);
+        }
+    }
+    plan.segments[0].throat = CircuitSet::nth(THROAT);
+    let layout = world::Station::with_what_proofs_need(plan).expect("a layout");
+    let counted = |sections: &[usize]| {
+        let block = |count: usize| {
+            let sections = u8::try_from(count).expect("few sections");
+            Block::new(sections, sections, Hold::new(1).expect("one section"), Ticks(PASS)).expect("a block")
+        };
+        let mut join = Join {
+            blocks: [block(sections.len() - 1), block(1)],
+            direction: Direction::Up,
+            train: Metres(60),
+            segment: SegmentId::ZERO,
+            travel: Travel::Away,
+            circuits: [[None; 16]; 2],
+        };
+        let (last, first) = sections.split_last().expect("sections");
+        let id = |circuit: &usize| CircuitId::new(u8::try_from(*circuit).expect("few circuits"));
+        for (section, circuit) in first.iter().enumerate() {
+            join.circuits[0][section] = id(circuit);
+        }
+        join.circuits[1][0] = id(last);
+        let signals = signals(before.len());
+        let equipment = Equipment { counted: Some(join), signals, life: Ticks(LIFE), session: Session(9) };
+        Wayside::new(&layout, &equipment).err()
+    };
+    assert_eq!(counted(&[THROAT, OUT[0], OUT[1], OUT[2]]), Some(WaysideError::RouteOfAnotherLine(1)));
+    assert_eq!(counted(&OUT[..3]), None, "from behind the throat on");
 }

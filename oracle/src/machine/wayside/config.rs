@@ -234,6 +234,11 @@ impl Config {
                 "route {} needs segment {segment} against counted.travel; a counted line has one direction of travel",
                 station.names().routes.get(usize::from(route)).map_or("", String::as_str)
             ),
+            WaysideError::RouteOfAnotherLine(route) => format!(
+                "route {} leads over a circuit of counted.blocks, or has one in its overlap, and does not need segment {segment}; \
+                 its trains would be heard and never checked in: count no circuit that they use",
+                station.names().routes.get(usize::from(route)).map_or("", String::as_str)
+            ),
             WaysideError::SectionWithoutCircuit(spot) | WaysideError::CircuitWithoutSection(spot) => {
                 format!("{} has not one circuit; every section has one", at(spot))
             }
