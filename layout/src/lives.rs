@@ -1,7 +1,7 @@
 //! The lives of telegrams, in one place: what the ground counts on (`telegram_age_ms`, release times), and what trains do.
 //!
 //! A train acts on a telegram from the moment in which its content was taken until the train slows down after the telegram has died; and on
-//! a code for as long as it is displayed after it was last heard.
+//! a code for as long as transmitter and receiver name it after the ground has changed it, and it is displayed after it was last heard.
 //! The approach of a route, the turn time and the release times are held against `telegram_age_ms`; so it must not be shorter.
 
 use crate::description::Description;
@@ -18,6 +18,9 @@ pub struct TrainLives {
     pub way_ms: u64,
     /// For how long a telegram is used: the life, up to the cycle in which it is gone.
     pub life_ms: u64,
+    /// From the ground's change of a code until no train's receiver names the old one any more: of transmitter and receiver. The age of a code
+    /// begins when it is last named.
+    pub code_way_ms: u64,
     /// For how long a code is displayed after it was last heard: T2 + T3; 0 if nothing says.
     pub code_ms: u64,
     /// From a lower permission to a train that slows down.
@@ -27,12 +30,16 @@ pub struct TrainLives {
 impl TrainLives {
     /// For how long a train may act on what the ground has withdrawn: by telegram or by code, whichever is longer.
     pub const fn acts_ms(self) -> u64 {
-        (if self.is_of_codes() { self.code_ms } else { self.telegram_ms() }) + self.reaction_ms
+        (if self.is_of_codes() { self.shown_ms() } else { self.telegram_ms() }) + self.reaction_ms
     }
 
-    /// Whether a code is displayed for longer than a telegram lives.
+    /// Whether a code is displayed for longer than a telegram lives, each with its way.
     pub const fn is_of_codes(self) -> bool {
-        self.code_ms > self.telegram_ms()
+        self.shown_ms() > self.telegram_ms()
+    }
+
+    const fn shown_ms(self) -> u64 {
+        self.code_way_ms + self.code_ms
     }
 
     const fn telegram_ms(self) -> u64 {
@@ -43,17 +50,17 @@ impl TrainLives {
 /// What is wrong with the age that the ground counts on, if trains act on telegrams for longer.
 pub fn age(description: &Description, train: TrainLives) -> Option<Problem> {
     let acts = train.acts_ms();
-    let TrainLives { ahead_ms, way_ms, life_ms, code_ms, reaction_ms } = train;
+    let TrainLives { ahead_ms, way_ms, life_ms, code_way_ms, code_ms, reaction_ms } = train;
     let age = &description.station.times.telegram_age_ms;
     if u64::from(age.value) >= acts {
         return None;
     }
     if train.is_of_codes() {
         let what = format!(
-            "the ground counts on telegrams that live for {age} ms, and trains act on a code for {acts} ms (displayed for {code_ms} ms \
-             after it was last heard, reaction {reaction_ms} ms)"
+            "the ground counts on telegrams that live for {age} ms, and trains act on a code for {acts} ms (way {code_way_ms} ms, displayed \
+             for {code_ms} ms after it was last heard, reaction {reaction_ms} ms)"
         );
-        let right = format!("telegram_age_ms must be {acts} or more, or T2 + T3 less");
+        let right = format!("telegram_age_ms must be {acts} or more, or the way or T2 + T3 less");
         return Some(Problem::new(Rule::TelegramLives, &age.span, what, right));
     }
     let what = format!(

@@ -94,6 +94,7 @@ pub struct Signal {
     pub margin_m: u32,
     pub heard_beyond_exit_m: u16,
     pub delay_ms: u32,
+    pub code_way_ms: u32,
     pub worst_gradient_permille: i32,
     pub lowest_limit_km_h: f64,
     pub reaction_ms: u32,

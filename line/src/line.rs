@@ -361,7 +361,7 @@ impl Line {
     /// What its trains do with telegrams and codes, if it sends telegrams.
     pub fn lives(&self) -> Option<TrainLives> {
         let code_ms = self.ms(self.times.expiry().0);
-        self.signal.as_ref().map(|signal| TrainLives { code_ms, ..signal.lives() })
+        self.signal.as_ref().map(|signal| TrainLives { code_way_ms: signal.code_way_ms(), code_ms, ..signal.lives() })
     }
 
     /// Its file, as the user named it.

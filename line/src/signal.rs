@@ -24,6 +24,7 @@ pub struct Signal {
     permitted: Permitted,
     frame: u64,
     delay: u64,
+    code_way: u64,
     reaction: u64,
     release: u64,
     lead: u64,
@@ -82,6 +83,7 @@ pub(crate) fn checked(
         permitted,
         frame: given.frame_ms.into(),
         delay: given.delay_ms.into(),
+        code_way: given.code_way_ms.into(),
         reaction: given.reaction_ms.into(),
         release: given.release_ms.into(),
         lead: given.restriction_lead_ms.into(),
@@ -216,6 +218,11 @@ impl Signal {
         self.delay
     }
 
+    /// From the ground's change of a code until no train's receiver names the old one any more, ms.
+    pub const fn code_way_ms(&self) -> u64 {
+        self.code_way
+    }
+
     /// For how long the wayside keeps a withdrawn stretch free, in ms.
     pub const fn release_ms(&self) -> u64 {
         self.release
@@ -246,6 +253,7 @@ impl Signal {
             ahead_ms: self.frame,
             way_ms: self.delay,
             life_ms: self.past(self.permitted.settings().life),
+            code_way_ms: 0,
             code_ms: 0,
             reaction_ms: self.reaction,
         }

@@ -397,3 +397,42 @@ fn a_code_in_use_is_kept_within_its_band() {
     receiver.process(&signal, |event| conventional.push((event.at.time(config.sample_rate()).0, event.speed)));
     assert_eq!(conventional, log.speeds);
 }
+
+/// For how long the receiver names the old speed after the transmitter has changed to a lower one: longest where the level falls a little with it. The
+/// examples of a line count at least that, in `code_way_ms` (tenth attack).
+#[test]
+fn for_how_long_an_old_code_is_named() {
+    let config = TransmitterConfig::default();
+    let mut longest_ms = 0.0_f64;
+    for (old, new) in (1..6).flat_map(|old| (0..old).map(move |new| (old, new))) {
+        for (main, sub) in [(new, new), (new, old), (old, new)] {
+            for (gain, phase) in [1.0, 0.8].into_iter().flat_map(|gain| (0..10).map(move |phase| (gain, phase))) {
+                let sent = 0.8075 + f64::from(phase) * 0.01;
+                let mut signal = samples(&config, 1.4);
+                let (before, after) = signal.split_at_mut(samples(&config, sent).len());
+                let mut transmitter = Transmitter::new(&config, codes(old, old), main_telegram(OWN), sub_telegram(OWN));
+                transmitter.fill(before);
+                transmitter.set_codes(codes(main, sub));
+                transmitter.fill(after);
+                for sample in after {
+                    *sample *= gain;
+                }
+                let speeds = Log::of(&config, &signal).speeds;
+                let named = speeds.iter().rev().find(|(at, _)| *at <= sent).and_then(|(_, speed)| *speed);
+                assert!(named.is_some(), "{speeds:?}");
+                let last = speeds.iter().rposition(|(_, speed)| *speed == named).expect("it was named");
+                let (gone, _) = speeds.get(last + 1).expect("another code, or none");
+                longest_ms = longest_ms.max((gone - sent) * 1000.0);
+            }
+        }
+    }
+    assert!((251.0..260.0).contains(&longest_ms), "{longest_ms} ms");
+    for (name, line) in [
+        ("line.toml", include_str!("../../line/examples/line.toml")),
+        ("my-line.toml", include_str!("../../evidence/examples/my-line.toml")),
+    ] {
+        let counted =
+            line.lines().find_map(|line| line.strip_prefix("code_way_ms = ")?.split(' ').next()?.parse().ok());
+        assert!(counted.is_some_and(|ms: f64| ms >= longest_ms), "{name}: {counted:?}, measured {longest_ms} ms");
+    }
+}

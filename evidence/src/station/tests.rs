@@ -82,7 +82,8 @@ fn a_broken_rule_is_named_with_its_place_and_what_follows_it_is_not_called_kept(
 /// default times, and the on-board device with its own.
 #[test]
 fn a_layout_that_counts_on_shorter_lives_than_its_trains_have_is_refused() {
-    const NOTHING: TrainLives = TrainLives { ahead_ms: 0, way_ms: 0, life_ms: 0, code_ms: 0, reaction_ms: 0 };
+    const NOTHING: TrainLives =
+        TrainLives { ahead_ms: 0, way_ms: 0, life_ms: 0, code_way_ms: 0, code_ms: 0, reaction_ms: 0 };
     let on_board = atc_oracle::machine::permitted::Config::default();
     let train = |life_ms: u32| TrainLives { ahead_ms: 530, life_ms: u64::from(life_ms + on_board.cycle_ms), ..NOTHING };
     let with =
@@ -101,15 +102,19 @@ fn a_layout_that_counts_on_shorter_lives_than_its_trains_have_is_refused() {
         assert_eq!(conclusion(&refused).verdict, Verdict::Failed);
     }
     // Lives that agree, to the millisecond.
-    let longest = TrainLives { ahead_ms: 430, way_ms: 100, life_ms: 300, code_ms: 830, reaction_ms: 170 };
+    let longest =
+        TrainLives { ahead_ms: 430, way_ms: 100, life_ms: 300, code_way_ms: 230, code_ms: 600, reaction_ms: 170 };
     let kept = with(LOOP, longest);
     assert_eq!(verdict(&kept, "telegram-lives"), Outcome::Met);
     assert!(kept.is_sound());
     assert!(!with(LOOP, TrainLives { reaction_ms: 171, ..longest }).is_sound());
     assert!(!with(LOOP, TrainLives { way_ms: 101, ..longest }).is_sound());
-    let code = with(LOOP, TrainLives { code_ms: 831, ..longest });
-    let found = &code.broken().next().expect("broken").findings()[0];
-    assert!(found.what.contains("act on a code for 1001 ms (displayed for 831 ms"), "{found:?}");
+    for (code_way_ms, code_ms) in [(230, 601), (231, 600)] {
+        let code = with(LOOP, TrainLives { code_way_ms, code_ms, ..longest });
+        let found = &code.broken().next().expect("broken").findings()[0];
+        let what = format!("act on a code for 1001 ms (way {code_way_ms} ms, displayed for {code_ms} ms");
+        assert!(found.what.contains(&what), "{found:?}");
+    }
     // The release times of routes, each at its place.
     let release = with(&format!("{LOOP}\n[times]\ntelegram_age_ms = 900000\n"), train(70_000));
     assert_ne!(verdict(&release, "approach-too-short"), Outcome::Met);

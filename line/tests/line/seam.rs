@@ -217,9 +217,10 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
         text.get(text.find("telegram = [").expect("there")..text.find("[times]").expect("there")).expect("in order");
     for (rule, changes, at, against) in [
         ("telegram-lives", &[(line, "life_ms = 2500", "life_ms = 2870")][..], west, line),
-        // A telegram that is slow on its way; a code that is displayed for long after it was last heard.
+        // A telegram that is slow on its way; a code that is displayed for long after it was last heard, or named for long after it was changed.
         ("telegram-lives", &[(line, "delay_ms = 120", "delay_ms = 470")], west, line),
-        ("telegram-lives", &[(line, "mask_ms = 400", "mask_ms = 3110")], west, line),
+        ("telegram-lives", &[(line, "mask_ms = 400", "mask_ms = 2810")], west, line),
+        ("telegram-lives", &[(line, "code_way_ms = 300", "code_way_ms = 2701")], west, line),
         (
             "release-promised",
             &[
