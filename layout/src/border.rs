@@ -150,6 +150,8 @@ fn line((one, number): (Station<'_>, usize), (two, number_there): (Station<'_>, 
     }
     times(one, two, &mut wrong);
     times(two, one, &mut wrong);
+    heard((one, number), (two, number_there), &mut wrong);
+    heard((two, number_there), (one, number), &mut wrong);
     let longest = longest_train(model, other_model);
     tails(one, number, longest, &mut wrong);
     tails(two, number_there, longest, &mut wrong);
@@ -211,6 +213,33 @@ fn times((description, model): Station<'_>, (its, its_model): Station<'_>, wrong
             "in {station} a circuit counts as clear after {clear} ms, and a train of {neighbour} may be lost for {loss} ms"
         );
         wrong(what, format!("clear_ms of {station} must be at least {least}: twice that"));
+    }
+}
+
+/// How long trains act on what they heard, and how far beyond its circuit they hear a code. The distances of the codes and the approaches follow from
+/// these: a train of which more is true than they hold comes too far. It is asked of a station to which the neighbour sends trains over this line.
+fn heard(
+    ((description, model), number): (Station<'_>, usize),
+    ((its, its_model), number_there): (Station<'_>, usize),
+    wrong: &mut impl FnMut(String, String),
+) {
+    let comes = model.routes.iter().any(|route| route.from == Some(number))
+        || its_model.routes.iter().any(|route| route.to == Some(number_there));
+    let (station, neighbour) = (&description.station.name, &its.station.name);
+    let (age, lives) = (&description.station.times.telegram_age_ms, &its.station.times.telegram_age_ms);
+    if comes && age.value < lives.value {
+        let what = format!(
+            "trains of {neighbour} act on telegrams and codes for {lives} ms, and {station} counts on {age} ms for distances"
+        );
+        wrong(what, format!("telegram_age_ms of {station} must be at least {lives}"));
+    }
+    // What is from antenna to nose comes with the train.
+    let (beyond, theirs) = (&description.station.braking.heard_beyond_m, &its.station.braking.heard_beyond_m);
+    if comes && beyond.value < theirs.value {
+        let what = format!(
+            "{neighbour} counts on trains that hear codes {theirs} m beyond their circuits, and {station} counts on {beyond} m for distances"
+        );
+        wrong(what, format!("heard_beyond_m of {station} must be at least {theirs}"));
     }
 }
 

@@ -313,8 +313,10 @@ pub struct Values {
     pub telegram_age_ms: u32,
     /// The speed of each code, in km/h; 0 where there is no such code, and for code 0.
     pub speeds_kmh: [u16; MAX_CODES],
-    /// How far a train runs from the speed of each code when a lower one goes out: while its telegram ages, and braking. The longest length where
-    /// there is no such code.
+    /// How far beyond its circuit a train may hear a code.
+    pub heard_beyond: Metres,
+    /// How far a train runs from the speed of each code when a lower one goes out: where it still hears the code, while its telegram ages, and braking.
+    /// The longest length where there is no such code.
     pub braking: [Metres; MAX_CODES],
     /// The least length of an overlap.
     pub least_overlap: Metres,
@@ -351,6 +353,7 @@ impl Default for Values {
             least_turn_ms: 0,
             telegram_age_ms: 0,
             speeds_kmh: [0; MAX_CODES],
+            heard_beyond: Metres(0),
             braking: [Metres(u16::MAX); MAX_CODES],
             least_overlap: Metres(0),
             longest_train: None,

@@ -78,11 +78,22 @@ pub struct Braking {
     pub deceleration_mm_s2: At<u16>,
     /// The speeds of the codes 1, 2, … in km/h: 1 to 7 of them, rising, at most 409.
     pub speeds_kmh: At<Vec<u16>>,
+    /// How far beyond the end of its circuit a train may hear a code, with the metres from its antenna to its nose: 0 to 1000 [default: 0].
+    #[serde(skip_serializing_if = "is_none")]
+    pub heard_beyond_m: At<u16>,
+}
+
+const fn is_none(metres: &At<u16>) -> bool {
+    metres.value == 0
 }
 
 impl Default for Braking {
     fn default() -> Self {
-        Self { deceleration_mm_s2: At::derived(800), speeds_kmh: At::derived(vec![15, 25, 45, 55, 65, 75, 90]) }
+        Self {
+            deceleration_mm_s2: At::derived(800),
+            speeds_kmh: At::derived(vec![15, 25, 45, 55, 65, 75, 90]),
+            heard_beyond_m: At::derived(0),
+        }
     }
 }
 

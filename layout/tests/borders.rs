@@ -258,3 +258,79 @@ fn shared_within() {
     let both = station("One", "", "shared = [\"E1\", \"E2\"]").compile().expect("a layout");
     assert_eq!(both.plan.segments[1].shared, 2);
 }
+
+/// A train that acts on its telegrams for 8 s is one on both sides of the border. The distances of the codes, and the approaches, of a station that counts
+/// on 1 s are too short for it (found in the tenth attack).
+#[test]
+fn a_neighbour_whose_trains_act_on_telegrams_for_longer() {
+    let mut one = station("One", "", "line = \"b\"");
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    other.station.times.telegram_age_ms.value = 8000;
+    for station in [&mut one, &mut other] {
+        station.station.times.residual_ms = Some(At::derived(40_000));
+        station.station.times.turn_ms = Some(At::derived(55_000));
+    }
+    one.compile().expect("a layout that keeps every rule");
+    for (first, second) in [(&one, &other), (&other, &one)] {
+        refused(
+            first,
+            second,
+            "trains of Neighbour act on telegrams and codes for 8000 ms, and One counts on 1000 ms for distances; telegram_age_ms of One must \
+             be at least 8000",
+        );
+    }
+    let age = |ms| {
+        let mut one = one.clone();
+        one.station.times.telegram_age_ms.value = ms;
+        held(&one, &other)
+    };
+    assert!(age(7_999).is_err());
+    assert!(age(8_000).is_ok());
+    assert!(age(8_001).is_err(), "the neighbour counts on less than the trains that it gets from here");
+}
+
+/// What is from the antenna to the nose comes with the neighbour's train.
+#[test]
+fn a_neighbour_whose_trains_hear_codes_farther_beyond() {
+    let one = station("One", "", "line = \"b\"");
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    other.station.braking.heard_beyond_m.value = 15;
+    refused(
+        &one,
+        &other,
+        "Neighbour counts on trains that hear codes 15 m beyond their circuits, and One counts on 0 m for distances; heard_beyond_m of One must \
+         be at least 15",
+    );
+    let mut alike = one.clone();
+    alike.station.braking.heard_beyond_m.value = 15;
+    assert!(held(&alike, &other).is_ok());
+}
+
+/// On a line for one direction the station that trains leave may count on less.
+#[test]
+fn an_age_on_a_line_for_one_direction() {
+    let one_way = |description: &Description, side: &str, comes: bool| {
+        let mut description = description.clone();
+        let number = description.station.segments.iter().position(|segment| segment.name.value == side).expect(side);
+        let model = description.model().expect("a model");
+        let kept = model.routes.iter().map(|route| (if comes { route.to } else { route.from }) != Some(number));
+        let mut kept = kept.collect::<Vec<_>>().into_iter();
+        description.station.routes.retain(|_| kept.next() == Some(true));
+        description
+    };
+    let one = one_way(&station("One", "", "line = \"b\""), "East", true);
+    let mut other = one_way(&renamed(&neighbour("line = \"b\""), &[("a", "j")]), "West", false);
+    let mut ages = |ms| {
+        other.station.times.telegram_age_ms.value = ms;
+        let mut both = [one.clone(), other.clone()];
+        for station in &mut both {
+            station.station.times.residual_ms = Some(At::derived(33_000));
+            station.station.times.turn_ms = Some(At::derived(36_000));
+        }
+        held(&both[0], &both[1]).map_err(|errors| errors.to_string())
+    };
+    let found = ages(1_001).expect_err("trains come from a neighbour whose trains act for longer");
+    assert!(found.contains("telegram_age_ms of One must be at least 1001"), "{found}");
+    let found = ages(999);
+    assert!(found.is_ok(), "no train goes there: {found:?}");
+}

@@ -514,3 +514,28 @@ fn distances_round_up_and_times_as_is_safe() {
     assert_eq!(older(2_000).compile().unwrap().plan.braking[3].0, 98 + 25 + 2);
     assert_eq!(older(5_000).compile().unwrap().plan.braking[3].0, 98 + 63 + 10);
 }
+
+/// A code that is heard beyond its circuit is one from which a train stops within what begins at the circuit's end all the same (tenth attack).
+#[test]
+fn distances_hold_where_a_code_is_heard() {
+    let heard = |metres| format!("{LOOP}\n[braking]\nheard_beyond_m = {metres}\n");
+    let of = |text: &str| Description::from_toml("loop", text).unwrap().compile().unwrap();
+    let (without, with) = (of(LOOP), of(&heard(15)));
+    let later = |before: &u16, metres| if [0, u16::MAX].contains(before) { *before } else { before + metres };
+    let metres = |compiled: &atc_layout::Compiled| compiled.plan.braking.map(|distance| distance.0);
+    assert_eq!(metres(&with).to_vec(), metres(&without).iter().map(|one| later(one, 15)).collect::<Vec<_>>());
+    assert_eq!(metres(&with)[3], 98 + 13 + 1 + 15);
+    // Approaches follow, and the file is written with it.
+    let approach = |text: &str| Description::from_toml("loop", text).unwrap().model().unwrap().routes[0].approach_m;
+    assert_eq!(approach(&heard(15)), approach(LOOP) + 15);
+    let written = |text: &str| Description::from_toml("loop", text).unwrap().to_toml();
+    assert_eq!(of(&written(&heard(15))).plan, with.plan);
+    assert!(written(&heard(15)).contains("heard_beyond_m = 15") && !written(LOOP).contains("heard_beyond_m"));
+    breaks(
+        &heard(300),
+        Rule::ApproachTooShort,
+        "the braking distance, 300 m beyond its circuit to which a code is heard, and",
+    );
+    breaks(&heard(1001), Rule::Range, "heard_beyond_m is 0 to 1000");
+    breaks(&heard(-1), Rule::Form, "");
+}

@@ -20,6 +20,10 @@ pub fn figures(station: &form::Station, model: &Model) -> Vec<(&'static str, Str
             ),
         ),
         ("approach-covers-braking", approach(station, model)),
+        (
+            "codes-heard-beyond",
+            format!("The distance of each code holds {} m beyond its circuit.", station.braking.heard_beyond_m),
+        ),
         ("release-covers-residual-running", release(model, cycle)),
         ("overlap-covers-sliding", overlaps(model, cycle)),
         ("flank-complete", flanks(model)),

@@ -48,6 +48,12 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
             "every train has at least this",
             &braking.deceleration_mm_s2.span,
         ),
+        row(
+            "A code is heard beyond its circuit for",
+            format!("{} m", braking.heard_beyond_m),
+            "with the metres from antenna to nose; in the distance of each code",
+            &braking.heard_beyond_m.span,
+        ),
         row("Least overlap", format!("{} m", overlaps.least_m), "", &overlaps.least_m.span),
     ];
     if let Some(length) = longest_train_m {
@@ -59,7 +65,7 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         rows.push(row(
             &format!("Speed code {code}"),
             value,
-            "braking pattern, worst gradient",
+            "braking pattern, worst gradient; what is run where the code is still heard and while a telegram ages",
             &braking.speeds_kmh.span,
         ));
     }
@@ -142,6 +148,8 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
     all.push(("braking.deceleration_mm_s2", &brake.span, format!("{brake} mm/s²")));
     let speeds = &braking.speeds_kmh;
     all.push(("braking.speeds_kmh", &speeds.span, format!("{:?} km/h", speeds.value)));
+    let beyond = &braking.heard_beyond_m;
+    all.push(("braking.heard_beyond_m", &beyond.span, format!("{beyond} m")));
     let least = &station.overlaps.least_m;
     all.push(("overlaps.least_m", &least.span, format!("{least} m")));
     let missing = all.into_iter().filter(|(_, span, _)| span.is_empty());

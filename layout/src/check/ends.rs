@@ -1,5 +1,7 @@
 //! Rules of a route's ends: approach, overlap, what lies beyond.
 
+use atc_kernel::distance::Metres;
+
 use crate::derive::{Shortfall, back};
 use crate::form;
 use crate::form::EndKind;
@@ -78,8 +80,14 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
             Shortfall::Circuit(circuit) => format!("{} is not in it", model.circuits[circuit].name),
         };
         let what = format!("route {}: the approach reaches {covered} m back from the signal, where {why}", route.name);
+        let Metres(beyond) = model.values.heard_beyond;
+        let heard = if beyond == 0 {
+            String::new()
+        } else {
+            format!(", {beyond} m beyond its circuit to which a code is heard")
+        };
         let right = format!(
-            "{} m are needed: the braking distance, and what a train runs in {} ms and in the {} ms in which it may not be reported",
+            "{} m are needed: the braking distance{heard}, and what a train runs in {} ms and in the {} ms in which it may not be reported",
             route.approach_m,
             model.values.telegram_age_ms,
             u32::from(model.values.loss) * model.values.cycle_ms

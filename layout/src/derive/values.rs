@@ -48,6 +48,9 @@ fn at_most(what: &str, time: &At<u32>, cycle: Cycle, problems: &mut Vec<Problem>
 /// The longest cycle: a minute. A longer one is a slip, and the longest time, of 60 000 of them, would be no number of ms any more.
 const LONGEST_CYCLE_MS: u32 = 60_000;
 
+/// The farthest that a code may be heard beyond its circuit. More than that is a slip: a circuit is seldom longer.
+const MOST_BEYOND_M: u16 = 1_000;
+
 /// The least that is derived of the times to a stand and of the stay.
 pub const STANDSTILL_MS: u32 = 15_000;
 /// The same of the stay.
@@ -115,6 +118,7 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         least_turn_ms,
         telegram_age_ms: times.telegram_age_ms.value,
         speeds_kmh,
+        heard_beyond: Metres(station.braking.heard_beyond_m.value),
         braking,
         least_overlap: Metres(station.overlaps.least_m.value),
         longest_train: station.longest_train_m.as_ref().map(|length| Metres(length.value)),
@@ -164,6 +168,13 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
             "give 1 to 7 speeds that rise from 1 to at most 409",
         ));
     }
+    let heard = &given.heard_beyond_m;
+    let beyond = if heard.value > MOST_BEYOND_M { 0 } else { heard.value };
+    if beyond != heard.value {
+        let what = format!("codes are heard {heard} m beyond their circuits");
+        let right = format!("heard_beyond_m is 0 to {MOST_BEYOND_M}");
+        problems.push(Problem::new(Rule::Range, &heard.span, what, right));
+    }
     let mut table = ([0; MAX_CODES], [Metres(u16::MAX); MAX_CODES]);
     let Some(brake) = brake else {
         let what = format!("no train brakes with {} mm/s²", given.deceleration_mm_s2);
@@ -179,7 +190,8 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
         match stopping(brake, KmhTenths(speed * 10)) {
             Some(distance) => {
                 let late = aged(*speed, age_ms).saturating_add(stepped(brake, age_ms));
-                table.1[code] = Metres(distance.0.saturating_add(late));
+                // The distance counts from the end of the circuit, and the train may be beyond it.
+                table.1[code] = Metres(distance.0.saturating_add(late).saturating_add(beyond));
             }
             None => problems.push(Problem::new(
                 Rule::Range,
@@ -243,8 +255,8 @@ fn stepped(brake: Deceleration, age_ms: u32) -> u16 {
     u16::try_from(metres).unwrap_or(u16::MAX)
 }
 
-/// How far back an approach must reach for trains of `speed_kmh`: braking distance, and what is run while a telegram ages and while the train
-/// is not reported.
+/// How far back an approach must reach for trains of `speed_kmh`: braking distance, and what is run where a code is still heard, while a telegram ages
+/// and while the train is not reported.
 pub fn approach_m(values: &Values, speed_kmh: u16) -> u32 {
     // The first code that is at least as fast: its distance is not shorter.
     let code = (1..MAX_CODES).find(|code| values.speeds_kmh[*code] >= speed_kmh);

@@ -26,11 +26,13 @@ pub enum Place {
     Signal,
 }
 
-/// The distances of the codes in metres, as a layout with this age (ms) and brake (mm/s²) has them.
-pub fn derived(age_ms: u32, brake: u16) -> [Option<u16>; MAX_CODES] {
+/// The distances of the codes in metres, as a layout with this age (ms) and brake (mm/s²) has them, where codes are heard so many metres beyond their
+/// circuits.
+pub fn derived(age_ms: u32, brake: u16, heard_beyond: u16) -> [Option<u16>; MAX_CODES] {
     let mut station = Description::from_toml("loop", LOOP).expect("a layout");
     station.station.times.telegram_age_ms.value = age_ms;
     station.station.braking.deceleration_mm_s2.value = brake;
+    station.station.braking.heard_beyond_m.value = heard_beyond;
     // Approaches are long enough for any of them.
     station.station.circuits.iter_mut().for_each(|circuit| circuit.length_m.value *= 4);
     let values = station.model().expect("a model").values;
@@ -58,13 +60,18 @@ pub struct Line<'a> {
     pub brakes: [u16; 2],
     /// For how long the brake builds up, within the age (ms), and what the train gains meanwhile, on a fall (mm/s²).
     pub builds_up: (u32, u16),
+    /// How far beyond its circuit the nose is when a code is still heard, in metres.
+    pub heard_beyond: u16,
+    /// For how many cycles the circuit that a front comes into is not reported.
+    pub lost: u8,
 }
 
 impl Line<'_> {
     /// The circuit of the signal and the one beyond it have the numbers after the line's.
     fn plan(&self) -> Plan<1, PLACES, 1, 1> {
         let count = self.lengths.len();
-        let mut plan = Plan { clear: 2, loss: 1, turn: Ticks(1_000), start: Ticks(1_000), ..Plan::EMPTY };
+        let mut plan =
+            Plan { clear: 2 * self.loss(), loss: self.loss(), turn: Ticks(1_000), start: Ticks(1_000), ..Plan::EMPTY };
         for (length, metres) in plan.lengths.iter_mut().zip(self.lengths.iter().chain(&[300, 300])) {
             *length = Metres(*metres);
         }
@@ -77,7 +84,8 @@ impl Line<'_> {
         plan.residual = Ticks(u16::try_from(cycles).expect("some cycles"));
         plan.standstill = Ticks(10);
         // What `layout` derives: the distance of the code, and what is run while the train is not reported.
-        let needed = u32::from(self.braking[SPEEDS.len()].expect("a distance")) + (fastest * CYCLE_MS).div_ceil(3_600);
+        let unreported = (fastest * CYCLE_MS * u32::from(self.loss())).div_ceil(3_600);
+        let needed = u32::from(self.braking[SPEEDS.len()].expect("a distance")) + unreported;
         let (mut approach, mut metres) = (CircuitSet::EMPTY, 0);
         for (number, length) in self.lengths.iter().enumerate() {
             if metres < needed {
@@ -96,7 +104,7 @@ impl Line<'_> {
             beyond: CircuitSet::nth(count + 1),
             from: SegmentSet::nth(0),
             drive: Ticks(10),
-            release: Ticks(plan.residual.0 + 1),
+            release: Ticks(plan.residual.0 + u16::from(self.loss())),
             stay: Ticks(100),
             speed: SpeedCode(7),
             ..Route::NONE
@@ -122,10 +130,16 @@ impl Line<'_> {
         if mm > 0 { self.lengths.len() } else { self.lengths.len() - 1 }
     }
 
-    fn occupied(&self, front: i64) -> CircuitSet {
+    /// The longest loss of shunt, in cycles.
+    fn loss(&self) -> u8 {
+        self.lost.max(1)
+    }
+
+    /// Without the foremost circuit if the front is lost, and the tail is not in it.
+    fn occupied(&self, front: i64, lost: bool) -> CircuitSet {
         let mut occupied = CircuitSet::EMPTY;
         let (first, last) = (self.circuit(front.min(0)), self.circuit((front - TRAIN_MM).min(0)));
-        for number in first..=last {
+        for number in first + usize::from(lost && first < last)..=last {
             occupied = occupied.or(CircuitSet::nth(number));
         }
         if front > 0 { occupied.or(CircuitSet::nth(self.lengths.len())) } else { occupied }
@@ -145,9 +159,13 @@ impl Line<'_> {
         let mut too_fast_ms = 0;
         let mut state = State::INITIAL;
         let mut withdrawn = false;
+        let mut entered = (self.lengths.len() - 1, 0);
         for cycle in 1..20_000_u32 {
             let front = way / 20;
             let ready = cycle > READY + 2;
+            if self.circuit(front) != entered.0 {
+                entered = (self.circuit(front), cycle);
+            }
             let request = match (cycle, place) {
                 (READY, _) => Some(Request::Turn(SegmentId::ZERO, Travel::Toward)),
                 (_, Place::Signal) if cycle == READY + 2 => Some(Request::Set(RouteId::ZERO)),
@@ -159,7 +177,11 @@ impl Line<'_> {
             };
             let standing = if place == Place::Train { CircuitSet::nth(0) } else { CircuitSet::EMPTY };
             // The line is turned before there is anybody.
-            let occupied = if ready { self.occupied(front).or(standing) } else { CircuitSet::EMPTY };
+            let occupied = if ready {
+                self.occupied(front, cycle - entered.1 < self.lost.into()).or(standing)
+            } else {
+                CircuitSet::EMPTY
+            };
             let orders = Orders { unblock: CircuitSet::ALL, lift: CircuitSet::ALL, ..Orders::default() };
             let input = Input { occupied, detected: Positions::NONE, request, orders, consent: SegmentSet::EMPTY };
             let (after, output) = layout.cycle(state, input);
@@ -173,8 +195,11 @@ impl Line<'_> {
                 return (place == Place::Train || idle).then(|| self.stop(front - end, speed));
             }
             let telegrams = layout.telegrams(&output.table, state.epoch);
-            let told = telegrams[self.circuit(front)].filter(Movement::is_open);
-            let told = told.map_or(0, |movement| usize::from(movement.speed.0));
+            // Where two codes are heard the train takes the higher one.
+            let heard_at = [front, front - i64::from(self.heard_beyond) * 1_000].map(|mm| telegrams[self.circuit(mm)]);
+            let told =
+                heard_at.map(|told| told.filter(Movement::is_open).map_or(0, |movement| usize::from(movement.speed.0)));
+            let told = told[0].max(told[1]);
             if told >= obeyed || (cycle - heard) * CYCLE_MS + build_up_ms >= self.age_ms {
                 (obeyed, heard) = (told, cycle);
             }

@@ -7,6 +7,7 @@
 
 mod line;
 
+use atc_kernel::interlocking::MAX_CODES;
 use line::{Line, Place, derived, steps};
 
 /// xorshift: the same numbers on every machine.
@@ -30,18 +31,26 @@ const TRAINS: [(u32, u16); 4] = [(1_000, 800), (5_000, 800), (5_000, 1_200), (8_
 
 /// How far beyond its place, in mm, a train comes on so many lines, at the worst; with `less` metres taken from the distance of each code.
 fn farthest(place: Place, train: (u32, u16), less: u16, runs: usize) -> (i64, Vec<u16>) {
-    built_up(place, train, (0, 0), less, runs)
+    let braking = derived(train.0, train.1, 0).map(|distance| distance.map(|metres| metres.saturating_sub(less)));
+    search(place, Line { braking: &braking, ..of(train) }, runs)
 }
 
-/// The same with a brake that builds up so long, in ms, while the train gains, in mm/s².
-fn built_up(
-    place: Place,
-    (age_ms, brake): (u32, u16),
-    builds_up: (u32, u16),
-    less: u16,
-    runs: usize,
-) -> (i64, Vec<u16>) {
-    let braking = derived(age_ms, brake).map(|distance| distance.map(|metres| metres.saturating_sub(less)));
+/// What is true of such trains, on no line yet.
+const fn of((age_ms, brake): (u32, u16)) -> Line<'static> {
+    Line {
+        lengths: &[],
+        braking: &[None; MAX_CODES],
+        age_ms,
+        brakes: [brake; 2],
+        builds_up: (0, 0),
+        heard_beyond: 0,
+        lost: 0,
+    }
+}
+
+/// The same of what is true of trains and distances.
+fn search(place: Place, trains: Line<'_>, runs: usize) -> (i64, Vec<u16>) {
+    let brake = trains.brakes[0];
     let mut dice = Dice(0x0139_408d_cbbf_7a44);
     let mut worst = (i64::MIN, Vec::new(), 0);
     for _ in 0..runs {
@@ -56,7 +65,7 @@ fn built_up(
             (lengths, known.2 + i64::from(dice.between(0, 20_000)) - 10_000)
         };
         let stronger = if dice.below(2) == 0 { brake } else { dice.between(brake, 2 * brake) };
-        let line = Line { lengths: &lengths, braking: &braking, age_ms, brakes: [brake, stronger], builds_up };
+        let line = Line { lengths: &lengths, brakes: [brake, stronger], ..trains };
         if let Some(beyond) = line.run(place, moment).filter(|beyond| *beyond > worst.0) {
             worst = (beyond, lengths, moment);
         }
@@ -99,9 +108,42 @@ fn without_the_steps_it_does_not() {
 /// Why `codes-kept-from-below` is a condition: while its brake builds up a train gains speed on a fall, and was as fast as its code before (ninth attack).
 #[test]
 fn a_train_that_is_faster_than_its_code_before_it_brakes_comes_too_far() {
-    let (train, build_up_ms) = ((2_000, 800), 1_000);
-    let (beyond, _) = built_up(Place::Train, train, (build_up_ms, 200), 0, 300);
+    let braking = derived(2_000, 800, 0);
+    let gains = |mm_s2| Line { braking: &braking, builds_up: (1_000, mm_s2), ..of((2_000, 800)) };
+    let (beyond, _) = search(Place::Train, gains(200), 300);
     assert!(beyond > 500, "{beyond} mm");
-    let (beyond, lengths) = built_up(Place::Train, train, (build_up_ms, 0), 0, 300);
+    let (beyond, lengths) = search(Place::Train, gains(0), 300);
     assert!(beyond <= 0, "{beyond} mm too far over circuits of {lengths:?} m without a gain");
+}
+
+/// Why two stations count on one age: a train of the neighbour acts on what it heard for 8 s, and the distances hold 1 s (tenth attack).
+#[test]
+fn a_train_that_acts_for_longer_than_the_station_counts_on_comes_too_far() {
+    for (counted_ms, too_far) in [(1_000, true), (8_000, false)] {
+        let braking = derived(counted_ms, 800, 0);
+        let line = Line { lengths: &[210; 8], braking: &braking, ..of((8_000, 800)) };
+        // With 1 s the approach has 420 m: the route that is withdrawn is released at once.
+        for place in [Place::Train, Place::Signal] {
+            let beyond = line.run(place, -425_000);
+            assert_eq!(beyond.is_some_and(|mm| mm > 50_000), too_far, "{counted_ms} ms, {place:?}: {beyond:?} mm");
+            assert!(too_far || beyond.is_none_or(|mm| mm <= 0), "{place:?}: {beyond:?} mm");
+        }
+    }
+}
+
+/// A code that is heard beyond its circuit, leakage and the metres from antenna to nose together, while the front is not reported there: its shunt is lost
+/// for 1.5 s. The distances hold these metres, or a train comes too far (tenth attack).
+#[test]
+fn a_code_that_is_heard_beyond_its_circuit() {
+    const METRES: u16 = 30;
+    for (held, heard_beyond, too_far) in [(0, 0, false), (0, METRES, true), (METRES, METRES, false)] {
+        let braking = derived(1_000, 800, held);
+        let trains = Line { braking: &braking, heard_beyond, lost: 15, ..of((1_000, 800)) };
+        for place in [Place::Train, Place::Signal] {
+            let (beyond, lengths) = search(place, trains, 200);
+            let what = format!("{heard_beyond} m, {held} held, {place:?}: {beyond} mm over circuits of {lengths:?} m");
+            assert_eq!(beyond > 0, too_far, "{what}");
+            assert!(!too_far || beyond > 10_000, "{what}");
+        }
+    }
 }
