@@ -76,7 +76,10 @@ fn concluded(mut old: Results) -> Kept {
     let mut ids = BTreeSet::new();
     old.campaigns.retain(|one: &Campaigned| one.source == HERE && !one.stale);
     for one in &mut old.campaigns {
-        let kind = if one.campaign.engine == "native" { "native" } else { "harness" };
+        let kind = match one.campaign.engine.as_str() {
+            "cbmc" => "harness",
+            other => other,
+        };
         let ended = |verdict| matches!(verdict, Verdict::Proved | Verdict::Tested | Verdict::Vacuous | Verdict::Failed);
         one.campaign.harnesses.retain(|harness| ended(harness.verdict) && as_large(&harness.name, &harness.bound));
         ids.extend(one.campaign.harnesses.iter().map(|harness| format!("{kind}:{}", harness.name)));

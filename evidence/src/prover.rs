@@ -66,6 +66,14 @@ pub fn native(options: &Options, harnesses: &[&Harness]) -> Result<Campaign, Fau
     atc_prover::campaign::native_campaign(options, harnesses).map_err(|error| Fault::new(&"the native engine", error))
 }
 
+/// Proves the algebra of those that have any.
+///
+/// # Errors
+/// The sources cannot be read.
+pub fn reals(options: &Options, harnesses: &[&Harness]) -> Result<Campaign, Fault> {
+    atc_prover::reals::campaign(options, harnesses).map_err(|error| Fault::new(&"the algebra", error))
+}
+
 /// Runs these wrong kernels, at least one: the runner takes no name for all.
 ///
 /// # Errors

@@ -17,6 +17,7 @@ mod layout;
 mod limits;
 mod point;
 mod request;
+mod room;
 mod route;
 mod set;
 mod signal;
@@ -37,6 +38,7 @@ pub use layout::{
 pub use limits::SpeedLimits;
 pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_again, refuse_point, refuse_route};
+pub use room::{code_stops_within, needed_room};
 pub use route::{Phase, Rear, RouteState};
 pub use set::{
     CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,

@@ -1,7 +1,7 @@
 //! Times in cycles, speeds as codes, braking distances.
 
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
+use atc_kernel::interlocking::{MAX_CODES, SpeedCode, code_stops_within};
 use atc_kernel::pattern::{Deceleration, pattern};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
@@ -190,6 +190,9 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
         match stopping(brake, KmhTenths(speed * 10)) {
             Some(distance) => {
                 let late = aged(*speed, age_ms).saturating_add(stepped(brake, age_ms));
+                // Each part is rounded up, so that the kernel finds the first one long enough.
+                let enough = |metres: &u16| code_stops_within(brake, *speed, age_ms, Metres(*metres));
+                let late = (distance.0.saturating_add(late)..u16::MAX).find(enough).unwrap_or(u16::MAX) - distance.0;
                 // The distance counts from the end of the circuit, and the train may be beyond it.
                 table.1[code] = Metres(distance.0.saturating_add(late).saturating_add(beyond));
             }

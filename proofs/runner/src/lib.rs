@@ -1,7 +1,7 @@
 //! Runs the theorems of `atc-proofs` and reports what happened.
 //!
-//! Two engines are here. `native` *tests*: it draws values and replays counterexamples. `cbmc` *proves*, on the
-//! compiled, optimised code: Rust → WebAssembly → C → CBMC. Kani is run by `cargo kani` itself. A result is only ever
+//! Three engines are here. `native` *tests*: it draws values and replays counterexamples. `cbmc` *proves*, on the
+//! compiled, optimised code: Rust → WebAssembly → C → CBMC. `reals` proves the algebra of motion, by Z3. Kani is run by `cargo kani` itself. A result is only ever
 //! what a run said: a prover that is missing, was killed or was silent is never a pass.
 
 mod alone;
@@ -17,6 +17,7 @@ pub mod native;
 pub mod old_rules;
 mod process;
 pub mod provenance;
+pub mod reals;
 mod regions;
 pub mod report;
 mod schemata;

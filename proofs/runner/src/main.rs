@@ -33,7 +33,7 @@ enum Command {
         /// What runs them.
         #[arg(long, value_enum, default_value = "cbmc")]
         engine: EngineName,
-        /// Where the JSON goes [default: target/proofs/campaign.json, or native.json].
+        /// Where the JSON goes [default: target/proofs/campaign.json, native.json or reals.json].
         #[arg(long)]
         json: Option<PathBuf>,
         #[command(flatten)]
@@ -130,6 +130,8 @@ enum EngineName {
     Cbmc,
     /// Tests, with drawn values.
     Native,
+    /// Proves the algebra of motion, over all real numbers.
+    Reals,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -193,6 +195,12 @@ fn run(command: Command) -> Result<bool, String> {
             result.harnesses.iter().for_each(|harness| println!("{}", line(harness)));
             save(&json.unwrap_or_else(|| default("native.json")), &result)?;
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Tested))
+        }
+        Command::Prove { names, engine: EngineName::Reals, json, run } => {
+            let result = atc_prover::reals::campaign(&run.options(), &select(&names)?)?;
+            result.harnesses.iter().for_each(|harness| println!("{}", line(harness)));
+            save(&json.unwrap_or_else(|| default("reals.json")), &result)?;
+            Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Proved))
         }
         Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
         Command::OldRules { table: true, .. } => table_of_old_rules(),

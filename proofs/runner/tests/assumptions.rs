@@ -107,6 +107,11 @@ fn a_list_that_is_too_short_or_too_long_is_found() {
 /// What plain `assume` may say besides the forms that [`is_validity`] knows: file, text, and why it says nothing about the world. The text is that
 /// of the condition; of what has no value, or of the branch, where the condition is `false`.
 const LISTED: &[(&str, &str, &str)] = &[
+    ("interlocking/room.rs", "train.stops()", AGAIN),
+    ("interlocking/room.rs", "train.is_known(age)", AGAIN),
+    ("interlocking/room.rs", "train.since + time <= age", CASE),
+    ("interlocking/room.rs", "run <= train.room", "what is claimed just before, of this code or of another one"),
+    ("interlocking/room.rs", "later.stops()", "what is claimed just before, of this code or of another one"),
     ("interlocking/track.rs", "before.counts.0 <= clear", "a range: no count is over T_clear"),
     ("interlocking/track.rs", "before.counts.1 <= clear", "a range: no count is over T_clear"),
     ("interlocking/track.rs", "before.holds(loss)", AGAIN),

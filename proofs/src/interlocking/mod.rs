@@ -14,6 +14,7 @@ mod meeting;
 mod out;
 mod pair;
 mod point;
+mod room;
 mod route;
 mod signal;
 mod start;
@@ -109,6 +110,7 @@ pub const ALL: &[Harness] = &[
     heading::t_atc_5::HARNESS,
     border::t_atc_6::HARNESS,
     out::t_atc_7::HARNESS,
+    room::t_atc_8::HARNESS,
     layout::t_lay_2::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,

@@ -10,7 +10,7 @@ use atc_layout::Description;
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
 /// km/h of the codes from 1 on: those of the passing loop.
-const SPEEDS: [u32; 7] = [15, 25, 45, 55, 65, 75, 90];
+pub const SPEEDS: [u32; 7] = [15, 25, 45, 55, 65, 75, 90];
 const CYCLE_MS: u32 = 100;
 const PLACES: usize = 16;
 const TRAIN_MM: i64 = 50_000;

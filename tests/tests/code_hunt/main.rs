@@ -7,8 +7,10 @@
 
 mod line;
 
-use atc_kernel::interlocking::MAX_CODES;
-use line::{Line, Place, derived, steps};
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{MAX_CODES, code_stops_within};
+use atc_kernel::pattern::Deceleration;
+use line::{Line, Place, SPEEDS, derived, steps};
 
 /// xorshift: the same numbers on every machine.
 struct Dice(u64);
@@ -145,5 +147,30 @@ fn a_code_that_is_heard_beyond_its_circuit() {
             assert_eq!(beyond > 0, too_far, "{what}");
             assert!(!too_far || beyond > 10_000, "{what}");
         }
+    }
+}
+
+/// What the kernel takes for enough, and what `layout` derives, against exact numbers: (c + b·a)² ≤ 2·b·d, all in 1/9000 mm/s.
+#[test]
+fn a_distance_is_enough_and_hardly_more() {
+    for (age_ms, brake) in TRAINS.into_iter().chain([(0, 1_000), (20_000, 1_300), (1, 4_095)]) {
+        let of = Deceleration::brake(brake).expect("a brake");
+        let exact = |kmh: u32, metres: u16| {
+            let speed = 2_500_000 * u128::from(kmh) + 9 * u128::from(brake) * u128::from(age_ms);
+            speed * speed <= 162_000_000_000 * u128::from(brake) * u128::from(metres)
+        };
+        for (kmh, derived) in SPEEDS.into_iter().zip(derived(age_ms, brake, 0).into_iter().skip(1)) {
+            let enough =
+                |metres: u16| code_stops_within(of, u16::try_from(kmh).expect("a speed"), age_ms, Metres(metres));
+            let least = (0..u16::MAX).find(|metres| enough(*metres)).expect("a distance");
+            assert!(exact(kmh, least), "{kmh} km/h, {brake} mm/s², {age_ms} ms: {least} m is not enough");
+            assert!(
+                least == 0 || !exact(kmh, least - 1),
+                "{kmh} km/h, {brake} mm/s², {age_ms} ms: {least} m is too much"
+            );
+            let derived = derived.expect("a distance");
+            assert!((least..=least + 3).contains(&derived), "{kmh} km/h: {derived} m for {least} m");
+        }
+        assert!(!code_stops_within(of, u16::MAX, u32::MAX, Metres(u16::MAX)), "what is too much for the numbers");
     }
 }
