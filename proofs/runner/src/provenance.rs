@@ -37,7 +37,8 @@ pub fn of(root: &Path, tools: BTreeMap<String, String>, flags: Vec<String>) -> R
 /// A source file cannot be read.
 pub fn sources_sha256(root: &Path) -> Result<String, String> {
     let mut files = Vec::new();
-    for folder in ["arithmetic/src", "kernel/src", "proofs/src", "proofs/cbmc", "proofs/traps", "proofs/runner/src"] {
+    let proofs = ["proofs/src", "proofs/cbmc", "proofs/reals", "proofs/traps", "proofs/runner/src"];
+    for folder in ["arithmetic/src", "kernel/src"].iter().chain(&proofs) {
         collect(&root.join(folder), &mut files)?;
     }
     files.push(root.join("proofs").join("mutants.toml"));
