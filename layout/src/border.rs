@@ -226,6 +226,15 @@ fn heard(
     let comes = model.routes.iter().any(|route| route.from == Some(number))
         || its_model.routes.iter().any(|route| route.to == Some(number_there));
     let (station, neighbour) = (&description.station.name, &its.station.name);
+    // The room to stop is proved for trains whose codes all count with one brake (T-ATC-8): a weaker one makes the distance of a low code shorter.
+    let (brake, its_brake) = (model.values.brake_mm_s2, its_model.values.brake_mm_s2);
+    if comes && brake != its_brake {
+        let what = format!(
+            "on its steepest fall {station} counts on {brake} mm/s² of a train's brake, and {neighbour}, whose trains come in, on {its_brake}"
+        );
+        let right = "deceleration_mm_s2 and the steepest gradient of the two must leave the same brake: give the steeper fall, or the weaker brake, in both";
+        wrong(what, right.to_owned());
+    }
     let (age, lives) = (&description.station.times.telegram_age_ms, &its.station.times.telegram_age_ms);
     if comes && age.value < lives.value {
         let what = format!(

@@ -146,6 +146,21 @@ fn times_of_the_neighbours_trains() {
     covered.station.times.start_ms = Some(At::derived(65_500));
     refused(&covered, &weak, "trains of Neighbour brake with 400 mm/s², and One counts on 800 for distances");
     refused(&covered, &weak, "trains of Neighbour run on for 63500 ms, and One counts on 32250 ms for its routes");
+    refused(
+        &covered,
+        &weak,
+        "on its steepest fall One counts on 800 mm/s² of a train's brake, and Neighbour, whose trains come in, on 400",
+    );
+    // The other way round it is the code's distance here that is too short for a low code (a reader of T-ATC-8).
+    refused(
+        &weak,
+        &covered,
+        "on its steepest fall One counts on 800 mm/s² of a train's brake, and Neighbour, whose trains come in, on 400",
+    );
+    // A fall anywhere in a station is in its brake.
+    let mut falls = one.clone();
+    falls.station.circuits[0].gradient = Some(At::derived(-20));
+    refused(&falls, &other, "on its steepest fall One counts on");
     // A brake as weak as theirs, and times to suit it.
     let mut alike = one.clone();
     alike.station.braking = weak.station.braking.clone();

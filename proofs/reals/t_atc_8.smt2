@@ -46,8 +46,15 @@
 ; It obeys another code: of that one the claims say what it does.
 (define-fun else () Bool (and evenly (stops next (- room run))))
 (define-fun step () Bool (or brakes stands obeys else))
+; A train that brakes needs no code at all: it may have been told none, or all may be too old.
+(define-fun slows () Bool
+  (and (<= 0.0 speed) (<= 0.0 next) (< 0.0 time) (stops speed room) (or brakes stands)))
 ; When a train that brakes is back at the code, behind the step.
 (define-fun later () Real (let ((rest (- left time))) (ite (> rest (over next code)) rest (over next code))))
+
+; lemma Slow
+(define-fun Slow.if () Bool slows)
+(define-fun Slow.then () Bool (and (<= run room) (stops next (- room run))))
 
 ; lemma Early
 ; It obeys the code, and a train that brakes is not yet back at it: that one has the room, and is faster.
@@ -75,11 +82,11 @@
 
 ; claim Within
 ; It runs no farther than what is left. Of another code the claim for that one says it.
-(define-fun Within.if () Bool (and before (or brakes stands obeys)))
+(define-fun Within.if () Bool (or slows (and before obeys)))
 (define-fun Within.then () Bool (<= run room))
 
 ; claim Stops
-(define-fun Stops.if () Bool (and before (or brakes stands obeys)))
+(define-fun Stops.if () Bool (or slows (and before obeys)))
 (define-fun Stops.then () Bool (stops next (- room run)))
 
 ; claim Known

@@ -105,11 +105,7 @@ fn open(harness: &Harness, verdict: Verdict, reason: String) -> HarnessResult {
 /// The questions of a file. Each is for a Z3 of its own: of several in a row it tries other ways, which do not end.
 fn questions(text: &str) -> Result<Vec<Asked>, String> {
     let (mut asked, mut lemmas) = (Vec::<Asked>::new(), String::new());
-    // What a file asks or supposes itself would be in every question.
-    if let Some(word) = ["(assert", "(check-sat", "(push", "(reset", "(echo"].iter().find(|word| text.contains(**word))
-    {
-        return Err(format!("a file has definitions only, and no {word} …)"));
-    }
+    only_definitions(text)?;
     for line in text.lines() {
         let words: Vec<_> = line.split(' ').collect();
         let (kind, name) = match words[..] {
@@ -133,6 +129,37 @@ fn questions(text: &str) -> Result<Vec<Asked>, String> {
         }
     }
     Ok(asked)
+}
+
+/// What a file asks or supposes itself would be in every question; so would a new meaning of a word of the language.
+fn only_definitions(text: &str) -> Result<(), String> {
+    let code: Vec<_> = text.lines().map(|line| line.split(';').next().unwrap_or_default()).collect();
+    let (mut depth, mut form) = (0_usize, String::new());
+    for letter in code.join(" ").chars() {
+        depth = if letter == '(' { depth + 1 } else { depth.saturating_sub(usize::from(letter == ')')) };
+        form.push(letter);
+        if depth > 0 || form.trim().is_empty() {
+            continue;
+        }
+        let words: Vec<_> = form.split_whitespace().collect();
+        let is_right = match words[..] {
+            ["(declare-const", name, "Real)"] | ["(define-fun", name, _, ..] => is_own(name),
+            _ => false,
+        };
+        if !is_right {
+            let first = form.trim();
+            return Err(format!("a file has definitions of its own words only, and not {first}"));
+        }
+        form.clear();
+    }
+    if depth == 0 && form.trim().is_empty() { Ok(()) } else { Err("a definition does not end".to_owned()) }
+}
+
+/// Whether a name is of letters and dots, and no word that Z3 knows.
+fn is_own(name: &str) -> bool {
+    let known =
+        ["not", "and", "or", "xor", "ite", "true", "false", "distinct", "div", "mod", "abs", "let", "forall", "exists"];
+    name.chars().all(|letter| letter.is_ascii_alphabetic() || letter == '.') && !known.contains(&name)
 }
 
 /// Z3's answer, and the CPU time that it took.

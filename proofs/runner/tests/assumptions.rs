@@ -109,7 +109,6 @@ fn a_list_that_is_too_short_or_too_long_is_found() {
 const LISTED: &[(&str, &str, &str)] = &[
     ("interlocking/room.rs", "train.stops()", AGAIN),
     ("interlocking/room.rs", "train.is_known(age)", AGAIN),
-    ("interlocking/room.rs", "train.since + time <= age", CASE),
     ("interlocking/room.rs", "run <= train.room", "what is claimed just before, of this code or of another one"),
     ("interlocking/room.rs", "later.stops()", "what is claimed just before, of this code or of another one"),
     ("interlocking/track.rs", "before.counts.0 <= clear", "a range: no count is over T_clear"),

@@ -65,7 +65,20 @@ fn what_is_wrong_is_refuted() {
 
 #[test]
 fn a_file_that_supposes_something_is_refused() {
-    let Some((said, reason)) = say(&format!("{}\n(assert false)\n", text())) else { return };
-    assert_eq!(said, Verdict::Error);
-    assert!(reason.contains("definitions only"), "{reason}");
+    let more = [
+        "(assert false)",
+        "( assert false)",
+        "(define-fun not ((x Bool)) Bool false)",
+        "(define-fun-rec f () Bool (not f))",
+        "(define-fun + ((x Real) (y Real)) Real x)",
+        "(declare-const more Int)",
+        "(check-sat)",
+        "(define-fun open () Bool",
+        "sat",
+    ];
+    for more in more {
+        let Some((said, reason)) = say(&format!("{}\n{more}\n", text())) else { return };
+        assert_eq!(said, Verdict::Error, "{more}");
+        assert!(reason.contains("definition"), "{more}: {reason}");
+    }
 }

@@ -64,13 +64,13 @@ impl Ghost {
 }
 
 harness! {
-    /// A train by codes alone always has the room to stop where it must: with its speed v and its brake b, v²/2b is never more than what is left. Codes
+    /// A train by codes alone that has the room to stop where it must keeps it: with its speed v and its brake b, v²/2b is never more than what is left. Codes
     /// fall and rise in any order, and it brakes or speeds up as it likes, as long as it brakes where it is faster than every code that it was told
     /// within the age. Each code was told where its distance was left.
     t_atc_8(e)
     theorem "T-ATC-8";
     requirements ["ATC-16"];
-    assumptions ["codes-kept-from-below", "change-is-heard"];
+    assumptions ["codes-kept-from-below", "change-is-heard", "codes-heard-beyond"];
     bound "speeds and times of 0 to 7, steps of 1";
     cases 28;
     unwind 65 = 1 + crate::interlocking::LONGEST;
@@ -100,7 +100,7 @@ harness! {
         };
         e.assume(train.stops() && train.is_known(age));
         let time = 1;
-        e.assume(train.since + time <= age);
+        e.suppose("change-is-heard", train.since + time <= age);
         let speed = any_speed(e, "speed behind the step");
         // The speed changes evenly within a step, so this is twice the brake times what it runs. A train that comes to a stand runs no more than from
         // its speed with this brake.
@@ -119,7 +119,7 @@ harness! {
         e.assume(later.stops());
         e.claim(Claim::Known as u32, later.is_known(age));
         let code = any_speed(e, "speed of another code");
-        e.suppose("change-is-heard", needed_room(code, age).is_some_and(|needed| needed <= u64::from(later.room)));
+        e.suppose("codes-heard-beyond", needed_room(code, age).is_some_and(|needed| needed <= u64::from(later.room)));
         let told = Ghost::told(later.speed, later.room, code);
         e.claim(Claim::Told as u32, told.is_known(age));
         e.cover(Cover::Brakes as u32, step == 0 && later.over() > 0);
