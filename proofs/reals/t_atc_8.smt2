@@ -1,4 +1,4 @@
-; T-ATC-8 over all real numbers: a train by codes alone always has the room to stop. In whatever order codes fall and rise.
+; T-ATC-8 over all real numbers: a train by codes alone that has the room to stop keeps it, in whatever order codes fall and rise.
 ;
 ; The unit of time is such that the brake is 1: a time is what the brake takes off the speed in it. A room is the square of the
 ; speed from which the train stops within what is left; so what it runs counts twice. In these units the distance of a code c

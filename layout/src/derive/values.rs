@@ -192,9 +192,9 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
                 let late = aged(*speed, age_ms).saturating_add(stepped(brake, age_ms));
                 // Each part is rounded up, so that the kernel finds the first one long enough.
                 let enough = |metres: &u16| code_stops_within(brake, *speed, age_ms, Metres(*metres));
-                let late = (distance.0.saturating_add(late)..u16::MAX).find(enough).unwrap_or(u16::MAX) - distance.0;
+                let metres = (distance.0.saturating_add(late)..u16::MAX).find(enough).unwrap_or(u16::MAX);
                 // The distance counts from the end of the circuit, and the train may be beyond it.
-                table.1[code] = Metres(distance.0.saturating_add(late).saturating_add(beyond));
+                table.1[code] = Metres(metres.saturating_add(beyond));
             }
             None => problems.push(Problem::new(
                 Rule::Range,

@@ -14,6 +14,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+/// The name of the engine.
+const ENGINE: &str = "cbmc";
+
 /// How to run.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -84,14 +87,14 @@ pub fn campaign(
         Err((verdict, reason)) => harnesses
             .iter()
             .map(|harness| {
-                let result = unproven(harness, verdict, reason.clone());
+                let result = unproven(harness, ENGINE, verdict, reason.clone());
                 progress(&result);
                 result
             })
             .collect(),
     };
     provenance.seconds = started.elapsed().as_secs_f64();
-    Ok(Campaign { schema: SCHEMA, engine: "cbmc".to_owned(), provenance, harnesses: results })
+    Ok(Campaign { schema: SCHEMA, engine: ENGINE.to_owned(), provenance, harnesses: results })
 }
 
 /// Tests `harnesses` natively.
@@ -112,8 +115,9 @@ pub(crate) fn flags(solver: Solver) -> Vec<String> {
     flags.chain([format!("solver={}", solver.name())]).collect()
 }
 
-fn unproven(harness: &Harness, verdict: Verdict, reason: String) -> HarnessResult {
-    let mut result = blank(harness, "cbmc");
+/// A result of this verdict, claim by claim.
+pub(crate) fn unproven(harness: &Harness, engine: &str, verdict: Verdict, reason: String) -> HarnessResult {
+    let mut result = blank(harness, engine);
     result.verdict = verdict;
     result.reason = Some(reason);
     for claim in &mut result.claims {
@@ -162,7 +166,8 @@ fn prove_all(
             *lock(&results[index]) = Some(result);
         }
     });
-    let missing = |harness: &Harness| unproven(harness, Verdict::Error, "the runner lost this result".to_owned());
+    let missing =
+        |harness: &Harness| unproven(harness, ENGINE, Verdict::Error, "the runner lost this result".to_owned());
     results
         .into_iter()
         .zip(harnesses)
@@ -216,7 +221,7 @@ fn case_of(tools: &Tools, folder: &Path, harness: &Harness, case: (usize, usize)
 
 /// The result of a harness from its cases: every claim must hold and be reachable in every case, every cover point must be hit in one.
 fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessResult {
-    let mut result = unproven(harness, Verdict::Error, String::new());
+    let mut result = unproven(harness, ENGINE, Verdict::Error, String::new());
     result.reason = None;
     if is_sized(harness) {
         atc_proofs::bound(options.aspects).clone_into(&mut result.bound);
@@ -230,10 +235,10 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
             (Ok((proof, _)), Ok((reach, _))) => answers.push((proof, reach)),
             (Err(Silence::Late), _) | (_, Err(Silence::Late)) => {
                 let reason = format!("no answer within {} s of CPU time", options.limit.as_secs());
-                return unproven(harness, Verdict::Timeout, reason);
+                return unproven(harness, ENGINE, Verdict::Timeout, reason);
             }
             (Err(Silence::Broken(reason)), _) | (_, Err(Silence::Broken(reason))) => {
-                return unproven(harness, Verdict::Error, reason.clone());
+                return unproven(harness, ENGINE, Verdict::Error, reason.clone());
             }
         }
     }

@@ -7,7 +7,7 @@
 //! A claim is *proved* if Z3 finds no number for which it is false, and some for which its `if` is true; the same of every lemma. No answer, an unknown
 //! answer, or one too few is no proof.
 
-use crate::native::blank;
+use crate::campaign::unproven;
 use crate::process::{End, Job, Limits, run};
 use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
 use crate::tools::Tools;
@@ -65,10 +65,13 @@ pub fn campaign(options: &Options, harnesses: &[&Harness]) -> Result<Campaign, S
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         results.push(match &tools {
             Ok(tools) if tools.versions.contains_key("z3") => prove(tools, options, harness, &text),
-            Ok(_) => {
-                open(harness, Verdict::NotRun, "Z3 is not here: ci/install-provers says what would help".to_owned())
-            }
-            Err(reason) => open(harness, Verdict::NotRun, reason.clone()),
+            Ok(_) => unproven(
+                harness,
+                ENGINE,
+                Verdict::NotRun,
+                "Z3 is not here: ci/install-provers says what would help".to_owned(),
+            ),
+            Err(reason) => unproven(harness, ENGINE, Verdict::NotRun, reason.clone()),
         });
     }
     provenance.seconds = started.elapsed().as_secs_f64();
@@ -88,18 +91,8 @@ pub fn prove(tools: &Tools, options: &Options, harness: &Harness, text: &str) ->
     });
     match answered {
         Ok((asked, answers, seconds)) => conclude(harness, &asked, &answers, seconds),
-        Err(reason) => open(harness, Verdict::Error, reason),
+        Err(reason) => unproven(harness, ENGINE, Verdict::Error, reason),
     }
-}
-
-fn open(harness: &Harness, verdict: Verdict, reason: String) -> HarnessResult {
-    let mut result = blank(harness, ENGINE);
-    result.verdict = verdict;
-    result.reason = Some(reason);
-    for claim in &mut result.claims {
-        claim.verdict = verdict;
-    }
-    result
 }
 
 /// The questions of a file. Each is for a Z3 of its own: of several in a row it tries other ways, which do not end.
@@ -133,6 +126,10 @@ fn questions(text: &str) -> Result<Vec<Asked>, String> {
 
 /// What a file asks or supposes itself would be in every question; so would a new meaning of a word of the language.
 fn only_definitions(text: &str) -> Result<(), String> {
+    // What is quoted may have a bracket or a semicolon in it.
+    if text.contains(['|', '"']) {
+        return Err("a file of definitions has nothing quoted".to_owned());
+    }
     let code: Vec<_> = text.lines().map(|line| line.split(';').next().unwrap_or_default()).collect();
     let (mut depth, mut form) = (0_usize, String::new());
     for letter in code.join(" ").chars() {
@@ -184,7 +181,7 @@ fn ask(tools: &Tools, options: &Options, name: &str, script: &str) -> Result<(St
 
 /// The result of a harness from the answers to its questions.
 fn conclude(harness: &Harness, asked: &[Asked], answers: &[String], seconds: f64) -> HarnessResult {
-    let mut result = open(harness, Verdict::Proved, String::new());
+    let mut result = unproven(harness, ENGINE, Verdict::Proved, String::new());
     (result.reason, result.seconds, result.bound) = (None, seconds, String::new());
     "z3, over the real numbers".clone_into(&mut result.solver);
     let judge = |kind: Kind, name: &str| {

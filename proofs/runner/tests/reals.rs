@@ -72,6 +72,7 @@ fn a_file_that_supposes_something_is_refused() {
         "(define-fun-rec f () Bool (not f))",
         "(define-fun + ((x Real) (y Real)) Real x)",
         "(declare-const more Int)",
+        "(define-fun more () Real (+ 1.0 |;| 2.0))",
         "(check-sat)",
         "(define-fun open () Bool",
         "sat",
