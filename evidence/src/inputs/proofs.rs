@@ -168,14 +168,17 @@ fn is_asked(harness: &Catalogue, run: &Campaigned) -> bool {
     run.campaign.engine != reals::ENGINE || run.campaign.harnesses.iter().any(|result| result.name == harness.name)
 }
 
-/// The evidence of one harness: the best result of any engine, unless one of them refutes it.
+/// The evidence of one harness: the best result of any engine that looks at the code, unless one of them refutes it. The algebra is of no code: what it
+/// proves stands beside, and makes no bound of the code's proof go away.
 fn one(harness: &Catalogue, campaigns: &[Campaigned]) -> Evidence {
     let asked = campaigns.iter().filter(|run| is_asked(harness, run));
     let judged: Vec<_> = asked.map(|run| (run, judge(harness, run))).collect();
     let refuted = judged.iter().filter(|(_, one)| matches!(one.verdict, Verdict::Failed | Verdict::Vacuous));
     // "Undecided" is worse than "not run" in the order, and must not hide behind it: take it if nothing holds.
-    let best = judged.iter().filter(|(_, one)| one.verdict.holds()).min_by_key(|(_, one)| one.verdict);
-    let worst = judged.iter().max_by_key(|(_, one)| one.verdict);
+    let of_code = |run: &Campaigned| run.campaign.engine != reals::ENGINE;
+    let best =
+        judged.iter().filter(|(run, one)| of_code(run) && one.verdict.holds()).min_by_key(|(_, one)| one.verdict);
+    let worst = judged.iter().filter(|(run, _)| of_code(run)).max_by_key(|(_, one)| one.verdict);
     let chosen = refuted.max_by_key(|(_, one)| one.verdict).or(best).or(worst);
     let none = || Judged::nothing(harness, Verdict::NotRun, "no engine has run it");
     let (engine, judgement) = chosen.map_or_else(|| ("", none()), |(run, one)| (&run.campaign.engine, one.clone()));

@@ -153,6 +153,18 @@ fn stale_results_stay_stale_and_a_refutation_is_never_outvoted() {
     assert_eq!(all[0].verdict, Verdict::Failed);
 }
 
+/// The algebra may refute a theorem, and never takes the place of a proof of the code.
+#[test]
+fn what_is_proved_of_no_code_stands_beside() {
+    let bounded = HarnessResult { bound: "4 aspects".to_owned(), ..good() };
+    let of = |campaigns: &[Campaigned]| evidence(&[harness()], campaigns).0.remove(0);
+    let both = of(&[campaign("cbmc", vec![bounded.clone()]), campaign("reals", vec![good()])]);
+    assert_eq!((both.verdict, both.engines[1].verdict), (Verdict::ProvedBounded, Verdict::Proved));
+    assert_eq!(of(&[campaign("reals", vec![good()])]).verdict, Verdict::NotRun);
+    let wrong = HarnessResult { verdict: Said::Failed, ..good() };
+    assert_eq!(of(&[campaign("cbmc", vec![bounded]), campaign("reals", vec![wrong])]).verdict, Verdict::Failed);
+}
+
 #[test]
 fn the_real_catalogue_has_unique_names_and_no_empty_harness() {
     let all = catalogue();
