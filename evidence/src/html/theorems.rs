@@ -94,8 +94,10 @@ fn mutants(case: &Case) -> Markup {
     html! {
         h3 #mutants { "4.4 Wrong kernels" }
         p { "Each is the kernel with one fault put in on purpose. A theorem that does not notice is too weak. "
-            em { "tested" } " means: rejected; " em { "failed" } " means: it survived. The right kernel must \
-             pass the same harness: by its proof, and where a harness is smaller for wrong kernels, at that size too; otherwise nothing is called rejected." }
+            em { "tested" } " means: rejected; " em { "failed" } " means: it survived. For each there are counterexamples that the prover found \
+             once, in the theorem as it is proved. All are run, on this very code: with the fault a claim must fail, without it none. Some theorems, \
+             drawn by the hash of the sources, are given to the prover with the faults once more, and it must reject them; so is every fault \
+             whose counterexample does not fail any more. A theorem that is not proved of the right kernel rejects nothing." }
         @if of(case, Kind::Mutant).next().is_none() { p.cannot { "No wrong kernel is listed." } }
         table {
             thead { tr { th { "Wrong kernel" } th { "What is wrong" } th { "Breaks" } th { "Verdict" } th { "Rejected by (claims)" } th.num { "Time" } } }
@@ -105,7 +107,7 @@ fn mutants(case: &Case) -> Markup {
                     td { (one.statement) }
                     td { (one.requirements.join(", ")) }
                     td { (badge(one.verdict)) @if let Some(reason) = &one.reason { p.small { (reason) } } }
-                    td.small { (one.killed_by.join("; ")) }
+                    td.small { (one.killed_by.join("; ")) @if let Some((_, asked)) = one.detail.split_once("; ") { p.small { (asked) } } }
                     td.num { (seconds(one.seconds)) }
                 }
             }

@@ -3,7 +3,7 @@
 use crate::case::{Evidence, Kind};
 use crate::error::{Fault, read};
 use crate::verdict::Verdict;
-use atc_prover::report::{MutantResult, MutantVerdict, Mutants};
+use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants};
 use std::path::Path;
 
 /// What a wrong kernel is, apart from any result.
@@ -66,7 +66,7 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
                 statement: mutant.what.clone(),
                 at: mutant.at.clone(),
                 detail: match verdict {
-                    Verdict::Tested => "killed".to_owned(),
+                    Verdict::Tested => killed(killers),
                     Verdict::Failed => "survived".to_owned(),
                     _ => String::new(),
                 },
@@ -84,6 +84,16 @@ pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool)
             }
         })
         .collect()
+}
+
+/// What shows that a mutant is killed: counterexamples that are kept, or found anew in this run by the prover.
+fn killed(killers: &[Kill]) -> String {
+    let asked: Vec<_> = killers.iter().filter(|kill| kill.asked).map(|kill| kill.harness.as_str()).collect();
+    if asked.is_empty() {
+        "killed".to_owned()
+    } else {
+        format!("killed; the prover was asked, too: {}", asked.join(", "))
+    }
 }
 
 /// A harness that is not proved of the right kernel shows nothing by rejecting a wrong one. Of those that are `pending`, in
@@ -130,15 +140,25 @@ pub fn killers(evidence: &Evidence) -> impl Iterator<Item = &str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Catalogue, evidence, only_by_what_holds};
+    use super::{Catalogue, Kill, evidence, killed, only_by_what_holds};
     use crate::case::{Evidence, Kind};
     use crate::verdict::Verdict;
-    use atc_prover::report::{Kill, MutantResult, MutantVerdict, Mutants, Provenance};
+    use atc_prover::report::{MutantResult, MutantVerdict, Mutants, Provenance};
+
+    fn kill(harness: &str, asked: bool) -> Kill {
+        Kill { harness: harness.to_owned(), claims: vec![], case: 0, counterexample: None, asked }
+    }
+
+    #[test]
+    fn what_the_prover_was_asked_is_told() {
+        assert_eq!(killed(&[kill("t", false), kill("u", false)]), "killed");
+        assert_eq!(killed(&[kill("t", false), kill("u", true)]), "killed; the prover was asked, too: u");
+    }
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
         let (name, what) = ("m".to_owned(), "w".to_owned());
         let catalogue = Catalogue { name, what, requirements: vec![], at: None, find: String::new(), killers: vec![] };
-        let killer = Kill { harness: "t".to_owned(), claims: vec![], counterexample: None };
+        let killer = kill("t", false);
         let result = MutantResult {
             name: "m".to_owned(),
             what: "w".to_owned(),

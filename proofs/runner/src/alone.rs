@@ -1,6 +1,6 @@
 //! One mutant in a copy of the kernel of its own: for what cannot be selected at run time, and to check the other way by.
 
-use crate::campaign::Options;
+use crate::campaign::{Asking, Options};
 use crate::compile::{Kernel, compile, copy, write};
 use crate::mutants::{Mutant, changed};
 use crate::together::{Asked, Judged};
@@ -22,7 +22,8 @@ pub fn attempt(
     let sources = folder.join("sources");
     copy(root, &sources)?;
     write(&sources.join(mutant.path()), &changed(root, mutant)?)?;
-    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by, Kernel::Wrong)?;
+    let kernel = Kernel::Wrong { whole: options.asking == Asking::Record };
+    let compiled = compile(tools, &sources, &folder.join("build"), options.aspects, &mutant.killed_by, kernel)?;
     let judge = |harness: &'static atc_proofs::Harness| {
         let asked = Asked::new(tools, &compiled, harness, options);
         // Nothing can be selected: it is what it is.

@@ -30,10 +30,23 @@ pub struct Options {
     pub aspects: usize,
     /// Accepted runs for each harness of the native engine.
     pub tests: usize,
-    /// Whether each mutant is compiled alone, to check those that are compiled together.
-    pub alone: bool,
+    /// Of which mutants the prover is asked.
+    pub asking: Asking,
     /// Where all of it is compiled, by one run at a time.
     pub folder: PathBuf,
+}
+
+/// Of which mutants the prover is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Asking {
+    /// Of those that no kept counterexample rejects, and of a sample that the hash of the sources draws.
+    Some,
+    /// Of all.
+    All,
+    /// Of all, each compiled alone, to check those that are compiled together.
+    Alone,
+    /// Of all, with the harnesses as large as they prove: for counterexamples to keep.
+    Record,
 }
 
 impl Default for Options {
@@ -44,7 +57,7 @@ impl Default for Options {
             solver: Solver::Auto,
             aspects: atc_proofs::ASPECTS,
             tests: 20_000,
-            alone: false,
+            asking: Asking::Some,
             folder: root().join("target").join("proofs"),
         }
     }

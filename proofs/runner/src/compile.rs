@@ -54,10 +54,16 @@ pub struct Compiled {
 pub enum Kernel {
     /// As its sources are, and the harnesses as large as they say.
     AsItIs,
-    /// A wrong one, and the harnesses smaller: what a small one rejects, a large one does.
-    Wrong,
-    /// With wrong ones in it, of which one can be selected at run time, and the harnesses smaller.
-    WithMutants,
+    /// A wrong one, and the harnesses smaller (what a small one rejects, a large one does) or whole.
+    Wrong {
+        /// As large as they say.
+        whole: bool,
+    },
+    /// With wrong ones in it, of which one can be selected at run time.
+    WithMutants {
+        /// As large as they say.
+        whole: bool,
+    },
 }
 
 /// Copies the sources of kernel and harnesses into `sources`, and nothing else is there then.
@@ -118,10 +124,10 @@ pub fn compile(
         // Where the kernel's own dependency is looked for.
         format!("-Ldependency={}", folder.display()),
     ];
-    if mutants != Kernel::AsItIs {
+    if matches!(mutants, Kernel::Wrong { whole: false } | Kernel::WithMutants { whole: false }) {
         options.push("--cfg=small".to_owned());
     }
-    if mutants == Kernel::WithMutants {
+    if matches!(mutants, Kernel::WithMutants { .. }) {
         options.push("--cfg=mutants".to_owned());
     }
     if !only.is_empty() {

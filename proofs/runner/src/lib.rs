@@ -16,8 +16,10 @@ pub mod mutants;
 pub mod native;
 pub mod old_rules;
 mod process;
+mod program;
 pub mod provenance;
 pub mod reals;
+pub mod recorded;
 mod regions;
 pub mod report;
 mod schemata;
@@ -31,7 +33,7 @@ pub mod unwound;
 
 use std::path::{Path, PathBuf};
 
-pub use campaign::{Options, campaign, in_parallel};
+pub use campaign::{Asking, Options, campaign, in_parallel};
 pub use cbmc::{Answer, Solver, parse as parse_cbmc};
 pub use control::is_smaller;
 pub use mutants::mutants;

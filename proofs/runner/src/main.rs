@@ -1,11 +1,12 @@
 //! `cargo run -p atc-prover -- list | prove | mutants | old-rules | replay | twins | selftest | traps`.
 
 use atc_prover::old_rules::{self, Program};
+use atc_prover::recorded::{self, Recorded};
 use atc_prover::report::{Campaign, HarnessResult, MutantVerdict, Mutants, Verdict};
 use atc_prover::traps::table;
 use atc_prover::twins::twins;
 use atc_prover::{
-    Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
+    Asking, Options, Tools, campaign, end_all_on_interrupt, harnesses, kani, mutants, native, root, select, selftest,
 };
 use clap::{Parser, Subcommand, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,9 +47,15 @@ enum Command {
         /// Where the JSON goes [default: target/proofs/mutants.json].
         #[arg(long)]
         json: Option<PathBuf>,
-        /// Compiles each mutant alone: slow, and to check the usual way by.
+        /// Asks the prover of every mutant, and not only of a sample and of those that no kept counterexample rejects.
         #[arg(long)]
+        afresh: bool,
+        /// The same, and compiles each mutant alone: slow, and to check the usual way by.
+        #[arg(long, conflicts_with = "afresh")]
         alone: bool,
+        /// The same, with the harnesses as large as they prove, and keeps the counterexamples: proofs/counterexamples.tsv.
+        #[arg(long, conflicts_with_all = ["afresh", "alone"])]
+        record: bool,
         #[command(flatten)]
         run: Run,
     },
@@ -202,7 +209,15 @@ fn run(command: Command) -> Result<bool, String> {
             save(&json.unwrap_or_else(|| default("reals.json")), &result)?;
             Ok(result.harnesses.iter().all(|harness| harness.verdict == Verdict::Proved))
         }
-        Command::Mutants { names, json, alone, run } => try_mutants(&names, json, &Options { alone, ..run.options() }),
+        Command::Mutants { names, json, afresh, alone, record, run } => {
+            let asking = match (afresh, alone, record) {
+                (true, ..) => Asking::All,
+                (_, true, _) => Asking::Alone,
+                (.., true) => Asking::Record,
+                (false, false, false) => Asking::Some,
+            };
+            try_mutants(&names, json, &Options { asking, ..run.options() })
+        }
         Command::OldRules { table: true, .. } => table_of_old_rules(),
         Command::OldRules { mutants, program, arguments, .. } => with_old_rules(&mutants, program, &arguments),
         Command::Replay { harness, values, keep } => replay(&harness, values, keep),
@@ -295,7 +310,16 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
         "{passed} of {} controls passed: no mutant selected, where a harness is smaller than in its proof",
         result.controls.len()
     );
+    let kills = || result.mutants.iter().flat_map(|mutant| &mutant.killed_by);
+    let (all, asked) = (kills().count(), kills().filter(|kill| kill.asked).count());
+    println!(
+        "{asked} of {all} rejections found by the prover in this run, the others by a counterexample that is kept"
+    );
     println!("{killed} of {} mutants killed, {:.1} s", result.mutants.len(), result.provenance.seconds);
+    if options.asking == Asking::Record {
+        let new = Recorded::read(&root())?.record(&root(), &atc_prover::mutants::list(&root())?, &result.mutants)?;
+        println!("{new} counterexamples kept anew in {}", recorded::FILE);
+    }
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())
 }

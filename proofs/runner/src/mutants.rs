@@ -3,15 +3,17 @@
 //! Most are compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
 
 use crate::alone::attempt;
-use crate::campaign::{Options, flags, in_parallel, lock};
+use crate::campaign::{Asking, Options, flags, in_parallel, lock};
 use crate::process::only_run;
-use crate::report::{MutantResult, MutantVerdict, Mutants, SCHEMA};
+use crate::recorded::{self, Recorded};
+use crate::report::{Control, MutantResult, MutantVerdict, Mutants, SCHEMA};
 use crate::schemata::{Change, is_selectable};
 use crate::together::{self, Judged};
 use crate::tools::Tools;
 use crate::{provenance, root, select};
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -34,7 +36,8 @@ pub struct Mutant {
     pub replace: String,
     /// The harnesses that must reject it: each one on its own.
     pub killed_by: Vec<String>,
-    /// Whether it needs a copy of the kernel of its own: where what it changes is computed when the kernel is compiled.
+    /// Whether the prover needs it in a copy of the kernel of its own: where what it changes is computed when the kernel is compiled, and
+    /// the harness has no answer otherwise.
     #[serde(default)]
     pub alone: bool,
 }
@@ -107,41 +110,106 @@ pub fn mutants(
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
     let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
     let tally = Tally::new(&chosen, progress);
-    let mut controls = Vec::new();
-    match &tools {
-        Ok(tools) => {
-            let (together, alone): (Vec<_>, Vec<_>) =
-                (0..chosen.len()).partition(|index| !options.alone && goes_together(&root, chosen[*index]));
-            let picked: Vec<_> = together.iter().map(|index| chosen[*index]).collect();
-            let told = |index: usize, name: &str, judged| tally.judge(together[index], name, judged);
-            controls = together::judge(tools, &root, options, &picked, &told);
-            // What has no answer together may have one alone.
-            let alone: Vec<_> = alone.into_iter().chain(tally.unanswered()).collect();
-            in_parallel(options.jobs, alone.len(), |job| {
-                let mutant = chosen[alone[job]];
-                match attempt(tools, &root, mutant, options) {
-                    Ok(judged) => judged.into_iter().for_each(|(name, kill)| {
-                        tally.judge(alone[job], name, kill);
-                    }),
-                    Err(reason) => {
-                        for name in &mutant.killed_by {
-                            tally.judge(alone[job], name, Judged::Error(reason.clone()));
-                        }
-                    }
-                }
-            });
-        }
-        Err(reason) => {
-            for (index, mutant) in chosen.iter().enumerate() {
-                for name in &mutant.killed_by {
-                    tally.judge(index, name, Judged::NotRun(reason.clone()));
-                }
-            }
+    let kept = if options.asking == Asking::Some {
+        Recorded::read(&root).and_then(|recorded| recorded::replay(&root, options, &chosen, &recorded))
+    } else {
+        Ok(BTreeMap::new())
+    };
+    let kept = kept.unwrap_or_else(|reason| {
+        // As with a group that does not compile: an error for each of them, and nothing else of the run is lost.
+        let wrong = |(place, mutant): (usize, &&Mutant)| {
+            mutant
+                .killed_by
+                .iter()
+                .map(|name| ((place, name.clone()), Judged::Error(reason.clone())))
+                .collect::<Vec<_>>()
+        };
+        chosen.iter().enumerate().flat_map(wrong).collect()
+    });
+    let is_asked = |place: usize, name: &str| match kept.get(&(place, name.to_owned())) {
+        Some(Judged::Rejects(_)) => is_drawn(&provenance.sources_sha256, name),
+        other => other.is_none(),
+    };
+    for ((place, name), judged) in kept.iter().filter(|((place, name), _)| !is_asked(*place, name)) {
+        tally.judge(*place, name, judged.clone());
+    }
+    // What the prover is asked of.
+    let (mut places, mut asked) = (Vec::new(), Vec::new());
+    for (place, mutant) in chosen.iter().enumerate() {
+        let killed_by: Vec<_> = mutant.killed_by.iter().filter(|name| is_asked(place, name)).cloned().collect();
+        if !killed_by.is_empty() {
+            places.push(place);
+            asked.push(Mutant { killed_by, ..(*mutant).clone() });
         }
     }
+    let tell = |index: usize, name: &str, judged: Judged| {
+        let place = places[index];
+        let judged = match (judged, kept.contains_key(&(place, name.to_owned()))) {
+            (Judged::Passes, true) => {
+                Judged::Error(format!("{name}: the prover does not reject what a kept counterexample does"))
+            }
+            (judged, _) => judged,
+        };
+        tally.judge(place, name, judged);
+    };
+    let controls = match &tools {
+        Ok(tools) => ask(tools, &root, options, &asked, &tell),
+        Err(reason) => {
+            for (index, mutant) in asked.iter().enumerate() {
+                for name in &mutant.killed_by {
+                    let kill = kept.get(&(places[index], name.clone())).cloned();
+                    tally.judge(places[index], name, kill.unwrap_or_else(|| Judged::NotRun(reason.clone())));
+                }
+            }
+            Vec::new()
+        }
+    };
     let results = tally.results();
     provenance.seconds = started.elapsed().as_secs_f64();
     Ok(Mutants { schema: SCHEMA, provenance, mutants: results, controls })
+}
+
+/// Asks the prover of these mutants, together where that can be. Returns the controls.
+fn ask(
+    tools: &Tools,
+    root: &Path,
+    options: &Options,
+    mutants: &[Mutant],
+    tell: &(dyn Fn(usize, &str, Judged) + Sync),
+) -> Vec<Control> {
+    let (together, alone): (Vec<_>, Vec<_>) =
+        (0..mutants.len()).partition(|index| options.asking != Asking::Alone && goes_together(root, &mutants[*index]));
+    let picked: Vec<_> = together.iter().map(|index| &mutants[*index]).collect();
+    let open = Mutex::new(BTreeSet::new());
+    let controls = together::judge(tools, root, options, &picked, &|index, name, judged| {
+        if judged.is_final() {
+            tell(together[index], name, judged);
+        } else {
+            lock(&open).insert(together[index]);
+        }
+    });
+    // What has no answer together may have one alone.
+    let open = open.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let alone: Vec<_> = alone.into_iter().chain(open).collect();
+    in_parallel(options.jobs, alone.len(), |job| {
+        let mutant = &mutants[alone[job]];
+        match attempt(tools, root, mutant, options) {
+            Ok(judged) => judged.into_iter().for_each(|(name, kill)| tell(alone[job], name, kill)),
+            Err(reason) => {
+                mutant.killed_by.iter().for_each(|name| tell(alone[job], name, Judged::Error(reason.clone())));
+            }
+        }
+    });
+    controls
+}
+
+/// One in this many mutants that a kept counterexample rejects is asked of the prover all the same. Those that share a harness are drawn
+/// together: they have one symbolic execution.
+const ONE_IN: u8 = 16;
+
+/// Whether the sample of these sources has the harness in it.
+fn is_drawn(sources: &str, harness: &str) -> bool {
+    Sha256::digest(format!("{sources} {harness}"))[0] % ONE_IN == 0
 }
 
 /// Whether the mutant is compiled with others, and selected at run time.
@@ -181,15 +249,6 @@ impl<'a> Tally<'a> {
         if let Some(result) = result {
             (self.progress)(&result);
         }
-    }
-
-    /// The mutants of which a harness has no answer yet.
-    fn unanswered(&self) -> Vec<usize> {
-        let all = lock(&self.judged);
-        let mut open: Vec<_> =
-            all.iter().filter(|(_, judged)| !judged.is_final()).map(|((index, _), _)| *index).collect();
-        open.dedup();
-        open
     }
 
     fn result(&self, index: usize, all: &BTreeMap<(usize, String), Judged>) -> MutantResult {

@@ -31,7 +31,8 @@ pub fn of(root: &Path, tools: BTreeMap<String, String>, flags: Vec<String>) -> R
     })
 }
 
-/// SHA-256 over the paths and texts of everything that a proof depends on: kernel, arithmetic, harnesses, driver, mutants, runner.
+/// SHA-256 over the paths and texts of everything that a proof depends on: kernel, arithmetic, harnesses, driver, mutants with
+/// their counterexamples, runner.
 ///
 /// # Errors
 /// A source file cannot be read.
@@ -41,7 +42,7 @@ pub fn sources_sha256(root: &Path) -> Result<String, String> {
     for folder in ["arithmetic/src", "kernel/src"].iter().chain(&proofs) {
         collect(&root.join(folder), &mut files)?;
     }
-    files.push(root.join("proofs").join("mutants.toml"));
+    files.extend(["mutants.toml", "counterexamples.tsv"].map(|name| root.join("proofs").join(name)));
     files.sort();
     let mut hash = Sha256::new();
     for file in files {

@@ -205,6 +205,12 @@ pub struct Kill {
     pub harness: String,
     /// The names of the claims.
     pub claims: Vec<String>,
-    /// The arbitrary values of the counterexample, in order, if the prover gave them.
+    /// The case of the counterexample.
+    #[serde(default)]
+    pub case: usize,
+    /// Its other arbitrary values, in order, if the prover gave them.
     pub counterexample: Option<Vec<u16>>,
+    /// Whether the prover was asked in this very run, and found one. If not, the one that is kept was run.
+    #[serde(default)]
+    pub asked: bool,
 }

@@ -1,11 +1,12 @@
 //! Mutants that are compiled and judged together: one copy of the kernel with all of them in it, one symbolic execution of each harness, and
 //! one property of each mutant.
 
-use crate::campaign::{HARD, Options, in_parallel, known};
+use crate::campaign::{Asking, HARD, Options, in_parallel, known};
 use crate::cbmc::{self, Ask, Question, Silence, ask_in_turn};
 use crate::compile::{Compiled, Kernel, compile, copy, write};
 use crate::control::is_smaller;
 use crate::mutants::{FIRST, Mutant, SINGLY, SLOW};
+use crate::recorded::rejects;
 use crate::report::{Control, Kill};
 use crate::schemata::{Change, instrument, with_cells};
 use crate::tools::Tools;
@@ -74,18 +75,14 @@ const TOGETHER: Duration = Duration::from_secs(30);
 /// The harnesses that are to reject some of the mutants, in groups of neighbours.
 fn groups<'a>(mutants: &[&'a Mutant]) -> Vec<Group<'a>> {
     let names: BTreeSet<&str> = mutants.iter().flat_map(|mutant| &mutant.killed_by).map(String::as_str).collect();
-    let mut groups = Vec::new();
-    for module in atc_proofs::HARNESSES {
-        let wanted: Vec<_> = module.iter().filter(|harness| names.contains(harness.name)).collect();
-        for harnesses in wanted.chunks(SIZE) {
-            let concerned =
-                |mutant: &Mutant| harnesses.iter().any(|one| mutant.killed_by.iter().any(|name| name == one.name));
-            let wanted = mutants.iter().copied().enumerate().filter(|(_, mutant)| concerned(mutant));
-            let mutants = (1..).zip(wanted).collect();
-            groups.push(Group { harnesses: harnesses.to_vec(), mutants });
-        }
-    }
-    groups
+    let wanted: Vec<_> = crate::harnesses().into_iter().filter(|harness| names.contains(harness.name)).collect();
+    let group = |harnesses: &[&'static Harness]| {
+        let concerned =
+            |mutant: &Mutant| harnesses.iter().any(|one| mutant.killed_by.iter().any(|name| name == one.name));
+        let mutants = mutants.iter().copied().enumerate().filter(|(_, mutant)| concerned(mutant));
+        Group { harnesses: harnesses.to_vec(), mutants: (1..).zip(mutants).collect() }
+    };
+    wanted.chunks(SIZE).map(group).collect()
 }
 
 /// Judges the mutants by all their harnesses; `told` hears of each mutant (by place) and harness. Returns the controls: how the kernel
@@ -119,7 +116,8 @@ pub fn judge(
             .collect();
         let asked = match &compiled[place] {
             Ok(compiled) => Asked::new(tools, compiled, harness, options).map(|asked| {
-                let control = if is_smaller(harness) { Some(asked.control()) } else { None };
+                let control =
+                    if is_smaller(harness) && options.asking != Asking::Record { Some(asked.control()) } else { None };
                 (asked, control)
             }),
             Err(reason) => Err(reason.clone()),
@@ -151,20 +149,34 @@ pub fn judge(
 fn build(tools: &Tools, root: &Path, folder: &Path, options: &Options, group: &Group) -> Result<Compiled, String> {
     let sources = folder.join("sources");
     copy(root, &sources)?;
-    let mut files: BTreeMap<String, Vec<Change>> = BTreeMap::new();
-    for (number, (_, mutant)) in &group.mutants {
-        let change = Change { number: *number, find: &mutant.find, replace: &mutant.replace };
+    let mutants = group.mutants.iter().map(|(number, (_, mutant))| (*number, *mutant));
+    put_in(&sources, mutants, &selector(group.mutants.keys().copied()))?;
+    let names: Vec<_> = group.harnesses.iter().map(|harness| harness.name.to_owned()).collect();
+    let kernel = Kernel::WithMutants { whole: options.asking == Asking::Record };
+    compile(tools, &sources, &folder.join("build"), options.aspects, &names, kernel)
+}
+
+/// Puts the mutants, by number from 1, into the copy `sources`, with `rest`, which selects them.
+///
+/// # Errors
+/// A mutant that cannot be selected, or a file that cannot be read or written.
+pub(crate) fn put_in<'a>(
+    sources: &Path,
+    mutants: impl Iterator<Item = (usize, &'a Mutant)>,
+    rest: &str,
+) -> Result<(), String> {
+    let (mut files, mut most): (BTreeMap<String, Vec<Change>>, usize) = (BTreeMap::new(), 0);
+    for (number, mutant) in mutants {
+        most = most.max(number);
+        let change = Change { number, find: &mutant.find, replace: &mutant.replace };
         files.entry(mutant.path()).or_default().push(change);
     }
     for (file, changes) in files {
         rewrite(&sources.join(file), |text| instrument(text, &changes))?;
     }
     // The selector is in the kernel's arithmetic, and the kernel has it from there: both ask `crate::selected`.
-    let numbers = group.mutants.keys().copied();
-    rewrite(&sources.join("arithmetic/src/lib.rs"), |text| with_selector(text, numbers))?;
-    rewrite(&sources.join("kernel/src/lib.rs"), |text| Ok(format!("{text}\n{FROM_ARITHMETIC}")))?;
-    let names: Vec<_> = group.harnesses.iter().map(|harness| harness.name.to_owned()).collect();
-    compile(tools, &sources, &folder.join("build"), options.aspects, &names, Kernel::WithMutants)
+    rewrite(&sources.join("arithmetic/src/lib.rs"), |text| with_cells(text, most + 1, rest))?;
+    rewrite(&sources.join("kernel/src/lib.rs"), |text| Ok(format!("{text}\n{FROM_ARITHMETIC}")))
 }
 
 /// What the kernel has from its arithmetic where it has mutants.
@@ -176,9 +188,8 @@ fn rewrite(path: &Path, change: impl FnOnce(&str) -> Result<String, String>) -> 
     write(path, &change(&text)?)
 }
 
-/// The crate's root with what its mutants ask: a cell for each, which the prover fills before the harness begins.
-fn with_selector(text: &str, numbers: impl Iterator<Item = usize> + Clone) -> Result<String, String> {
-    let most = numbers.clone().max().unwrap_or(0) + 1;
+/// What a harness calls before it begins: the prover fills the cell of each mutant.
+fn selector(numbers: impl Iterator<Item = usize>) -> String {
     let mut written = String::from(
         "#[link(wasm_import_module = \"prover\")]
          unsafe extern \"C\" { #[link_name = \"selected\"] safe fn is_selected(number: u32) -> u32; }
@@ -190,7 +201,7 @@ fn with_selector(text: &str, numbers: impl Iterator<Item = usize> + Clone) -> Re
         let _ = writeln!(written, "SELECTED[{number}] = is_selected({number});");
     }
     written.push_str("} }\n");
-    with_cells(text, most, &written)
+    written
 }
 
 /// One harness with mutants in it. Mutant 0 is the kernel with none of them selected; or, if it was compiled alone, the mutant.
@@ -331,23 +342,9 @@ impl<'a> Asked<'a> {
         let judge = |((number, tape), run): ((&usize, &Tape), &[Vec<String>])| {
             // One that is alone is its own control.
             let control = if *number == 0 { &[][..] } else { &run[1][..] };
-            (*number, self.kill(&tape.values, &run[0], control))
+            let kill = rejects(self.harness, tape, &run[0], control);
+            (*number, kill.map_or_else(Judged::Error, |kill| Judged::Rejects(Kill { asked: true, ..kill })))
         };
         Ok(found.iter().zip(runs.chunks(2)).map(judge).collect())
-    }
-
-    fn kill(&self, values: &[u16], mutant: &[String], control: &[String]) -> Judged {
-        let name = self.harness.name;
-        let name_of = |number: &usize| self.harness.claims.get(*number).map(|claim| claim.name.to_owned());
-        let mut claims: Vec<String> = twin::failed(mutant).iter().filter_map(name_of).collect();
-        claims.dedup();
-        claims.extend(twin::panics(mutant).then(|| "trap: panic".to_owned()));
-        if claims.is_empty() {
-            Judged::Error(format!("{name}: the prover's counterexample does not fail when it is run: {values:?}"))
-        } else if !twin::failed(control).is_empty() || twin::panics(control) {
-            Judged::Error(format!("{name}: the counterexample fails with no mutant selected, too: {values:?}"))
-        } else {
-            Judged::Rejects(Kill { harness: name.to_owned(), claims, counterexample: Some(values.to_vec()) })
-        }
     }
 }

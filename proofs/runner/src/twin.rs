@@ -65,6 +65,19 @@ pub fn build(
 /// # Errors
 /// The program does not end as it should.
 pub fn happens(program: &Path, tapes: &[Tape]) -> Result<Vec<Vec<String>>, String> {
+    happens_with(program, &[], program, tapes)
+}
+
+/// The same of a program that has arguments; what it reads and prints is in files beside `files`.
+///
+/// # Errors
+/// The program does not end as it should.
+pub fn happens_with(
+    program: &Path,
+    arguments: &[String],
+    files: &Path,
+    tapes: &[Tape],
+) -> Result<Vec<Vec<String>>, String> {
     let mut input = String::new();
     for tape in tapes {
         let _ = write!(input, "{} {}", tape.mutant, tape.case);
@@ -73,11 +86,15 @@ pub fn happens(program: &Path, tapes: &[Tape]) -> Result<Vec<Vec<String>>, Strin
         }
         input.push('\n');
     }
-    let (folder, beside) =
-        (program.parent().unwrap_or(program), |ending: &str| format!("{}{ending}", program.display()));
+    let (folder, beside) = (program.parent().unwrap_or(program), |ending: &str| format!("{}{ending}", files.display()));
     let (tape, output) = (PathBuf::from(beside(".in")), PathBuf::from(beside(".out")));
     crate::compile::write(&tape, &input)?;
-    let arguments = ["-c".to_owned(), "exec \"$0\" <\"$1\"".to_owned(), beside(""), tape.display().to_string()];
+    let script = "tape=$1; shift; exec \"$0\" \"$@\" <\"$tape\"";
+    let arguments: Vec<String> = ["-c", script, &program.display().to_string(), &tape.display().to_string()]
+        .map(ToOwned::to_owned)
+        .into_iter()
+        .chain(arguments.iter().cloned())
+        .collect();
     let shell = Path::new("sh");
     let job = Job { program: shell, arguments: &arguments, variables: &[], folder, output: &output, limits: LIMITS };
     let (end, _) = run(&job)?;

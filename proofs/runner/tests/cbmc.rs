@@ -1,6 +1,8 @@
 //! The cbmc engine's guards: what a prover says, or fails to say, is never read as more than it is.
 
+use atc_prover::recorded::Recorded;
 use atc_prover::{campaign, is_smaller, mutants, parse_cbmc, root, select, unwound};
+use std::collections::BTreeSet;
 
 const DONE: &str = "CBMC version 6.6.0
 Starting Bounded Model Checking
@@ -103,6 +105,20 @@ fn every_mutant_changes_the_kernel_in_one_place_and_names_its_harnesses() {
     let all = mutants::list(&root()).unwrap();
     assert!(all.len() >= 40, "only {} mutants", all.len());
     assert!(all.iter().all(|mutant| mutant.find != mutant.replace));
+}
+
+/// What is missing costs time, and what is too much would be kept for ever.
+#[test]
+fn every_mutant_has_a_counterexample_of_each_of_its_harnesses() {
+    let all = mutants::list(&root()).unwrap();
+    let wanted: BTreeSet<(&str, &str)> = all
+        .iter()
+        .flat_map(|mutant| mutant.killed_by.iter().map(|name| (mutant.name.as_str(), name.as_str())))
+        .collect();
+    let recorded = Recorded::read(&root()).unwrap();
+    let kept: BTreeSet<_> = recorded.pairs().collect();
+    let (missing, left): (Vec<_>, Vec<_>) = (wanted.difference(&kept).collect(), kept.difference(&wanted).collect());
+    assert!(missing.is_empty() && left.is_empty(), "missing: {missing:?}, left over: {left:?}: mutants NAME --record");
 }
 
 #[test]
