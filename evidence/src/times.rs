@@ -5,7 +5,8 @@ use crate::inputs::measured;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use nix::sys::resource::{UsageWho, getrusage};
 use nix::sys::time::TimeVal;
-use std::time::Instant;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// How many of the slowest items are named.
 const SLOWEST: usize = 5;
@@ -39,8 +40,26 @@ pub fn slowest(mut items: Vec<(String, f64)>) -> Vec<(String, f64)> {
     items
 }
 
-/// Seconds of processors of this program and of all that it started and that has ended; 0 if the system does not tell.
+/// Milliseconds of processors of what ran beside the phases: none of theirs.
+static BESIDE: AtomicU64 = AtomicU64::new(0);
+
+/// Asks whether a program that runs beside the phases has ended. If so, also its seconds of processors, which no phase is charged with.
+pub fn beside<T>(ended: impl FnOnce() -> Option<T>) -> Option<(T, f64)> {
+    let before = used();
+    let ended = ended()?;
+    let seconds = (used() - before).max(0.0);
+    let milliseconds = Duration::try_from_secs_f64(seconds).unwrap_or_default().as_millis();
+    BESIDE.fetch_add(u64::try_from(milliseconds).unwrap_or(0), Ordering::Relaxed);
+    Some((ended, seconds))
+}
+
+/// Seconds of processors of this program and of all that it started, that has ended, and that did not run beside the phases.
 fn cpu() -> f64 {
+    used() - Duration::from_millis(BESIDE.load(Ordering::Relaxed)).as_secs_f64()
+}
+
+/// Seconds of processors of this program and of all that it started and that has ended; 0 if the system does not tell.
+fn used() -> f64 {
     let seconds = |time: TimeVal| {
         let micros = u32::try_from(time.tv_usec()).unwrap_or(0);
         let whole = u32::try_from(time.tv_sec()).unwrap_or(u32::MAX);

@@ -1,12 +1,14 @@
 //! The engines of a run, one after the other; every result is entered as it comes.
 //!
 //! The cheap theorems come first, so that the page says something soon; then the models, as a cut set that nobody owns ends
-//! the run; then the wrong kernels, and what takes long. Where the time is limited, what takes long comes before the wrong kernels: a
+//! the run; then the wrong kernels, and what takes long. Where all tests are run, they run beside that, and the models come last: the
+//! tests have searched most of them. Where the time is limited, what takes long comes before the wrong kernels: a
 //! theorem says more than that one more mutant is rejected by it.
 
 use super::budget::Budget;
-use super::{HERE, Run};
+use super::{HERE, Run, run};
 use crate::again::{self, Kept};
+use crate::case::Phase;
 use crate::error::{Fault, read};
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::{self, Opinion};
@@ -23,10 +25,12 @@ use atc_models::{Entry, Limits, Outcome};
 use atc_prover::Options;
 use atc_prover::reals;
 use atc_prover::report::{Campaign, HarnessResult, Mutants, Provenance, SCHEMA};
+use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::panic::resume_unwind;
 use std::path::Path;
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 const NATIVE: &str = "native tests of theorems";
 const CHEAP: &str = "proofs, the short ones";
@@ -39,6 +43,9 @@ const MEASURED: &str = "measurements";
 /// What measures, as an item of a phase.
 const BENCH: &str = "waveform bench";
 const TESTS: &str = "tests";
+
+/// Runs of each harness natively, in the tests as here.
+pub const NATIVE_RUNS: usize = 4000;
 
 /// About how many seconds some of the tests take, where they are built.
 const PART_OF_TESTS: f64 = 20.0;
@@ -69,6 +76,8 @@ pub struct Engines<'a> {
     pub kept: &'a Kept,
     /// The time that it has.
     pub budget: Budget,
+    /// What the tests of this run have found besides: as in [`Kept::has`].
+    pub found: Mutex<BTreeSet<String>>,
 }
 
 impl Engines<'_> {
@@ -81,7 +90,7 @@ impl Engines<'_> {
         };
         let single = |name: &str, cost: f64| vec![(name.to_owned(), cost)];
         let mut works = Vec::new();
-        if !self.options.no_native {
+        if !self.options.no_native && !self.tests_beside() {
             let all = self.native_names().into_iter();
             works.push(work(NATIVE, all.map(|name| (name, costs.each.native)).collect()));
         }
@@ -93,7 +102,7 @@ impl Engines<'_> {
             }
         }
         let measured = if self.measures_here() { single(BENCH, costs.each.measured) } else { Vec::new() };
-        if !self.options.no_models {
+        if !self.options.no_models && !self.tests_beside() {
             let models = of("model", self.entries("model").iter().map(|entry| entry.name.to_owned()).collect());
             works.push(work(MODELS, if self.is_beside() { [models, measured.clone()].concat() } else { models }));
         }
@@ -115,31 +124,105 @@ impl Engines<'_> {
         let one = |fault: Fault| vec![fault];
         let mut provers = prover::options(self.jobs, self.options.time_limit, self.scope);
         provers.tests = self.options.native_runs;
-        if !self.options.no_native {
+        let beside = self.tests_beside();
+        if !beside {
             self.native(live, &provers).map_err(one)?;
         }
         if !self.options.no_provers {
             self.theorems(live, &provers, CHEAP, &self.pass(false)).map_err(one)?;
         }
-        if self.options.no_models {
-            live.with(|results| "left out by --no-models".clone_into(&mut results.no_outcome));
-        } else {
+        if !beside {
             self.models(live)?;
         }
-        if !self.options.no_provers {
-            let limited = self.budget.is_limited();
-            if limited {
-                self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
-            }
-            if !self.options.no_mutants {
-                self.wrong_kernels(live, &provers).map_err(one)?;
-            }
-            if !limited {
-                self.theorems(live, &provers, HARD, &self.pass(true)).map_err(one)?;
-            }
+        std::thread::scope(|scope| {
+            let tests = beside.then(|| scope.spawn(|| self.all_tests(live)));
+            self.long(live, &provers)?;
+            tests.map_or(Ok(()), |tests| {
+                // Other tests of the list of phases are over.
+                live.progress.begin(TESTS);
+                live.progress.watch(&self.files().log);
+                let done = tests.join().unwrap_or_else(|panic| resume_unwind(panic));
+                live.progress.end();
+                done
+            })
+        })
+        .map_err(one)?;
+        if beside {
+            self.take(live)?;
+            self.native(live, &provers).map_err(one)?;
+            self.models(live)?;
         }
         self.measurements(live);
-        self.suites(live).map_err(one)
+        if beside { Ok(()) } else { self.suites(live).map_err(one) }
+    }
+
+    /// The wrong kernels, and the theorems that take long.
+    fn long(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
+        if self.options.no_provers {
+            return Ok(());
+        }
+        let limited = self.budget.is_limited();
+        if limited {
+            self.theorems(live, provers, HARD, &self.pass(true))?;
+        }
+        if !self.options.no_mutants {
+            self.wrong_kernels(live, provers)?;
+        }
+        if limited { Ok(()) } else { self.theorems(live, provers, HARD, &self.pass(true)) }
+    }
+
+    /// Whether all tests run beside the theorems that take long. Alone, they leave processors idle; and what they find of theorems
+    /// and models is not sought twice.
+    fn tests_beside(&self) -> bool {
+        let here = !self.options.no_tests && self.options.test_results.is_none() && !self.tests_stand();
+        let whole = *self.scope == Scope::Whole && self.chosen.tests == Tests::All && !self.budget.is_limited();
+        here && whole && self.root.join(tests::SCRIPT).is_file()
+    }
+
+    fn files(&self) -> tests::Files {
+        let file = |name: &str| self.folder.stage().join(name);
+        tests::Files { log: file("tests.log"), outcomes: file("outcomes.json"), native: file("native.json") }
+    }
+
+    /// Runs all tests, beside other work.
+    fn all_tests(&self, live: &Live) -> Result<(), Fault> {
+        let started = Instant::now();
+        let (run, cpu_seconds) =
+            tests::run_beside(self.root, &self.files()).map_err(|error| Fault::new(&tests::SCRIPT, error))?;
+        let wall_seconds = started.elapsed().as_secs_f64();
+        let slowest = vec![("cargo test".to_owned(), wall_seconds)];
+        let name = format!("{TESTS}, beside what is long");
+        live.with(|results| {
+            results.tests = Some(run);
+            results.phases.push(Phase { name, items: 1, wall_seconds, cpu_seconds, slowest });
+        });
+        Ok(())
+    }
+
+    /// Takes what the tests have found of theorems and models: of these very sources, or nothing.
+    fn take(&self, live: &Live) -> Result<(), Vec<Fault>> {
+        let files = self.files();
+        let mut found = BTreeSet::new();
+        if files.native.is_file() && !self.options.no_native && self.options.native_runs == NATIVE_RUNS {
+            let Campaigned { campaign, stale, .. } =
+                run::import(&files.native, self.sources).map_err(|fault| vec![fault])?;
+            if !stale {
+                self.enter(live, "native", &campaign.harnesses, Some(&campaign.provenance));
+                found.extend(campaign.harnesses.iter().map(|one| format!("native:{}", one.name)));
+            }
+        }
+        if files.outcomes.is_file() && !self.options.no_models {
+            let now = live.with(|results| results.provenance.clone());
+            let outcomes = run::outcomes(&files.outcomes, self.plan, self.chosen, &now).map_err(|fault| vec![fault])?;
+            let new: Vec<_> = outcomes.into_iter().filter(|one| !self.has(&format!("model:{}", one.model))).collect();
+            found.extend(new.iter().map(|one| format!("model:{}", one.model)));
+            live.with(|results| {
+                results.open.extend(run::searched_by_tests(new.len()));
+                results.outcomes.extend(new);
+            });
+        }
+        self.found.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
+        Ok(())
     }
 
     /// The names of the harnesses of the run, the cheapest first.
@@ -153,9 +236,14 @@ impl Engines<'_> {
         names
     }
 
-    /// Those of them of which an earlier run has no result of this kind.
+    /// Whether there is a result already: of an earlier run, or of the tests of this one.
+    fn has(&self, id: &str) -> bool {
+        self.kept.has(id) || self.found.lock().unwrap_or_else(PoisonError::into_inner).contains(id)
+    }
+
+    /// Those of them of which there is no result of this kind.
     fn open(&self, kind: &str, mut names: Vec<String>) -> Vec<String> {
-        names.retain(|name| !self.kept.has(&format!("{kind}:{name}")));
+        names.retain(|name| !self.has(&format!("{kind}:{name}")));
         names
     }
 
@@ -183,7 +271,7 @@ impl Engines<'_> {
     fn entries(&self, kind: &str) -> Vec<Entry> {
         let mut entries = atc_models::catalogue();
         entries.retain(|entry| self.chosen.has(&format!("model:{}", entry.name)));
-        entries.retain(|entry| !self.kept.has(&format!("{kind}:{}", entry.name)));
+        entries.retain(|entry| !self.has(&format!("{kind}:{}", entry.name)));
         entries
     }
 
@@ -247,6 +335,9 @@ impl Engines<'_> {
     }
 
     fn native(&self, live: &Live, provers: &Options) -> Result<(), Fault> {
+        if self.options.no_native {
+            return Ok(());
+        }
         let names = self.in_time("native", self.native_names());
         self.enter(live, "native", &[], None);
         if names.is_empty() {
@@ -314,6 +405,10 @@ impl Engines<'_> {
 
     /// Searches every model, the largest first, as many at a time as there are cores; then asks another checker.
     fn models(&self, live: &Live) -> Result<(), Vec<Fault>> {
+        if self.options.no_models {
+            live.with(|results| "left out by --no-models".clone_into(&mut results.no_outcome));
+            return Ok(());
+        }
         let cost = |entry: &Entry| self.plan.data.costs.of(&format!("model:{}", entry.name));
         let mut entries = self.budget.affordable(self.entries("model"), self.jobs, cost);
         entries.sort_by(|one, other| cost(other).total_cmp(&cost(one)));

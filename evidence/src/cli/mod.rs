@@ -115,7 +115,7 @@ pub struct Run {
     #[arg(long)]
     no_native: bool,
     /// Runs of each harness natively: such as meet its assumptions, on drawn values.
-    #[arg(long, default_value_t = 4000)]
+    #[arg(long, default_value_t = engines::NATIVE_RUNS)]
     native_runs: usize,
     /// Do not run the wrong kernels.
     #[arg(long)]

@@ -19,6 +19,7 @@ use atc_models::{Outcome, Searched};
 use atc_prover::report::{Campaign, SCHEMA};
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -62,6 +63,7 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
         sources: &sources,
         kept: &kept,
         budget: Budget::new(options.limit(), start),
+        found: Mutex::default(),
     };
     if kept.count() > 0 {
         eprintln!("{} results stand from an earlier run of this commit; run all again with --anew", kept.count());
@@ -128,16 +130,16 @@ fn beginning(
         first = Results { kept_since, campaigns, mutants, outcomes, no_outcome, opinions, measured, tests, ..first };
     }
     first.campaigns.extend(imported);
-    if !given.is_empty() {
-        let text = format!(
-            "{} of them were searched by the tests of this commit, and not once more in this run.",
-            given.len()
-        );
-        first.open.push(OpenItem { severity: Severity::Note, about: "models".to_owned(), text });
-    }
+    first.open.extend(searched_by_tests(given.len()));
     first.outcomes.retain(|old| !given.iter().any(|new| new.model == old.model));
     first.outcomes.extend(given);
     first
+}
+
+/// What the page says of so many models that the tests have searched.
+pub(super) fn searched_by_tests(models: usize) -> Option<OpenItem> {
+    let text = format!("{models} of them were searched by the tests of this commit, and not once more in this run.");
+    (models > 0).then(|| OpenItem { severity: Severity::Note, about: "models".to_owned(), text })
 }
 
 /// Does the work while line and page are kept up to date beside it.
@@ -164,7 +166,7 @@ fn ticking<T>(live: &Live, work: impl FnOnce() -> T) -> T {
 
 /// What the tests have found of the models of this run, each to the end. Of another commit, or of changed files, nothing is taken. A model that
 /// is not in the catalogue, or is there twice, is an error.
-fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen, now: &Provenance) -> Result<Vec<Outcome>, Fault> {
+pub(super) fn outcomes(path: &Path, plan: &Plan, chosen: &Chosen, now: &Provenance) -> Result<Vec<Outcome>, Fault> {
     let fault = |text: String| Fault::new(&path.display(), text);
     let Searched { commit, outcomes: found } =
         serde_json::from_str(&read(path)?).map_err(|error| fault(format!("no outcomes of models: {error}")))?;
@@ -191,7 +193,7 @@ fn is_of(commit: &str, now: &Provenance) -> bool {
 }
 
 /// A campaign of another engine or machine.
-fn import(path: &Path, sources: &str) -> Result<Campaigned, Fault> {
+pub(super) fn import(path: &Path, sources: &str) -> Result<Campaigned, Fault> {
     let campaign: Campaign = serde_json::from_str(&read(path)?)
         .map_err(|error| Fault::new(&path.display(), format!("no campaign: {error}")))?;
     if campaign.schema != SCHEMA {

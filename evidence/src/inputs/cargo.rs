@@ -1,5 +1,6 @@
 //! Cargo, on the checkout that the case is about and with nothing of another one.
 
+use crate::times;
 use std::io;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
@@ -29,7 +30,12 @@ pub const AS_IN_TESTS: [&str; 4] = ["--locked", "--workspace", "--test", "contra
 /// folder that checkouts share, Cargo can take a binary of one for that of another, and its results would be credited to these
 /// sources.
 pub fn command(root: &Path) -> Command {
-    let mut command = guarded(root, Path::new(&std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())));
+    in_checkout(root, Path::new(&std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())))
+}
+
+/// The same of a program that runs cargo.
+pub fn in_checkout(root: &Path, program: &Path) -> Command {
+    let mut command = guarded(root, program);
     let target = root.join("target");
     // The second is where newer versions put everything but what is asked for: test binaries as well.
     command.env("CARGO_TARGET_DIR", &target).env("CARGO_BUILD_BUILD_DIR", &target);
@@ -61,6 +67,21 @@ pub fn status(command: &mut Command, limit: Option<Duration>) -> io::Result<Opti
             drop(pipe);
             child.wait()?;
             return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// The same of what runs beside the phases of a run; also its seconds of processors, which no phase is charged with.
+///
+/// # Errors
+/// It cannot be started or waited for.
+pub fn status_beside(command: &mut Command) -> io::Result<(ExitStatus, f64)> {
+    let mut child = command.spawn()?;
+    let _pipe = child.stdin.take();
+    loop {
+        if let Some((status, seconds)) = times::beside(|| child.try_wait().transpose()) {
+            return Ok((status?, seconds));
         }
         std::thread::sleep(Duration::from_millis(50));
     }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// One test binary's closing line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,6 +67,34 @@ pub fn run(root: &Path, log: &Path, only: Option<&BTreeSet<(String, String)>>) -
     let status = cargo::status(&mut command, None)?;
     Ok(parse(&std::fs::read_to_string(log)?, status.is_some_and(|status| status.success())))
 }
+
+/// Where the tests of the whole workspace write what they find.
+#[derive(Clone, Debug)]
+pub struct Files {
+    /// What they print.
+    pub log: PathBuf,
+    /// What they find of the models: [`atc_models::Searched`].
+    pub outcomes: PathBuf,
+    /// What they find of the theorems, natively: a campaign.
+    pub native: PathBuf,
+}
+
+/// Runs all tests of the checkout at `root` as `ci/test` does, beside other work. Also their seconds of processors.
+///
+/// # Errors
+/// They cannot be started, or the log cannot be written.
+pub fn run_beside(root: &Path, files: &Files) -> io::Result<(Run, f64)> {
+    // The script keeps the log; what it prints besides is of no use here.
+    let said = File::create(files.log.with_extension("said"))?;
+    let mut command = cargo::in_checkout(root, &root.join(SCRIPT));
+    command.arg(&files.log).env("ATC_OUTCOMES", &files.outcomes).env("ATC_NATIVE", &files.native);
+    command.stdout(said.try_clone()?).stderr(said);
+    let (status, seconds) = cargo::status_beside(&mut command)?;
+    Ok((parse(&std::fs::read_to_string(&files.log)?, status.success()), seconds))
+}
+
+/// What runs all tests, from the checkout.
+pub const SCRIPT: &str = "ci/lib/tests";
 
 /// Reads what `cargo test` printed, both streams in one.
 pub fn parse(text: &str, success: bool) -> Run {
