@@ -242,6 +242,14 @@ fn heard(
         );
         wrong(what, format!("telegram_age_ms of {station} must be at least {lives}"));
     }
+    let (ours, stronger) = (strongest(description), strongest(its));
+    if comes && ours < stronger {
+        let what = format!(
+            "trains of {neighbour} may come from telegrams with a pattern of {stronger} mm/s², and {station} counts on at most {ours} for the distances \
+             of codes"
+        );
+        wrong(what, format!("strongest_mm_s2 of {station} must be at least {stronger}"));
+    }
     // What is from antenna to nose comes with the train.
     let (beyond, theirs) = (&description.station.braking.heard_beyond_m, &its.station.braking.heard_beyond_m);
     if comes && beyond.value < theirs.value {
@@ -250,6 +258,12 @@ fn heard(
         );
         wrong(what, format!("heard_beyond_m of {station} must be at least {theirs}"));
     }
+}
+
+/// The strongest brake on the level for which the distances of the codes hold.
+fn strongest(description: &Description) -> u16 {
+    let braking = &description.station.braking;
+    braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2).value
 }
 
 /// The length of the longest train of two stations; none if a file does not say.

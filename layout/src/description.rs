@@ -7,10 +7,13 @@ use std::path::Path;
 use crate::compile::{Compiled, compile};
 use crate::form::Station;
 use crate::graph::POINTS_IN_A_CIRCUIT;
-use crate::model::Model;
+use crate::model::{Model, Values};
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
 use crate::{check, derive};
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::code_stops_within;
 
 /// The rules that names and tracks must keep before anything can be said of routes.
 const TRACKS: [Rule; 4] = [Rule::NameTwice, Rule::NoSuchName, Rule::Joint, Rule::OpenJoint];
@@ -51,6 +54,18 @@ impl Description {
     /// Never: every layout has a form in TOML.
     pub fn to_toml(&self) -> String {
         toml::to_string(&self.station).expect("a layout has a form in TOML")
+    }
+
+    /// The speed in km/h of the first code whose distance is too short for a train that comes from telegrams by a pattern of `pattern` mm/s² on the level;
+    /// none if all are long enough. `values` are those of its model.
+    pub fn short_code(&self, values: &Values, pattern: u16) -> Option<u16> {
+        let brake = derive::values::from_telegrams(&self.station, pattern)?;
+        let codes = values.speeds_kmh.iter().zip(&values.braking).filter(|(speed, _)| **speed > 0);
+        let mut short = codes.filter(|(speed, distance)| {
+            let metres = Metres(distance.0.saturating_sub(values.heard_beyond.0));
+            !code_stops_within(brake, **speed, values.telegram_age_ms, metres)
+        });
+        short.next().map(|(speed, _)| *speed)
     }
 
     /// The layout with everything derived that the file leaves out, of any size, after every rule that needs names, geometry and times

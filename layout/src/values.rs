@@ -76,6 +76,10 @@ impl Default for Times {
 pub struct Braking {
     /// The deceleration on the level that every train has at least, 1 to 4095 mm/s².
     pub deceleration_mm_s2: At<u16>,
+    /// The deceleration on the level of the pattern by which a train comes from telegrams to codes, at most: `deceleration_mm_s2` to 4095. Without it
+    /// the distances of the codes hold for `deceleration_mm_s2` alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strongest_mm_s2: Option<At<u16>>,
     /// The speeds of the codes 1, 2, … in km/h: 1 to 7 of them, rising, at most 409.
     pub speeds_kmh: At<Vec<u16>>,
     /// How far beyond the end of its circuit a train may hear a code, with the metres from its antenna to its nose: 0 to 1000 [default: 0].
@@ -91,6 +95,7 @@ impl Default for Braking {
     fn default() -> Self {
         Self {
             deceleration_mm_s2: At::derived(800),
+            strongest_mm_s2: None,
             speeds_kmh: At::derived(vec![15, 25, 45, 55, 65, 75, 90]),
             heard_beyond_m: At::derived(0),
         }

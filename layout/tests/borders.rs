@@ -321,6 +321,23 @@ fn a_neighbour_whose_trains_hear_codes_farther_beyond() {
     assert!(held(&alike, &other).is_ok());
 }
 
+/// A train that comes from the neighbour may have come from telegrams by a stronger pattern there.
+#[test]
+fn a_neighbour_whose_trains_come_from_telegrams_by_a_stronger_pattern() {
+    let one = station("One", "", "line = \"b\"");
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    other.station.braking.strongest_mm_s2 = Some(At::derived(1_200));
+    refused(
+        &one,
+        &other,
+        "trains of Neighbour may come from telegrams with a pattern of 1200 mm/s², and One counts on at most 800 for the distances of codes; \
+         strongest_mm_s2 of One must be at least 1200",
+    );
+    let mut alike = one.clone();
+    alike.station.braking.strongest_mm_s2 = Some(At::derived(1_200));
+    assert!(held(&alike, &other).is_ok());
+}
+
 /// On a line for one direction the station that trains leave may count on less.
 #[test]
 fn an_age_on_a_line_for_one_direction() {

@@ -515,6 +515,27 @@ fn distances_round_up_and_times_as_is_safe() {
     assert_eq!(older(5_000).compile().unwrap().plan.braking[3].0, 98 + 63 + 10);
 }
 
+/// A train that comes from telegrams by a stronger pattern has room at a low code, too (T-ATC-8); only low codes are concerned.
+#[test]
+fn distances_hold_for_the_brake_from_telegrams() {
+    let given = |brake: &str| {
+        format!("{LOOP}\n[times]\ntelegram_age_ms = 5000\n[braking]\ndeceleration_mm_s2 = 500\n{brake}\n")
+    };
+    let of = |text: &str| Description::from_toml("loop", text).unwrap().compile();
+    let metres = |brake: &str| of(&given(brake)).unwrap().plan.braking.map(|distance| distance.0);
+    let (without, with) = (metres(""), metres("strongest_mm_s2 = 1600"));
+    // 15 km/h: (4.17 + 5 · 1.6)² / 3.2 = 46.3 m, against (4.17 + 5 · 0.5)² = 44.5 m and what is rounded.
+    assert_eq!((without[1], with[1]), (46, 47));
+    assert_eq!(with[2..], without[2..]);
+    assert_eq!(metres("strongest_mm_s2 = 500"), without);
+    let written = Description::from_toml("loop", &given("strongest_mm_s2 = 1600")).unwrap().to_toml();
+    assert!(written.contains("strongest_mm_s2 = 1600"));
+    let range = "strongest_mm_s2 is 500 to 4095 mm/s²";
+    for wrong in ["499", "4096", "0"] {
+        breaks(&given(&format!("strongest_mm_s2 = {wrong}")), Rule::Range, range);
+    }
+}
+
 /// A code that is heard beyond its circuit is one from which a train stops within what begins at the circuit's end all the same (tenth attack).
 #[test]
 fn distances_hold_where_a_code_is_heard() {

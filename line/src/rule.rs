@@ -65,6 +65,7 @@ rules! {
     ReleasePromised, "release-promised", Engineering, "A withdrawn route stays locked for as long as the line promises its trains.";
     TurnPromised, "turn-promised", Engineering, "Plain line turns after no less than the line promises its trains.";
     Brake, "brake", Engineering, "The ground counts on no harder braking than trains do.";
+    FromTelegrams, "from-telegrams", Engineering, "A train that comes from telegrams to codes has the room that the distances of the codes hold.";
     ShuntLoss, "shunt-loss", Engineering, "A train's shunt is lost for no longer than the ground counts on.";
     LossWithinClear, "loss-within-clear", Engineering, "T_clear is at least twice the longest loss of a train's shunt, and exceeds it by two cycles.";
     Gradient, "gradient", Engineering, "No circuit is steeper than what trains assume.";

@@ -49,6 +49,12 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
             &braking.deceleration_mm_s2.span,
         ),
         row(
+            "Pattern from telegrams to codes, at most",
+            format!("{} mm/s²", braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2)),
+            "on the level; the distance of each code holds for it",
+            &braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2).span,
+        ),
+        row(
             "A code is heard beyond its circuit for",
             format!("{} m", braking.heard_beyond_m),
             "with the metres from antenna to nose; in the distance of each code",

@@ -151,6 +151,25 @@ fn stopping_ms(station: &Station, speeds_kmh: [u16; MAX_CODES]) -> u32 {
     brake(station).and_then(|brake| u32::try_from(of(brake)).ok()).unwrap_or(0)
 }
 
+/// What a train that comes from telegrams has of its brake there at most, with `level` on the level: on the steepest rise.
+pub(crate) fn from_telegrams(station: &Station, level: u16) -> Option<Deceleration> {
+    let rise = Gradient(worst(station).saturating_neg());
+    Deceleration::brake(level).map(|brake| brake.on(rise))
+}
+
+/// The strongest brake by which trains come from telegrams, if the file has one. One that is weaker than what all have, or that cannot be, is a problem.
+fn strongest(station: &Station, problems: &mut Vec<Problem>) -> Option<Deceleration> {
+    let given = station.braking.strongest_mm_s2.as_ref()?;
+    let least = station.braking.deceleration_mm_s2.value;
+    let brake = from_telegrams(station, given.value).filter(|_| given.value >= least);
+    if brake.is_none() {
+        let what = format!("no train that brakes with {least} mm/s² or more has a pattern of at most {given}");
+        let right = format!("strongest_mm_s2 is {least} to 4095 mm/s²");
+        problems.push(Problem::new(Rule::Range, &given.span, what, right));
+    }
+    brake
+}
+
 fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [Metres; MAX_CODES]) {
     let given = &station.braking;
     let age_ms = station.times.telegram_age_ms.value;
@@ -175,6 +194,7 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
         let right = format!("heard_beyond_m is 0 to {MOST_BEYOND_M}");
         problems.push(Problem::new(Rule::Range, &heard.span, what, right));
     }
+    let strongest = strongest(station, problems);
     let mut table = ([0; MAX_CODES], [Metres(u16::MAX); MAX_CODES]);
     let Some(brake) = brake else {
         let what = format!("no train brakes with {} mm/s²", given.deceleration_mm_s2);
@@ -190,8 +210,10 @@ fn codes(station: &Station, problems: &mut Vec<Problem>) -> ([u16; MAX_CODES], [
         match stopping(brake, KmhTenths(speed * 10)) {
             Some(distance) => {
                 let late = aged(*speed, age_ms).saturating_add(stepped(brake, age_ms));
-                // Each part is rounded up, so that the kernel finds the first one long enough.
-                let enough = |metres: &u16| code_stops_within(brake, *speed, age_ms, Metres(*metres));
+                // Each part is rounded up, so that the kernel finds the first one long enough. What is enough for two brakes is for all between.
+                let holds = |brake, metres: u16| code_stops_within(brake, *speed, age_ms, Metres(metres));
+                let enough =
+                    |metres: &u16| holds(brake, *metres) && strongest.is_none_or(|strongest| holds(strongest, *metres));
                 let metres = (distance.0.saturating_add(late)..u16::MAX).find(enough).unwrap_or(u16::MAX);
                 // The distance counts from the end of the circuit, and the train may be beyond it.
                 table.1[code] = Metres(metres.saturating_add(beyond));

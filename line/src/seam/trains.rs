@@ -48,6 +48,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
             with_signal(&|station, signal| turn(line, station, signal)),
         ),
         judged(Rule::Brake, scope(), each(&|station| brake(line, station))),
+        judged(Rule::FromTelegrams, scope(), with_signal(&|station, signal| from_telegrams(line, station, signal))),
         judged(Rule::ShuntLoss, scope(), with_loss(&|station, loss| shunt_loss(line, station, loss))),
         judged(Rule::LossWithinClear, scope(), with_loss(&|station, loss| clear(line, station, loss))),
         judged(
@@ -162,6 +163,23 @@ fn brake(line: &Line, one: Sound<'_>) -> Vec<Finding> {
     let what = format!("{} counts on a brake of {counted} mm/s², and trains brake with {brakes}", one.name());
     let right = format!("deceleration_mm_s2 must be at most {brakes}");
     vec![finding(one.station.at(&counted.span), line.places().at(path), what, right)]
+}
+
+/// A train that comes from telegrams has the room to stop with the brake of its pattern. If that is stronger than the brake which the distances of the
+/// codes hold, it may be so fast that it goes on at a low code too long.
+fn from_telegrams(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {
+    let (pattern, station) = (signal.permitted().settings().brake.mm_s2(), one.station.description());
+    let values = &one.model.values;
+    let Some(short) = station.short_code(values, pattern) else { return Vec::new() };
+    let braking = &station.station.braking;
+    let at = braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2);
+    let what = format!(
+        "the distance of the code of {short} km/h of {} holds for a brake of {at} mm/s² and weaker, and trains may come from telegrams by a pattern of \
+         {pattern}",
+        one.name()
+    );
+    let right = format!("strongest_mm_s2 of [braking] must be at least {pattern}");
+    vec![finding(one.station.at(&at.span), line.places().at("signal.brake_mm_s2"), what, right)]
 }
 
 fn shunt_loss(line: &Line, one: Sound<'_>, loss: u32) -> Vec<Finding> {

@@ -233,6 +233,12 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
         ("turn-promised", &[(line, "release_ms = 30000", "release_ms = 47001")], west, line),
         ("brake", &[(line, "brake_mm_s2 = 800", "brake_mm_s2 = 799")], west, line),
         (
+            "from-telegrams",
+            &[(line, "brake_mm_s2 = 800", "brake_mm_s2 = 1600"), (line, "brake_mm_s2 = 850", "brake_mm_s2 = 1700")],
+            west,
+            line,
+        ),
+        (
             "train-length",
             &[(line, "longest_m = 200", "longest_m = 201"), (line, "longest_train_m = 200", "longest_train_m = 201")],
             west,

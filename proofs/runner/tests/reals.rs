@@ -6,11 +6,19 @@ use atc_prover::{Options, Tools, reals, root, select};
 const NAME: &str = "t_atc_8";
 
 fn text() -> String {
-    std::fs::read_to_string(root().join("proofs/reals").join(format!("{NAME}.smt2"))).expect("the file")
+    text_of(NAME)
+}
+
+fn text_of(name: &str) -> String {
+    std::fs::read_to_string(root().join("proofs/reals").join(format!("{name}.smt2"))).expect("the file")
 }
 
 /// What is said of a text, and why; nothing without Z3.
 fn say(text: &str) -> Option<(Verdict, String)> {
+    say_of(NAME, text)
+}
+
+fn say_of(name: &str, text: &str) -> Option<(Verdict, String)> {
     let tools = Tools::find(&root()).ok().filter(|tools| tools.versions.contains_key("z3"));
     let Some(tools) = tools else {
         println!("NOT RUN: Z3 is not here");
@@ -20,7 +28,7 @@ fn say(text: &str) -> Option<(Verdict, String)> {
     let folder = root().join("target/proofs/reals-tested").join(thread);
     let limit = std::time::Duration::from_secs(3);
     let options = Options { folder, limit, ..Options::default() };
-    let harness = select(&[NAME.to_owned()]).expect("the harness")[0];
+    let harness = select(&[name.to_owned()]).expect("the harness")[0];
     let result = reals::prove(&tools, &options, harness, text);
     Some((result.verdict, result.reason.unwrap_or_default()))
 }
@@ -30,9 +38,24 @@ fn each_file_is_of_a_harness_and_is_proved() {
     for file in std::fs::read_dir(root().join("proofs/reals")).expect("the folder") {
         let name = file.expect("a file").path().file_stem().expect("a name").to_string_lossy().into_owned();
         assert_eq!(select(std::slice::from_ref(&name)).expect("a harness of that name").len(), 1);
+        let Some(said) = say_of(&name, &text_of(&name)) else { return };
+        assert_eq!(said, (Verdict::Proved, String::new()), "{name}");
     }
-    let Some(said) = say(&text()) else { return };
-    assert_eq!(said, (Verdict::Proved, String::new()));
+}
+
+/// Without the one brake or the other, and with the age once.
+#[test]
+fn a_brake_that_is_not_held_is_refuted() {
+    let right = text_of("t_atc_8_brakes");
+    for (find, replace) in [
+        ("(and numbers (holds weaker) (holds stronger))", "(and numbers (holds stronger))"),
+        ("(and numbers (holds weaker) (holds stronger))", "(and numbers (holds weaker))"),
+        ("(<= between stronger)", "true"),
+    ] {
+        assert!(right.contains(find), "{find}");
+        let Some((said, reason)) = say_of("t_atc_8_brakes", &right.replace(find, replace)) else { return };
+        assert_eq!(said, Verdict::Failed, "{replace}: {reason}");
+    }
 }
 
 /// Each with what is wrong, and who says so.

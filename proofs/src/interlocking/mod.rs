@@ -111,6 +111,7 @@ pub const ALL: &[Harness] = &[
     border::t_atc_6::HARNESS,
     out::t_atc_7::HARNESS,
     room::t_atc_8::HARNESS,
+    room::t_atc_8_brakes::HARNESS,
     layout::t_lay_2::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,

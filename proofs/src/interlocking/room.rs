@@ -129,3 +129,39 @@ harness! {
         e.cover(Cover::Lower as u32, code < later.speed);
     }
 }
+
+harness! {
+    /// A distance that is long enough for two brakes is long enough for every brake between them. So a layout asks for the weakest brake, and for the
+    /// strongest of a train that comes from telegrams.
+    t_atc_8_brakes(e)
+    theorem "T-ATC-8";
+    requirements ["ATC-16"];
+    assumptions [];
+    bound "brakes, ages and speeds of 0 to 7";
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Between: "the distance is long enough for the brake between",
+    }
+    covers {
+        Weaker: "the weaker brake needs more than the one between",
+        Stronger: "the stronger brake needs more than the one between",
+        Enough: "the distance is hardly enough for the one between, and for the others",
+    }
+    {
+        let (code, age) = (any_speed(e, "speed of the code"), any_speed(e, "age"));
+        let (weaker, between) = (any_speed(e, "the weaker brake"), any_speed(e, "a brake between"));
+        let stronger = any_speed(e, "the stronger brake");
+        e.assume(0 < weaker && weaker <= between && between <= stronger);
+        let twice = u64::from(e.word("twice the distance", 0..=256));
+        // What a train loses of its speed with its brake in the age.
+        let needed = |brake: u32| needed_room(code, brake * age).unwrap_or(u64::MAX);
+        let holds = |brake: u32| needed(brake) <= u64::from(brake) * twice;
+        e.assume(holds(weaker) && holds(stronger));
+        e.claim(Claim::Between as u32, holds(between));
+        let more = |brake: u32| needed(brake) * u64::from(between) > needed(between) * u64::from(brake);
+        e.cover(Cover::Weaker as u32, more(weaker) && weaker < between);
+        e.cover(Cover::Stronger as u32, more(stronger) && between < stronger);
+        e.cover(Cover::Enough as u32, weaker < between && between < stronger && twice > 0 && needed(between) > u64::from(between) * (twice - 1));
+    }
+}

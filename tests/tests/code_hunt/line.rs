@@ -6,6 +6,7 @@ use atc_kernel::interlocking::{
     RouteId, Segment, SegmentId, SegmentSet, SpeedCode, State, Travel,
 };
 use atc_kernel::time::Ticks;
+use atc_layout::At;
 use atc_layout::Description;
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
@@ -29,10 +30,16 @@ pub enum Place {
 /// The distances of the codes in metres, as a layout with this age (ms) and brake (mm/s²) has them, where codes are heard so many metres beyond their
 /// circuits.
 pub fn derived(age_ms: u32, brake: u16, heard_beyond: u16) -> [Option<u16>; MAX_CODES] {
+    derived_up_to(age_ms, brake, heard_beyond, None)
+}
+
+/// The same, where trains come from telegrams by a pattern with `strongest` at most.
+pub fn derived_up_to(age_ms: u32, brake: u16, heard_beyond: u16, strongest: Option<u16>) -> [Option<u16>; MAX_CODES] {
     let mut station = Description::from_toml("loop", LOOP).expect("a layout");
     station.station.times.telegram_age_ms.value = age_ms;
     station.station.braking.deceleration_mm_s2.value = brake;
     station.station.braking.heard_beyond_m.value = heard_beyond;
+    station.station.braking.strongest_mm_s2 = strongest.map(At::derived);
     // Approaches are long enough for any of them.
     station.station.circuits.iter_mut().for_each(|circuit| circuit.length_m.value *= 4);
     let values = station.model().expect("a model").values;

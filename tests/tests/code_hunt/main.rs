@@ -10,7 +10,7 @@ mod line;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{MAX_CODES, code_stops_within};
 use atc_kernel::pattern::Deceleration;
-use line::{Line, Place, SPEEDS, derived, steps};
+use line::{Line, Place, SPEEDS, derived, derived_up_to, steps};
 
 /// xorshift: the same numbers on every machine.
 struct Dice(u64);
@@ -148,6 +148,50 @@ fn a_code_that_is_heard_beyond_its_circuit() {
             assert!(!too_far || beyond > 10_000, "{what}");
         }
     }
+}
+
+/// How far a train comes beyond its end, in mm, that has just the room to stop with the brake of its pattern, and is told a code just where the
+/// distance of that is left. It brakes to the code, goes on at it until it is as old as may be, and brakes again. In steps of 1 ms.
+fn beyond_from_telegrams(kmh: u32, metres: u16, (age_ms, pattern): (u32, u16), speed_mm_s: i64) -> i64 {
+    let (brake, code) = (i64::from(pattern), i64::from(kmh) * 1_000_000_000 / 3_600);
+    let room = (i64::from(metres) * 1_000).max(speed_mm_s * speed_mm_s / (2 * brake) + 1);
+    // µm/s and nm.
+    let (mut speed, mut run, mut time) = (speed_mm_s * 1_000, 0_i64, 0);
+    while speed > 0 {
+        if time < age_ms {
+            speed = if speed > code { code.max(speed - brake) } else { code };
+        } else {
+            speed -= brake;
+        }
+        run += speed.max(0);
+        time += 1;
+    }
+    run / 1_000_000 - room
+}
+
+/// A train that comes from telegrams to codes, by a stronger pattern than the brake which the distances hold: it may be so fast that it goes on at a low
+/// code for too long. With the pattern in the layout it does not (a reader of T-ATC-8).
+#[test]
+fn a_train_that_comes_from_telegrams() {
+    let worst = |strongest: Option<u16>, (age_ms, weakest): (u32, u16), pattern: u16| {
+        let distances = derived_up_to(age_ms, weakest, 0, strongest);
+        let codes = SPEEDS.into_iter().zip(distances.into_iter().skip(1));
+        let of = |(kmh, metres): (u32, Option<u16>)| {
+            let metres = metres.expect("a distance");
+            (0..30_000).step_by(100).map(move |speed| beyond_from_telegrams(kmh, metres, (age_ms, pattern), speed))
+        };
+        codes.flat_map(of).max().expect("some speeds")
+    };
+    for (train, pattern) in [((8_000, 500), 1_200), ((5_000, 800), 1_600), ((8_000, 500), 1_000)] {
+        assert!(worst(None, train, pattern) > 500, "{train:?} {pattern}: nothing to hold against");
+        // Every brake between the two as well.
+        for between in (train.1..=pattern).step_by(100) {
+            let beyond = worst(Some(pattern), train, between);
+            assert!(beyond <= 0, "{train:?}, up to {pattern}, with {between}: {beyond} mm");
+        }
+    }
+    // One brake needs no more than its own.
+    assert!(worst(None, (8_000, 500), 500) <= 0);
 }
 
 /// What the kernel takes for enough, and what `layout` derives, against exact numbers: (c + b·a)² ≤ 2·b·d, all in 1/9000 mm/s.
