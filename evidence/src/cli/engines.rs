@@ -138,7 +138,7 @@ impl Engines<'_> {
             let tests = beside.then(|| scope.spawn(|| self.all_tests(live)));
             self.long(live, &provers)?;
             tests.map_or(Ok(()), |tests| {
-                // Other tests of the list of phases are over.
+                // All that they ran beside is over.
                 live.progress.begin(TESTS);
                 live.progress.watch(&self.files().log);
                 let done = tests.join().unwrap_or_else(|panic| resume_unwind(panic));
@@ -148,7 +148,7 @@ impl Engines<'_> {
         })
         .map_err(one)?;
         if beside {
-            self.take(live)?;
+            self.take(live);
             self.native(live, &provers).map_err(one)?;
             self.models(live)?;
         }
@@ -199,22 +199,22 @@ impl Engines<'_> {
         Ok(())
     }
 
-    /// Takes what the tests have found of theorems and models: of these very sources, or nothing.
-    fn take(&self, live: &Live) -> Result<(), Vec<Fault>> {
-        let files = self.files();
-        let mut found = BTreeSet::new();
+    /// Takes what the tests have found of theorems and models: of these very sources, or nothing. What cannot be read is sought here.
+    fn take(&self, live: &Live) {
+        let (files, mut found) = (self.files(), BTreeSet::new());
         if files.native.is_file() && !self.options.no_native && self.options.native_runs == NATIVE_RUNS {
-            let Campaigned { campaign, stale, .. } =
-                run::import(&files.native, self.sources).map_err(|fault| vec![fault])?;
-            if !stale {
+            let taken = run::import(&files.native, self.sources).map_err(|fault| eprintln!("not used: {fault}"));
+            if let Some(Campaigned { campaign, .. }) = taken.ok().filter(|one| !one.stale) {
                 self.enter(live, "native", &campaign.harnesses, Some(&campaign.provenance));
                 found.extend(campaign.harnesses.iter().map(|one| format!("native:{}", one.name)));
             }
         }
         if files.outcomes.is_file() && !self.options.no_models {
             let now = live.with(|results| results.provenance.clone());
-            let outcomes = run::outcomes(&files.outcomes, self.plan, self.chosen, &now).map_err(|fault| vec![fault])?;
-            let new: Vec<_> = outcomes.into_iter().filter(|one| !self.has(&format!("model:{}", one.model))).collect();
+            let taken = run::outcomes(&files.outcomes, self.plan, self.chosen, &now)
+                .map_err(|fault| eprintln!("not used: {fault}"));
+            let mut new = taken.unwrap_or_default();
+            new.retain(|one| !self.has(&format!("model:{}", one.model)));
             found.extend(new.iter().map(|one| format!("model:{}", one.model)));
             live.with(|results| {
                 results.open.extend(run::searched_by_tests(new.len()));
@@ -222,7 +222,6 @@ impl Engines<'_> {
             });
         }
         self.found.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
-        Ok(())
     }
 
     /// The names of the harnesses of the run, the cheapest first.
