@@ -10,7 +10,8 @@ use crate::output::SUMS;
 use crate::results;
 use crate::scope::Scope;
 use atc_models::Outcome;
-use atc_prover::report::{MutantVerdict, Verdict};
+use atc_prover::reals;
+use atc_prover::report::{HarnessResult, MutantVerdict, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -81,7 +82,10 @@ fn concluded(mut old: Results) -> Kept {
             other => other,
         };
         let ended = |verdict| matches!(verdict, Verdict::Proved | Verdict::Tested | Verdict::Vacuous | Verdict::Failed);
-        one.campaign.harnesses.retain(|harness| ended(harness.verdict) && as_large(&harness.name, &harness.bound));
+        // What is proved over all real numbers has no size.
+        let sized = one.campaign.engine != reals::ENGINE;
+        let as_today = |harness: &HarnessResult| !sized || as_large(&harness.name, &harness.bound);
+        one.campaign.harnesses.retain(|harness| ended(harness.verdict) && as_today(harness));
         ids.extend(one.campaign.harnesses.iter().map(|harness| format!("{kind}:{}", harness.name)));
     }
     old.mutants = old.mutants.filter(|(_, stale)| !stale);
@@ -180,6 +184,17 @@ mod checks {
             write(folder.path(), &old);
             assert_eq!(again(folder.path(), &old).has(&format!("harness:{}", harness.name)), stands, "{bound}");
         }
+    }
+
+    #[test]
+    fn what_is_proved_of_all_real_numbers_stands() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut old = found();
+        old.campaigns[0].campaign.engine = atc_prover::reals::ENGINE.to_owned();
+        let one = &mut old.campaigns[0].campaign.harnesses[0];
+        (one.name, one.bound) = ("t_atc_8".to_owned(), String::new());
+        write(folder.path(), &old);
+        assert!(again(folder.path(), &old).has("reals:t_atc_8"));
     }
 
     #[test]
