@@ -6,13 +6,12 @@
 //! theorem says more than that one more mutant is rejected by it.
 
 use super::budget::Budget;
-use super::{HERE, Run, run};
+use super::{HERE, Run};
 use crate::again::{self, Kept};
-use crate::case::Phase;
-use crate::error::{Fault, read};
+use crate::error::Fault;
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::{self, Opinion};
-use crate::inputs::{faults, measured, tests};
+use crate::inputs::{faults, measured};
 use crate::live::Live;
 use crate::output::Folder;
 use crate::plan::Plan;
@@ -30,7 +29,7 @@ use std::convert::Infallible;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const NATIVE: &str = "native tests of theorems";
 const CHEAP: &str = "proofs, the short ones";
@@ -42,13 +41,11 @@ const MEASURED: &str = "measurements";
 
 /// What measures, as an item of a phase.
 const BENCH: &str = "waveform bench";
-const TESTS: &str = "tests";
+/// The tests, as a phase.
+pub(super) const TESTS: &str = "tests";
 
 /// Runs of each harness natively, in the tests as here.
 pub const NATIVE_RUNS: usize = 4000;
-
-/// About how many seconds some of the tests take, where they are built.
-const PART_OF_TESTS: f64 = 20.0;
 
 /// A theorem that takes more seconds than an ordinary one belongs to the second pass.
 const LONG: f64 = 1.5;
@@ -171,59 +168,6 @@ impl Engines<'_> {
         if limited { Ok(()) } else { self.theorems(live, provers, HARD, &self.pass(true)) }
     }
 
-    /// Whether all tests run beside the theorems that take long. Alone, they leave processors idle; and what they find of theorems
-    /// and models is not sought twice.
-    fn tests_beside(&self) -> bool {
-        let here = !self.options.no_tests && self.options.test_results.is_none() && !self.tests_stand();
-        let whole = *self.scope == Scope::Whole && self.chosen.tests == Tests::All && !self.budget.is_limited();
-        here && whole && self.root.join(tests::SCRIPT).is_file()
-    }
-
-    fn files(&self) -> tests::Files {
-        let file = |name: &str| self.folder.stage().join(name);
-        tests::Files { log: file("tests.log"), outcomes: file("outcomes.json"), native: file("native.json") }
-    }
-
-    /// Runs all tests, beside other work.
-    fn all_tests(&self, live: &Live) -> Result<(), Fault> {
-        let started = Instant::now();
-        let (run, cpu_seconds) =
-            tests::run_beside(self.root, &self.files()).map_err(|error| Fault::new(&tests::SCRIPT, error))?;
-        let wall_seconds = started.elapsed().as_secs_f64();
-        let slowest = vec![("cargo test".to_owned(), wall_seconds)];
-        let name = format!("{TESTS}, beside what is long");
-        live.with(|results| {
-            results.tests = Some(run);
-            results.phases.push(Phase { name, items: 1, wall_seconds, cpu_seconds, slowest });
-        });
-        Ok(())
-    }
-
-    /// Takes what the tests have found of theorems and models: of these very sources, or nothing. What cannot be read is sought here.
-    fn take(&self, live: &Live) {
-        let (files, mut found) = (self.files(), BTreeSet::new());
-        if files.native.is_file() && !self.options.no_native && self.options.native_runs == NATIVE_RUNS {
-            let taken = run::import(&files.native, self.sources).map_err(|fault| eprintln!("not used: {fault}"));
-            if let Some(Campaigned { campaign, .. }) = taken.ok().filter(|one| !one.stale) {
-                self.enter(live, "native", &campaign.harnesses, Some(&campaign.provenance));
-                found.extend(campaign.harnesses.iter().map(|one| format!("native:{}", one.name)));
-            }
-        }
-        if files.outcomes.is_file() && !self.options.no_models {
-            let now = live.with(|results| results.provenance.clone());
-            let taken = run::outcomes(&files.outcomes, self.plan, self.chosen, &now)
-                .map_err(|fault| eprintln!("not used: {fault}"));
-            let mut new = taken.unwrap_or_default();
-            new.retain(|one| !self.has(&format!("model:{}", one.model)));
-            found.extend(new.iter().map(|one| format!("model:{}", one.model)));
-            live.with(|results| {
-                results.open.extend(run::searched_by_tests(new.len()));
-                results.outcomes.extend(new);
-            });
-        }
-        self.found.lock().unwrap_or_else(PoisonError::into_inner).extend(found);
-    }
-
     /// The names of the harnesses of the run, the cheapest first.
     fn harnesses(&self, wanted: impl Fn(f64) -> bool) -> Vec<String> {
         let costs = &self.plan.data.costs;
@@ -236,7 +180,7 @@ impl Engines<'_> {
     }
 
     /// Whether there is a result already: of an earlier run, or of the tests of this one.
-    fn has(&self, id: &str) -> bool {
+    pub(super) fn has(&self, id: &str) -> bool {
         self.kept.has(id) || self.found.lock().unwrap_or_else(PoisonError::into_inner).contains(id)
     }
 
@@ -289,13 +233,8 @@ impl Engines<'_> {
         self.measures_here() && !self.options.no_models && !self.entries("model").is_empty()
     }
 
-    /// Whether an earlier run's tests stand. Those that are given are looked at in any case.
-    fn tests_stand(&self) -> bool {
-        self.kept.has(again::TESTS) && self.options.test_results.is_none()
-    }
-
     /// One phase: its progress, and where its time went.
-    fn phase<E>(live: &Live, name: &str, work: impl FnOnce() -> Result<Items, E>) -> Result<(), E> {
+    pub(super) fn phase<E>(live: &Live, name: &str, work: impl FnOnce() -> Result<Items, E>) -> Result<(), E> {
         live.progress.begin(name);
         let watch = Watch::start(name);
         let items = work()?;
@@ -312,7 +251,7 @@ impl Engines<'_> {
     }
 
     /// Enters results of an engine that runs here; those of the same harnesses that were entered before go.
-    fn enter(&self, live: &Live, engine: &str, new: &[HarnessResult], said: Option<&Provenance>) {
+    pub(super) fn enter(&self, live: &Live, engine: &str, new: &[HarnessResult], said: Option<&Provenance>) {
         live.with(|results| {
             let mine = |one: &Campaigned| one.campaign.engine == engine && one.source == HERE;
             if !results.campaigns.iter().any(mine) {
@@ -491,42 +430,5 @@ impl Engines<'_> {
         live.with(|results| results.measured = Some(run));
         live.progress.done(BENCH);
         (BENCH.to_owned(), seconds)
-    }
-
-    fn suites(&self, live: &Live) -> Result<(), Fault> {
-        let enter = |run: tests::Run| live.with(|results| results.tests = Some(run));
-        if self.tests_stand() {
-            return Ok(());
-        }
-        if let Some(path) = &self.options.test_results {
-            let text = read(path)?;
-            // A record has no exit code: a failure in it is seen by its own lines.
-            enter(tests::parse(&text, !text.contains("error: ")));
-            return Ok(());
-        }
-        let only = match &self.chosen.tests {
-            Tests::None => return Ok(()),
-            _ if self.options.no_tests => {
-                enter(tests::Run::NotRun("left out by --no-tests".to_owned()));
-                return Ok(());
-            }
-            Tests::Some(targets) if targets.is_empty() => {
-                enter(tests::Run::NotRun(self.scope.why()));
-                return Ok(());
-            }
-            Tests::Some(targets) => Some(targets),
-            Tests::All => None,
-        };
-        if self.budget.affordable(vec![()], self.jobs, |()| PART_OF_TESTS).is_empty() {
-            return Ok(());
-        }
-        Self::phase(live, TESTS, || {
-            let log = self.folder.stage().join("tests.log");
-            live.progress.watch(&log);
-            let watch = Watch::start(TESTS);
-            let run = tests::run(self.root, &log, only).map_err(|error| Fault::new(&"cargo test", error))?;
-            enter(run);
-            Ok(vec![("cargo test".to_owned(), watch.end(Vec::new()).wall_seconds)])
-        })
     }
 }

@@ -5,6 +5,7 @@ mod engines;
 mod merge;
 mod render;
 mod run;
+mod suites;
 
 use crate::build::Required;
 use crate::error::Fault;

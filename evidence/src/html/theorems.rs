@@ -95,9 +95,9 @@ fn mutants(case: &Case) -> Markup {
         h3 #mutants { "4.4 Wrong kernels" }
         p { "Each is the kernel with one fault put in on purpose. A theorem that does not notice is too weak. "
             em { "tested" } " means: rejected; " em { "failed" } " means: it survived. For each there are counterexamples that the prover found \
-             once, in the theorem as it is proved. All are run, on this very code: with the fault a claim must fail, without it none. Some theorems, \
-             drawn by the hash of the sources, are given to the prover with the faults once more, and it must reject them; so is every fault \
-             whose counterexample does not fail any more. A theorem that is not proved of the right kernel rejects nothing." }
+             once, in the theorem as it is proved. All are run, on this very code: with the fault a claim must fail, without it none. Where the provers are \
+             installed, some theorems, drawn by the hash of the sources, are given to the prover with the faults once more, and it must reject \
+             them; so is every fault whose counterexample does not fail any more. A theorem that is not proved of the right kernel rejects nothing." }
         @if of(case, Kind::Mutant).next().is_none() { p.cannot { "No wrong kernel is listed." } }
         table {
             thead { tr { th { "Wrong kernel" } th { "What is wrong" } th { "Breaks" } th { "Verdict" } th { "Rejected by (claims)" } th.num { "Time" } } }

@@ -319,6 +319,13 @@ fn try_mutants(names: &[String], json: Option<PathBuf>, options: &Options) -> Re
     if options.asking == Asking::Record {
         let new = Recorded::read(&root())?.record(&root(), &atc_prover::mutants::list(&root())?, &result.mutants)?;
         println!("{new} counterexamples kept anew in {}", recorded::FILE);
+        // The sample of a later run asks the harnesses at their smaller size: what is not rejected there would be an error then.
+        let smaller = mutants(&Options { asking: Asking::All, ..options.clone() }, names, &|_| ())?.mutants;
+        let passed = smaller.iter().filter(|mutant| mutant.verdict != MutantVerdict::Killed);
+        let passed: Vec<_> = passed.map(|mutant| mutant.name.as_str()).collect();
+        if !passed.is_empty() {
+            return Err(format!("not rejected at the size that the sample asks: {}", passed.join(", ")));
+        }
     }
     save(&json.unwrap_or_else(|| default("mutants.json")), &result)?;
     Ok(killed == result.mutants.len())

@@ -1,6 +1,7 @@
 //! Named mutants. Each is a change of a line or two in a copy of the kernel and its arithmetic; a theorem that is proved of the kernel must fail on it.
 //!
-//! Most are compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
+//! Each is run on the counterexamples that are kept of it (`recorded.rs`). The prover is asked of what they do not reject, and of a sample: most are
+//! compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
 
 use crate::alone::attempt;
 use crate::campaign::{Asking, Options, flags, in_parallel, lock};
@@ -110,22 +111,7 @@ pub fn mutants(
     let versions = tools.as_ref().map(|tools| tools.versions.clone()).unwrap_or_default();
     let mut provenance = provenance::of(&root, versions, flags(options.solver))?;
     let tally = Tally::new(&chosen, progress);
-    let kept = if options.asking == Asking::Some {
-        Recorded::read(&root).and_then(|recorded| recorded::replay(&root, options, &chosen, &recorded))
-    } else {
-        Ok(BTreeMap::new())
-    };
-    let kept = kept.unwrap_or_else(|reason| {
-        // As with a group that does not compile: an error for each of them, and nothing else of the run is lost.
-        let wrong = |(place, mutant): (usize, &&Mutant)| {
-            mutant
-                .killed_by
-                .iter()
-                .map(|name| ((place, name.clone()), Judged::Error(reason.clone())))
-                .collect::<Vec<_>>()
-        };
-        chosen.iter().enumerate().flat_map(wrong).collect()
-    });
+    let kept = kept(&root, options, &chosen);
     let is_asked = |place: usize, name: &str| match kept.get(&(place, name.to_owned())) {
         Some(Judged::Rejects(_)) => is_drawn(&provenance.sources_sha256, name),
         other => other.is_none(),
@@ -167,6 +153,23 @@ pub fn mutants(
     let results = tally.results();
     provenance.seconds = started.elapsed().as_secs_f64();
     Ok(Mutants { schema: SCHEMA, provenance, mutants: results, controls })
+}
+
+/// What the counterexamples that are kept say of these mutants, by place and harness.
+fn kept(root: &Path, options: &Options, mutants: &[&Mutant]) -> BTreeMap<(usize, String), Judged> {
+    // They are of the harnesses at their own size.
+    if options.asking != Asking::Some || options.aspects != atc_proofs::ASPECTS {
+        return BTreeMap::new();
+    }
+    let found = Recorded::read(root).and_then(|recorded| recorded::replay(root, options, mutants, &recorded));
+    found.unwrap_or_else(|reason| {
+        // As with a group that does not compile: an error for each of them, and nothing else of the run is lost.
+        let names = mutants
+            .iter()
+            .enumerate()
+            .flat_map(|(place, mutant)| mutant.killed_by.iter().map(move |name| (place, name)));
+        names.map(|(place, name)| ((place, name.clone()), Judged::Error(reason.clone()))).collect()
+    })
 }
 
 /// Asks the prover of these mutants, together where that can be. Returns the controls.
