@@ -22,6 +22,9 @@ const BEGIN: Duration = Duration::from_secs(8);
 /// For how long a process that has closed its output may take to end before it counts as one that goes on.
 const END: Duration = Duration::from_millis(700);
 
+/// For how long what a process has said at last may take to be read, on a busy machine.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+
 /// What the other side did in place of a reply that can be compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Broken {
@@ -85,6 +88,8 @@ struct Running {
     stdin: ChildStdin,
     stdout: ChildStdout,
     stderr: Arc<Mutex<Vec<u8>>>,
+    /// Reads it, until nobody holds it open any more.
+    keeper: std::thread::JoinHandle<()>,
     /// Whether it has answered: the first reply may take longer, for an interpreter to start.
     answered: bool,
     /// What was read and not yet taken as a line.
@@ -217,8 +222,8 @@ impl Running {
         let kept = Arc::new(Mutex::new(Vec::new()));
         let keeps = Arc::clone(&kept);
         // Ends with the process: at the end of its output.
-        std::thread::Builder::new().name("stderr".to_owned()).spawn(move || keep(stderr, &keeps))?;
-        Ok(Self { child, stdin, stdout, stderr: kept, answered: false, read: Vec::new() })
+        let keeper = std::thread::Builder::new().name("stderr".to_owned()).spawn(move || keep(stderr, &keeps))?;
+        Ok(Self { child, stdin, stdout, stderr: kept, keeper, answered: false, read: Vec::new() })
     }
 
     /// Writes a line and reads one. Both pipes may be full: what can go on, goes on.
@@ -294,8 +299,11 @@ impl Running {
         }
         drop(self.child.kill());
         drop(self.child.wait());
-        // The last words may still be on their way.
-        std::thread::sleep(Duration::from_millis(2));
+        // The last words may still be on their way. What it has left behind may hold the pipe open: nobody waits for that.
+        let since = Instant::now();
+        while !self.keeper.is_finished() && since.elapsed() < LAST_WORDS {
+            std::thread::sleep(Duration::from_millis(1));
+        }
         (status, self.said())
     }
 }
