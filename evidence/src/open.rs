@@ -81,6 +81,13 @@ pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
             "No model enumerates minimal cut sets: nobody knows which faults together reach a hazard.".to_owned();
         items.push(item(Severity::Open, "cut sets", text));
     }
+    // Only a run of all tests has those of the documentation.
+    let tested = |id: &str| case.evidence.iter().any(|one| one.id.starts_with(id) && one.verdict.is_result());
+    if tested("test:all") && !tested("test:doc:") {
+        let text = "The tests that this case names ran, with the unit tests of all libraries. `ci/test` runs the others as well: \
+                    those of commands, imports, pages and C. (In this run: `--all-tests`.)";
+        items.push(item(Severity::Note, "tests", text.to_owned()));
+    }
     for mode in case.failure_modes.iter().filter(|mode| !mode.safe) {
         let text = format!("The single fault \"{}\" is not safe: only a condition excludes it.", mode.fault);
         items.push(item(Severity::Note, &mode.model, text));

@@ -185,6 +185,13 @@ impl Plan {
             .chain(["test:all".to_owned()])
             .collect()
     }
+
+    /// The test programs among them. The others are a library's unit tests, or all that ran.
+    pub fn test_programs(&self) -> BTreeSet<String> {
+        let named = self.tests_named();
+        let names = named.iter().filter_map(|id| id.strip_prefix("test:"));
+        names.filter(|name| *name != "all" && !name.starts_with("atc_")).map(ToOwned::to_owned).collect()
+    }
 }
 
 #[cfg(test)]

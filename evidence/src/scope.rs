@@ -78,10 +78,33 @@ impl Scope {
 pub enum Tests {
     /// Those of the whole workspace.
     All,
+    /// The test programs that the case names, and the unit tests of every library.
+    Named(BTreeSet<String>),
     /// None.
     None,
     /// These: package and test target.
     Some(BTreeSet<(String, String)>),
+}
+
+impl Tests {
+    /// What cargo is told besides `test`.
+    pub fn arguments(&self) -> Vec<String> {
+        let pair = |flag: &str, name: &String| [flag.to_owned(), name.clone()];
+        match self {
+            Self::All => vec!["--workspace".to_owned()],
+            Self::Named(programs) => ["--workspace", "--lib"]
+                .map(ToOwned::to_owned)
+                .into_iter()
+                .chain(programs.iter().flat_map(|program| pair("--test", program)))
+                .collect(),
+            Self::None => vec!["--no-run".to_owned()],
+            Self::Some(targets) => targets
+                .iter()
+                .flat_map(|(package, target)| [pair("--package", package), pair("--test", target)])
+                .flatten()
+                .collect(),
+        }
+    }
 }
 
 /// The pieces of evidence within a scope.
@@ -100,11 +123,14 @@ impl Chosen {
     /// There is no such part.
     pub fn of(plan: &Plan, scope: &Scope) -> Result<Self, Fault> {
         match scope {
-            Scope::Whole => Ok(Self { ids: plan.ids().into_iter().collect(), tests: Tests::All }),
+            Scope::Whole => {
+                Ok(Self { ids: plan.ids().into_iter().collect(), tests: Tests::Named(plan.test_programs()) })
+            }
             Scope::Shard(shard) => {
                 let numbers = shards(plan, shard.of);
                 let ids = numbers.into_iter().filter(|(_, number)| *number == shard.number).map(|(id, _)| id);
-                Ok(Self { ids: ids.collect(), tests: if shard.number == 1 { Tests::All } else { Tests::None } })
+                let named = || Tests::Named(plan.test_programs());
+                Ok(Self { ids: ids.collect(), tests: if shard.number == 1 { named() } else { Tests::None } })
             }
             Scope::Part(part) => {
                 let known = parts(plan);
@@ -118,6 +144,13 @@ impl Chosen {
                 Ok(of_part(plan, part))
             }
         }
+    }
+
+    /// With the tests of the whole workspace, where tests are within that a part does not choose.
+    #[must_use]
+    pub fn with_all_tests(self) -> Self {
+        let tests = if matches!(self.tests, Tests::Named(_)) { Tests::All } else { self.tests };
+        Self { tests, ..self }
     }
 
     /// Whether this is within: `harness:…`, `model:…`, `mutant:…` or `measured:…`.

@@ -132,7 +132,7 @@ impl Engines<'_> {
             self.models(live)?;
         }
         std::thread::scope(|scope| {
-            let tests = beside.then(|| scope.spawn(|| self.all_tests(live)));
+            let tests = beside.then(|| scope.spawn(|| self.run_tests(live)));
             self.long(live, &provers)?;
             tests.map_or(Ok(()), |tests| {
                 // All that they ran beside is over.

@@ -133,6 +133,9 @@ pub struct Run {
     /// Do not run the tests.
     #[arg(long)]
     no_tests: bool,
+    /// Run all tests of the workspace, as ci/test does; without this, those that the case names.
+    #[arg(long, conflicts_with = "no_tests")]
+    all_tests: bool,
     /// What `cargo test` printed (both streams in one file), instead of running it.
     #[arg(long, conflicts_with = "no_tests")]
     test_results: Option<PathBuf>,

@@ -33,7 +33,10 @@ pub fn run(options: &Run) -> Result<u8, Vec<Fault>> {
     let root = checkout(options.root.as_deref()).map_err(one)?;
     let plan = planned(&root, options.config.as_deref(), options.layout.as_deref())?;
     let scope = options.scope();
-    let chosen = Chosen::of(&plan, &scope).map_err(one)?;
+    let mut chosen = Chosen::of(&plan, &scope).map_err(one)?;
+    if options.all_tests {
+        chosen = chosen.with_all_tests();
+    }
     let sources = prover::sources(&root).map_err(one)?;
     let campaigns =
         options.import.iter().map(|path| import(path, &sources)).collect::<Result<Vec<_>, _>>().map_err(one)?;

@@ -18,16 +18,16 @@ use std::time::Instant;
 const PART_OF_TESTS: f64 = 20.0;
 
 impl Engines<'_> {
-    /// Whether an earlier run's tests stand. Those that are given are looked at in any case.
+    /// Whether an earlier run's tests stand. Those that are given are looked at in any case, and it may not have had all.
     pub(super) fn tests_stand(&self) -> bool {
-        self.kept.has(again::TESTS) && self.options.test_results.is_none()
+        self.kept.has(again::TESTS) && self.options.test_results.is_none() && !self.options.all_tests
     }
 
-    /// Whether all tests run beside the theorems that take long. Alone, they leave processors idle; and what they find of theorems
+    /// Whether the tests run beside the theorems that take long. Alone, they leave processors idle; and what they find of theorems
     /// and models is not sought twice.
     pub(super) fn tests_beside(&self) -> bool {
         let here = !self.options.no_tests && self.options.test_results.is_none() && !self.tests_stand();
-        let whole = *self.scope == Scope::Whole && self.chosen.tests == Tests::All && !self.budget.is_limited();
+        let whole = *self.scope == Scope::Whole && self.chosen.tests != Tests::None && !self.budget.is_limited();
         here && whole && self.root.join(tests::SCRIPT).is_file()
     }
 
@@ -36,11 +36,12 @@ impl Engines<'_> {
         tests::Files { log: file("tests.log"), outcomes: file("outcomes.json"), native: file("native.json") }
     }
 
-    /// Runs all tests, beside other work.
-    pub(super) fn all_tests(&self, live: &Live) -> Result<(), Fault> {
+    /// Runs the tests, beside other work.
+    pub(super) fn run_tests(&self, live: &Live) -> Result<(), Fault> {
         let started = Instant::now();
+        let programs = if let Tests::Named(programs) = &self.chosen.tests { Some(programs) } else { None };
         let (run, cpu_seconds) =
-            tests::run_beside(self.root, &self.files()).map_err(|error| Fault::new(&tests::SCRIPT, error))?;
+            tests::run_beside(self.root, &self.files(), programs).map_err(|error| Fault::new(&tests::SCRIPT, error))?;
         let wall_seconds = started.elapsed().as_secs_f64();
         let slowest = vec![("cargo test".to_owned(), wall_seconds)];
         let name = format!("{TESTS}, beside what is long");
@@ -87,7 +88,7 @@ impl Engines<'_> {
             enter(tests::parse(&text, !text.contains("error: ")));
             return Ok(());
         }
-        let only = match &self.chosen.tests {
+        match &self.chosen.tests {
             Tests::None => return Ok(()),
             _ if self.options.no_tests => {
                 enter(tests::Run::NotRun("left out by --no-tests".to_owned()));
@@ -97,9 +98,8 @@ impl Engines<'_> {
                 enter(tests::Run::NotRun(self.scope.why()));
                 return Ok(());
             }
-            Tests::Some(targets) => Some(targets),
-            Tests::All => None,
-        };
+            Tests::Some(_) | Tests::Named(_) | Tests::All => {}
+        }
         if self.budget.affordable(vec![()], self.jobs, |()| PART_OF_TESTS).is_empty() {
             return Ok(());
         }
@@ -107,7 +107,8 @@ impl Engines<'_> {
             let log = self.folder.stage().join("tests.log");
             live.progress.watch(&log);
             let watch = Watch::start(TESTS);
-            let run = tests::run(self.root, &log, only).map_err(|error| Fault::new(&"cargo test", error))?;
+            let run =
+                tests::run(self.root, &log, &self.chosen.tests).map_err(|error| Fault::new(&"cargo test", error))?;
             enter(run);
             Ok(vec![("cargo test".to_owned(), watch.end(Vec::new()).wall_seconds)])
         })

@@ -5,6 +5,7 @@
 
 use super::cargo;
 use crate::case::{Evidence, Kind};
+use crate::scope::Tests;
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -43,32 +44,21 @@ pub enum Run {
     },
 }
 
-/// Runs `cargo test` on the whole workspace at `root`, or on these packages and test targets, with its output in the file
-/// `log`.
+/// Runs `cargo test` on these tests of the workspace at `root`, with its output in the file `log`.
 ///
 /// # Errors
 /// Cargo cannot be started, or the log cannot be written.
-pub fn run(root: &Path, log: &Path, only: Option<&BTreeSet<(String, String)>>) -> io::Result<Run> {
+pub fn run(root: &Path, log: &Path, chosen: &Tests) -> io::Result<Run> {
     let file = File::create(log)?;
     let mut command = cargo::command(root);
-    command.args(["test", "--no-fail-fast", "--color=never"]);
-    match only {
-        None => {
-            command.arg("--workspace");
-        }
-        Some(targets) => {
-            for (package, target) in targets {
-                command.args(["--package", package, "--test", target]);
-            }
-        }
-    }
+    command.args(["test", "--no-fail-fast", "--color=never"]).args(chosen.arguments());
     // One file for both streams: the binaries' names are on one, their results on the other, in turn.
     command.stdout(file.try_clone()?).stderr(file);
     let status = cargo::status(&mut command, None)?;
     Ok(parse(&std::fs::read_to_string(log)?, status.is_some_and(|status| status.success())))
 }
 
-/// Where the tests of the whole workspace write what they find.
+/// Where the tests write what they find.
 #[derive(Clone, Debug)]
 pub struct Files {
     /// What they print.
@@ -79,21 +69,25 @@ pub struct Files {
     pub native: PathBuf,
 }
 
-/// Runs all tests of the checkout at `root` as `ci/test` does, beside other work. Also their seconds of processors.
+/// Runs tests of the checkout at `root` as `ci/test` does, beside other work: these programs, or all. Also their seconds of processors.
 ///
 /// # Errors
 /// They cannot be started, or the log cannot be written.
-pub fn run_beside(root: &Path, files: &Files) -> io::Result<(Run, f64)> {
+pub fn run_beside(root: &Path, files: &Files, programs: Option<&BTreeSet<String>>) -> io::Result<(Run, f64)> {
     // The script keeps the log; what it prints besides is of no use here.
     let said = File::create(files.log.with_extension("said"))?;
     let mut command = cargo::in_checkout(root, &root.join(SCRIPT));
-    command.arg(&files.log).env("ATC_OUTCOMES", &files.outcomes).env("ATC_NATIVE", &files.native);
+    command
+        .arg(&files.log)
+        .args(programs.into_iter().flatten())
+        .env("ATC_OUTCOMES", &files.outcomes)
+        .env("ATC_NATIVE", &files.native);
     command.stdout(said.try_clone()?).stderr(said);
     let (status, seconds) = cargo::status_beside(&mut command)?;
     Ok((parse(&std::fs::read_to_string(&files.log)?, status.success()), seconds))
 }
 
-/// What runs all tests, from the checkout.
+/// What runs them, from the checkout.
 pub const SCRIPT: &str = "ci/lib/tests";
 
 /// Reads what `cargo test` printed, both streams in one.
@@ -200,7 +194,7 @@ fn numbers(passed: u64, failed: u64, ignored: u64, filtered: u64) -> String {
 
 /// The evidence of one suite.
 pub fn one(name: &str, verdict: Verdict, detail: String, reason: Option<String>) -> Evidence {
-    let title = if name == "all" { "All tests of the workspace" } else { name };
+    let title = if name == "all" { "All tests of this run" } else { name };
     Evidence { title: title.to_owned(), detail, reason, ..Evidence::bare(Kind::Test, name, verdict) }
 }
 
