@@ -8,6 +8,61 @@ const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
 const JUNCTION: &str = include_str!("../../layouts/junction.toml");
 const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
 
+/// One track that leads to a line with a segment, and over a point to a line without.
+const LEG: &str = r#"name = "Leg at the line"
+longest_train_m = 200
+[speed]
+line_kmh = 75
+reverse_kmh = 45
+[[circuit]]
+name = "1T"
+length_m = 600
+left = "a"
+right = "b"
+[[circuit]]
+name = "P1T"
+length_m = 60
+[[circuit]]
+name = "E1"
+length_m = 500
+left = "d"
+right = "e"
+[[point]]
+name = "P1"
+circuit = "P1T"
+toe = "b"
+normal = "d"
+reverse = "x"
+normal_unprotected = "signals"
+reverse_unprotected = "no train comes from there"
+[[end]]
+joint = "a"
+kind = "buffer"
+[[end]]
+joint = "e"
+kind = "line"
+[[end]]
+joint = "x"
+kind = "line"
+[[segment]]
+name = "East"
+circuits = ["E1"]
+[[route]]
+name = "1-E"
+entry = "1T"
+path = ["P1T"]
+to = "East"
+[[route]]
+name = "1-X"
+entry = "1T"
+path = [{ circuit = "P1T", points = { P1 = "reverse" } }]
+short_overlap = "plain line begins there"
+[[route]]
+name = "E-1"
+entry = "E1"
+path = ["P1T", "1T"]
+"#;
+
 fn errors(text: &str) -> Errors {
     Description::from_toml("station.toml", text)
         .and_then(|description| description.compile())
@@ -435,6 +490,42 @@ fn line_without_segment() {
     // A segment that does not reach so far.
     let text = change(LOOP, "name = \"West\"", "[\"W1\", \"W2\"]", "[\"W1\"]");
     breaks(&text, Rule::LineWithoutSegment, "the line goes on at a, and W2 there is not the outermost circuit");
+}
+
+/// The attack of November 26: a route led out at once over a point whose own end is the line's, without a segment and so without consent, and a block
+/// on the point's circuit was confirmed where the neighbour's train came in.
+#[test]
+fn line_without_segment_at_a_point() {
+    // Without W1 and W2 the toe of P1 is where the line begins.
+    let cut = |text: &str, from: &str, to: &str| {
+        let start = text.find(from).unwrap();
+        let end = start + text[start..].find(to).unwrap();
+        format!("{}{}", &text[..start], &text[end..])
+    };
+    let text = cut(LOOP, "[[circuit]]\nname = \"W2\"", "[[circuit]]\nname = \"P1T\"");
+    let text = cut(&text, "[[segment]]\nname = \"West\"", "[[segment]]\nname = \"East\"");
+    let text = cut(&text, "[[route]]\nname = \"W-1\"", "[[route]]\nname = \"E-1\"");
+    let text = change(&text, "[[end]]", "joint = \"a\"", "joint = \"c\"");
+    let text = change(&text, "name = \"1-W\"", "entry", "short_overlap = \"the line goes on\"\nentry");
+    let text = change(&text, "name = \"2-W\"", "entry", "short_overlap = \"the line goes on\"\nentry");
+    breaks(&text, Rule::LineWithoutSegment, "the line goes on at c, and P1T there is not the outermost circuit");
+    // A leg that reaches the line, with a route out over it. No reason why nothing comes from there covers what is sent there.
+    breaks(LEG, Rule::LineWithoutSegment, "the line goes on at x, and P1T there is not the outermost circuit");
+}
+
+/// The same attack: the track of another line crosses the outermost circuit of a segment. Its trains come and go, and nothing keeps them from those
+/// that are sent over the segment, nor from staff there.
+#[test]
+fn line_across_a_segment() {
+    let text = change(
+        LOOP,
+        "name = \"W2\"",
+        "right = \"b\"",
+        "right = \"b\"\n\n[[circuit.crossing]]\nleft = \"x\"\nright = \"y\"",
+    );
+    let line = |joint: &str| format!("\n[[end]]\njoint = \"{joint}\"\nkind = \"line\"\n");
+    let text = format!("{text}{}{}", line("x"), line("y"));
+    breaks(&text, Rule::LineWithoutSegment, "the line goes on at x, and W2 there is not the outermost circuit");
 }
 
 #[test]

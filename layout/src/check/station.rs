@@ -88,10 +88,15 @@ fn standing(model: &Model, problems: &mut Vec<Problem>) {
 pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (number, joint) in model.graph.joints.iter().enumerate() {
         let last = model.graph.circuits_at(number).next();
-        let is_end = |segment: &Segment| last.is_some() && segment.circuits.last().copied() == last;
-        // What a point leads off to is held against its flank protection.
-        let is_leg = |track: &usize| matches!(model.graph.tracks[*track].kind, Kind::Point(_));
-        if joint.end != Some(EndKind::Line) || joint.tracks.iter().any(is_leg) || model.segments.iter().any(is_end) {
+        let ends_here = |segment: &Segment| last.is_some() && ends_at(model, segment, number);
+        // What a leg of a point leads off to is held against its flank protection, unless a route leads out over it.
+        let is_flank = |track: &usize| {
+            let track = &model.graph.tracks[*track];
+            matches!(track.kind, Kind::Point(_)) && track.joints.first() != Some(&number)
+        };
+        let led_to = model.routes.iter().any(|route| route.is_sound() && route.exit == number);
+        let off = !led_to && joint.tracks.iter().any(is_flank);
+        if joint.end != Some(EndKind::Line) || off || model.segments.iter().any(ends_here) {
             continue;
         }
         let given = station.ends.iter().find(|end| end.joint.value == joint.name);
@@ -105,6 +110,20 @@ pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         let right = "list the circuits from the station to there in a [[segment]], or declare the end as a buffer";
         problems.push(Problem::new(Rule::LineWithoutSegment, span, what, right));
     }
+}
+
+/// Whether the track of a segment that comes from the station ends at this joint: not another one that crosses it in its outermost circuit.
+fn ends_at(model: &Model, segment: &Segment, joint: usize) -> bool {
+    let Some((last, inner)) = segment.circuits.split_last() else { return false };
+    let comes_from = inner.last().copied().or(segment.throat);
+    model.graph.joints[joint].tracks.iter().map(|track| &model.graph.tracks[*track]).any(|track| {
+        let other = track.joints.iter().find(|other| **other != joint);
+        let before = other.and_then(|other| model.graph.across(*other, *last));
+        track.kind == Kind::Plain
+            && track.circuit == *last
+            && before.is_some()
+            && (comes_from.is_none() || before == comes_from)
+    })
 }
 
 /// Two routes of one signal and one path are one route with two names, or the way of one of them is not the one that was meant.
