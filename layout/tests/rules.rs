@@ -513,6 +513,25 @@ fn line_without_segment_at_a_point() {
     breaks(LEG, Rule::LineWithoutSegment, "the line goes on at x, and P1T there is not the outermost circuit");
 }
 
+/// The same attack: a point beyond the outermost circuit of a segment. It was driven, and a block on its circuit confirmed, while the neighbour had the
+/// permission to send trains over it.
+#[test]
+fn point_beyond_a_segment() {
+    let circuit = "[[circuit]]\nname = \"P9T\"\nlength_m = 60\n\n[[circuit]]\nname = \"P1T\"";
+    let text = change(LOOP, "", "[[circuit]]\nname = \"P1T\"", circuit);
+    let point = "[[point]]\nname = \"P9\"\ncircuit = \"P9T\"\ntoe = \"a\"\nnormal = \"x\"\nreverse = \"y\"\n\n[[point]]\nname = \"P1\"";
+    let text = change(&text, "", "[[point]]\nname = \"P1\"", point);
+    let ends = "joint = \"x\"\nkind = \"line\"\n\n[[end]]\njoint = \"y\"\nkind = \"line\"";
+    let text = change(&text, "[[end]]", "joint = \"a\"\nkind = \"line\"", ends);
+    // No route runs over it, so no flank protection was asked for what its legs lead to.
+    let says = "the line goes on at x, and P9T there is not the outermost circuit of a segment";
+    breaks(&text, Rule::LineWithoutSegment, says);
+    // The same with buffers: only the view of the line ends too early.
+    let text = change(&text, "joint = \"x\"\n", "line", "buffer");
+    let text = change(&text, "joint = \"y\"\n", "line", "buffer");
+    breaks(&text, Rule::SegmentOrder, "segment West: W2 is its outermost circuit, and the line does not end there");
+}
+
 /// The same attack: the track of another line crosses the outermost circuit of a segment. Its trains come and go, and nothing keeps them from those
 /// that are sent over the segment, nor from staff there.
 #[test]

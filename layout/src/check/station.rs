@@ -89,10 +89,17 @@ pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (number, joint) in model.graph.joints.iter().enumerate() {
         let last = model.graph.circuits_at(number).next();
         let ends_here = |segment: &Segment| last.is_some() && ends_at(model, segment, number);
-        // What a leg of a point leads off to is held against its flank protection, unless a route leads out over it.
+        // What a leg of a point leads off to is held against the flank protection of the routes over the other one, unless a route leads out over it.
+        let passed = |point: usize| {
+            let over =
+                |route: &Route| route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.point == point);
+            model.routes.iter().any(over)
+        };
         let is_flank = |track: &usize| {
             let track = &model.graph.tracks[*track];
-            matches!(track.kind, Kind::Point(_)) && track.joints.first() != Some(&number)
+            // A point in a segment breaks a rule of its own.
+            let in_segment = model.segments.iter().any(|segment| segment.circuits.contains(&track.circuit));
+            matches!(track.kind, Kind::Point(point) if in_segment || passed(point) && track.joints.first() != Some(&number))
         };
         let led_to = model.routes.iter().any(|route| route.is_sound() && route.exit == number);
         let off = !led_to && joint.tracks.iter().any(is_flank);
@@ -109,6 +116,27 @@ pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         );
         let right = "list the circuits from the station to there in a [[segment]], or declare the end as a buffer";
         problems.push(Problem::new(Rule::LineWithoutSegment, span, what, right));
+    }
+    // It follows from most of what is wrong with a segment.
+    if problems.is_empty() {
+        beyond_segments(station, model, problems);
+    }
+}
+
+/// Beyond a segment is the neighbour's: what lies there is neither held nor asked for when a train is sent, and a point there may be driven.
+fn beyond_segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
+    for (given, segment) in station.segments.iter().zip(&model.segments) {
+        let is_line = |joint: usize| model.graph.joints[joint].end == Some(EndKind::Line);
+        let Some(last) = segment.circuits.last() else { continue };
+        if (0..model.graph.joints.len()).any(|joint| is_line(joint) && ends_at(model, segment, joint)) {
+            continue;
+        }
+        let (span, last) =
+            (given.circuits.last().map_or(&segment.span, |named| &named.span), &model.circuits[*last].name);
+        let what =
+            format!("segment {}: {last} is its outermost circuit, and the line does not end there", segment.name);
+        let right = "name the circuits as far as the end of kind \"line\"; a point out there is a station of its own";
+        problems.push(Problem::new(Rule::SegmentOrder, span, what, right));
     }
 }
 
