@@ -235,6 +235,15 @@ fn heard(
         let right = "deceleration_mm_s2 and the steepest gradient of the two must leave the same brake: give the steeper fall, or the weaker brake, in both";
         wrong(what, right.to_owned());
     }
+    // The rear of its routes begins at the entry: whoever waits on the approach for the signal is not looked for there.
+    if comes && description.station.cab_signalled && !its.station.cab_signalled {
+        let what = format!(
+            "{station} counts on trains that act on telegrams alone, and trains of {neighbour}, which come in, may go by signals"
+        );
+        let right =
+            format!("leave cab_signalled out in {station}, or say it in {neighbour} if it is so of all its trains");
+        wrong(what, right);
+    }
     let (age, lives) = (&description.station.times.telegram_age_ms, &its.station.times.telegram_age_ms);
     if comes && age.value < lives.value {
         let what = format!(

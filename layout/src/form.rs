@@ -19,9 +19,12 @@ use crate::values::{Braking, Overlaps, Speeds, Times};
 pub struct Station {
     /// The station's name.
     pub name: String,
-    /// The length of the longest train, in metres.
+    /// The length of the longest train, in metres: at least 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_train_m: Option<At<u16>>,
+    /// The length of the shortest train, in metres [default: 0]. Where the shunt may be lost for long, short circuits need it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shortest_train_m: Option<At<u16>>,
     /// Whether every train acts on telegrams alone: no driver acts on what he sees of an optical signal.
     #[serde(default, skip_serializing_if = "is_false")]
     pub cab_signalled: bool,

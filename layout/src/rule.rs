@@ -51,6 +51,8 @@ pub enum Rule {
     FoulingNotHeld,
     /// T_clear is longer than the longest tolerated loss of shunt.
     ClearUnderShunt,
+    /// No train runs through a whole circuit while it is lost, or between two cycles.
+    CircuitTooShort,
     /// Plain line turns only after the neighbour's telegrams are too old to be acted on.
     TurnUnderTelegram,
     /// Plain line turns, and a block on it is confirmed, only when a train that was sent before has come in and is seen, or stands.
@@ -126,6 +128,7 @@ impl Rule {
             Self::OverlapTooShort => "the overlap is as long as the least one, or the file says why not",
             Self::FoulingNotHeld => "a route over one of two circuits that foul each other goes over the other, too",
             Self::ClearUnderShunt => "T_clear is at least twice the longest tolerated loss of shunt",
+            Self::CircuitTooShort => "no train runs through a whole circuit while it is lost, or between two cycles",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
             Self::TurnUnderRun => "plain line turns only after a train that was sent before has run out",
             Self::StartTooShort => {

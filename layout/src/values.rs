@@ -25,7 +25,8 @@ pub struct Times {
     /// Why a shorter time after a start is enough: every train is known to stand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_protected: Option<At<String>>,
-    /// How long a point must stand detected after it was driven before it counts as detected: as long as a stroke may take to show.
+    /// How long a point must stand detected after it was driven before it counts as detected: as long as a stroke may take to show. 0: a command takes
+    /// effect in its cycle or never.
     pub settle_ms: At<u32>,
     /// How long a route stays locked after it was withdrawn with a train coming: at least `residual_ms` and `shunt_loss_ms`.
     pub release_ms: At<u32>,

@@ -167,6 +167,7 @@ fn times_of_the_neighbours_trains() {
     assert!(held(&alike, &weak).is_ok());
     let mut lossy = other.clone();
     (lossy.station.times.shunt_loss_ms.value, lossy.station.times.clear_ms.value) = (3000, 6000);
+    lossy.station.shortest_train_m = Some(At::derived(3));
     for (one, other) in [(&one, &lossy), (&lossy, &one)] {
         refused(
             one,
@@ -203,6 +204,7 @@ fn a_loss_that_is_longer_here() {
     let mut one = station("One", "", "line = \"b\"");
     let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
     (one.station.times.shunt_loss_ms.value, one.station.times.clear_ms.value) = (3000, 6000);
+    one.station.shortest_train_m = Some(At::derived(3));
     other.station.times.clear_ms.value = 6000;
     // Its own trains run in sooner than the neighbour's.
     one.station.braking.deceleration_mm_s2.value = 800;
@@ -336,6 +338,22 @@ fn a_neighbour_whose_trains_come_from_telegrams_by_a_stronger_pattern() {
     let mut alike = one.clone();
     alike.station.braking.strongest_mm_s2 = Some(At::derived(1_200));
     assert!(held(&alike, &other).is_ok());
+}
+
+/// The rear of a cab-signalled route begins at its entry: a driver who waits on the approach for the signal is not looked for.
+#[test]
+fn a_neighbour_whose_drivers_go_by_signals() {
+    let mut one = station("One", "", "line = \"b\"");
+    one.station.cab_signalled = true;
+    let mut other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    refused(
+        &one,
+        &other,
+        "One counts on trains that act on telegrams alone, and trains of Neighbour, which come in, may go by signals; leave cab_signalled out in One",
+    );
+    assert!(held(&other, &one).is_err(), "in either order");
+    other.station.cab_signalled = true;
+    assert!(held(&one, &other).is_ok());
 }
 
 /// On a line for one direction the station that trains leave may count on less.

@@ -119,6 +119,35 @@ fn range() {
     breaks(&format!("{LOOP}\n[times]\nclear_ms = 30000\n"), Rule::Range, "300 cycles");
     breaks(&format!("{LOOP}\n[braking]\nspeeds_kmh = [45, 15]\n"), Rule::Range, "cannot be those of the codes");
     breaks(&format!("{LOOP}\n[braking]\ndeceleration_mm_s2 = 5000\n"), Rule::Range, "1 to 4095");
+    let long = |metres: &str| LOOP.replace("longest_train_m = 200", metres);
+    breaks(&long("longest_train_m = 0"), Rule::Range, "longest_train_m is 1 to 65535");
+    breaks(&long("longest_train_m = 20\nshortest_train_m = 21"), Rule::Range, "longest_train_m is 21 to 65535");
+}
+
+/// A train that is through a whole circuit while it is lost, or between two cycles, is reported nowhere.
+#[test]
+fn circuit_too_short() {
+    let holds = |text: &str| Description::from_toml("station.toml", text).and_then(|description| description.compile());
+    let short = |length: &str| {
+        let text = change(LOOP, "name = \"P1T\"", "60", length);
+        format!("{text}\n[overlaps]\nleast_m = 20\n")
+    };
+    breaks(
+        &short("20"),
+        Rule::CircuitTooShort,
+        "P1T is 20 m long, and at 75 km/h a train runs 20 m in the 1000 ms for which it may not be reported; a circuit and the shortest train \
+         must be longer together: give shortest_train_m (at least 1), or a shorter time",
+    );
+    holds(&short("21")).expect("longer than what it runs");
+    holds(&short("20").replace("longest_train_m", "shortest_train_m = 1\nlongest_train_m"))
+        .expect("a train has a length");
+    holds(&format!("{}\n[times]\nshunt_loss_ms = 900\n", short("20"))).expect("it is lost for less");
+    // No loss, but a cycle in which it runs as far.
+    let slow = format!("{}\n[times]\nshunt_loss_ms = 0\ncycle_ms = 1000\n", short("20"));
+    breaks(&slow, Rule::CircuitTooShort, "in the 1000 ms");
+    // On plain line, at its speed.
+    let line = change(&change(LOOP, "name = \"W2\"", "300", "20"), "name = \"W1\"", "300", "600");
+    breaks(&line, Rule::CircuitTooShort, "W2 is 20 m long, and at 75 km/h");
 }
 
 #[test]
@@ -202,7 +231,7 @@ fn approach_too_short() {
         Rule::ApproachTooShort,
         "route W-1: the approach reaches 200 m back from the signal, where W2 is not in it",
     );
-    let both = change(&short, "name = \"W2\"", "300", "20");
+    let both = change(&short, "name = \"W2\"", "300", "30");
     breaks(&both, Rule::ApproachTooShort, "the line is not described beyond joint a");
 }
 

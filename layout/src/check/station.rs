@@ -58,6 +58,7 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
         problems.push(Problem::new(Rule::ResidualTooShort, &residual.span, what, right));
     }
     standing(model, problems);
+    lengths(station, model, problems);
     detectors(station, model, problems);
     segments(station, model, problems);
     fouling(station, model, problems);
@@ -80,6 +81,35 @@ fn standing(model: &Model, problems: &mut Vec<Problem>) {
         );
         let right = format!("standstill_ms must be at least {least}, and longer for slower trains, or be left out");
         problems.push(Problem::new(Rule::StandstillTooShort, &values.standstill_ms.span, what, right));
+    }
+}
+
+/// A train that runs through a whole circuit while it is lost, or between two cycles, is never reported there: routes wait for it, and it
+/// may be in no circuit at all.
+fn lengths(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
+    let (values, loss) = (&model.values, &station.times.shunt_loss_ms);
+    let unseen = loss.value.max(values.cycle_ms);
+    let shortest = station.shortest_train_m.as_ref().map_or(0, |length| u64::from(length.value));
+    for (number, circuit) in model.circuits.iter().enumerate() {
+        let over = |route: &&Route| route.is_sound() && route.path.iter().any(|place| place.circuit == number);
+        let routes = model.routes.iter().filter(over).map(|route| route.speed);
+        let lines = model.segments.iter().filter(|segment| segment.circuits.contains(&number));
+        let fastest = routes.chain(lines.map(|segment| segment.speed)).max();
+        let kmh = fastest.map_or(0, |code| values.speeds_kmh[usize::from(code.0)]);
+        // In m: km/h times ms is 3600 of them.
+        let run = u64::from(kmh) * u64::from(unseen) / 3600;
+        let (length, given) = (u64::from(circuit.length.0), circuit.length.0 > 0);
+        if given && length + shortest <= run {
+            let what = format!(
+                "{} is {length} m long, and at {kmh} km/h a train runs {run} m in the {unseen} ms for which it may not be reported",
+                circuit.name
+            );
+            let right = format!(
+                "a circuit and the shortest train must be longer together: give shortest_train_m (at least {}), or a shorter time",
+                run + 1 - length
+            );
+            problems.push(Problem::new(Rule::CircuitTooShort, &circuit.span, what, right));
+        }
     }
 }
 

@@ -90,6 +90,7 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
     let standstill = at_most("standstill_ms", &standstill_ms, cycle, problems);
     let stay_ms = times.stay_ms.clone().unwrap_or_else(|| At::derived(STAY_MS));
     let (speeds_kmh, braking) = codes(station, problems);
+    lengths(station, problems);
     let least_residual_ms = times.telegram_age_ms.value.saturating_add(stopping_ms(station, speeds_kmh));
     let residual_ms = times.residual_ms.clone().unwrap_or_else(|| At::derived(least_residual_ms));
     let residual = at_most("residual_ms", &residual_ms, cycle, problems);
@@ -124,6 +125,17 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         longest_train: station.longest_train_m.as_ref().map(|length| Metres(length.value)),
     };
     (values, cycle)
+}
+
+/// A train has a length, and none is shorter than the shortest.
+fn lengths(station: &Station, problems: &mut Vec<Problem>) {
+    let Some(longest) = &station.longest_train_m else { return };
+    let least = station.shortest_train_m.as_ref().map_or(1, |length| length.value.max(1));
+    if longest.value < least {
+        let what = format!("the longest train is {longest} m long");
+        let right = format!("longest_train_m is {least} to {}", u16::MAX);
+        problems.push(Problem::new(Rule::Range, &longest.span, what, right));
+    }
 }
 
 /// For how long after a permission was withdrawn a train may still come that was sent on it, unseen at the last: the withdrawal is heard when the

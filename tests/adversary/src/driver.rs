@@ -129,6 +129,13 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight 
                 None => return sight,
             }
         }
+        // Where no route goes on, a board stands (`signal-at-the-end`).
+        let ends = |route: &super::ground::Route| {
+            route.exit == joint && route.path.last() == Some(&circuit) && route.lines[1].is_none()
+        };
+        if !at_signal(joint, circuit) && ground.routes.iter().any(ends) {
+            return sight;
+        }
         // Who changed ends between signals has none ahead of him that was set for him: he waits until he is told to move.
         if train.about && !on_line && route.is_none() {
             return Sight { distance: 0, ..sight };

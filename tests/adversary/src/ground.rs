@@ -153,6 +153,12 @@ pub const fn mm_s(kmh: i64) -> i64 {
     kmh * 10_000 / 36
 }
 
+/// The least brake that is not under this one, and takes whole mm/s in a cycle: the trains here have no parts of one.
+const fn whole(brake: i64, cycle_ms: i64) -> i64 {
+    let change = (brake * cycle_ms + 999) / 1000;
+    (change * 1000 + cycle_ms - 1) / cycle_ms
+}
+
 impl Ground {
     /// The ground that a layout describes. Times of the file are rounded so that the trains have the worst that it allows.
     pub fn of(description: &Description, model: &Model) -> Self {
@@ -176,7 +182,7 @@ impl Ground {
             life: cycles(model.values.telegram_age_ms),
             turn: i64::from(model.values.turn.0),
             start: i64::from(model.values.start.0),
-            brake: i64::from(station.braking.deceleration_mm_s2.value),
+            brake: whole(i64::from(station.braking.deceleration_mm_s2.value), cycle_ms),
             codes: model.values.speeds_kmh.iter().map(|kmh| mm_s(i64::from(*kmh))).collect(),
             reverse: 0,
             fastest: 0,

@@ -21,11 +21,13 @@ pub enum Family {
     Authority,
     /// A train with authority over a route that nobody has requested, or that was withdrawn since.
     Unasked,
+    /// A train at the end of the tracks: at a buffer, or where a line goes on that nobody has given to it.
+    End,
 }
 
 impl Family {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Collision,
         Self::Derailment,
         Self::Speed,
@@ -33,6 +35,7 @@ impl Family {
         Self::Worker,
         Self::Authority,
         Self::Unasked,
+        Self::End,
     ];
 
     /// Its name on the command line.
@@ -45,6 +48,7 @@ impl Family {
             Self::Worker => "worker",
             Self::Authority => "authority",
             Self::Unasked => "unasked",
+            Self::End => "end",
         }
     }
 }
@@ -103,6 +107,11 @@ pub fn judge(ground: &Ground, trains: &[Train], points: &Points, truth: &Truth, 
             && let Some(text) = unasked(ground, train, truth)
         {
             return found(Family::Unasked, text);
+        }
+        let front = train.front();
+        if seek(Family::End) && train.at >= front.length && ground.across(front.exit, front.piece).is_none() {
+            let place = &ground.circuits[train.front_circuit(ground)];
+            return found(Family::End, format!("train {} is at the end of the tracks, on {place}", train.number));
         }
         for other in &trains[number + 1..] {
             let both = train.under & other.under;

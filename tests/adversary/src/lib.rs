@@ -8,8 +8,10 @@
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
 //!   [`trace`]: the same for `oracle explore`, which makes a film of it.
+//! * [`altered`]: stations whose files were altered at random, and still break no rule.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
 
+pub mod altered;
 pub mod arsenal;
 pub mod attacker;
 pub mod conditions;

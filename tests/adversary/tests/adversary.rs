@@ -7,7 +7,7 @@ use atc_adversary::arsenal::Arsenal;
 use atc_adversary::conditions::broken;
 use atc_adversary::hunt::{Hunt, hunt, minimise, replay};
 use atc_adversary::judge::Family;
-use atc_adversary::{device, known, stations, words};
+use atc_adversary::{altered, device, known, stations, words};
 
 /// With the weapons that were once enough for each known fault nothing is found in the kernel as it is.
 #[test]
@@ -41,6 +41,19 @@ fn all_weapons_on_every_station() {
         });
         assert!(find.is_none(), "{}\n{told:?}", ground.name);
         assert!(tally.routes_set > 10 && tally.trains > 20, "{}: no traffic: {tally:?}", ground.name);
+    }
+}
+
+/// A file that was altered at random and breaks no rule any more than before is a station like any other. This attacks the rules of layouts: with one
+/// of them left out, such as `line-without-segment`, it finds an accident.
+#[test]
+fn altered_files_that_break_no_rule() {
+    for name in stations::NAMES {
+        let attack = altered::attack(&stations::of(name), 12, 200, 4_000);
+        let first = attack.finds.first().map(|(said, _, told)| format!("{said}\n{told}"));
+        assert_eq!(first, None, "{name}");
+        assert!(attack.accepted > 20 && attack.rejected > 100, "{name}: {} accepted", attack.accepted);
+        assert!(attack.tally.routes_set > 100 && attack.tally.trains > 50, "{name}: no traffic: {:?}", attack.tally);
     }
 }
 

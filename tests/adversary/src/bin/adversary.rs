@@ -1,11 +1,11 @@
 //! Hunts for accidents: see `atc_adversary`.
 //!
 //! `adversary [--layout FILE | --random NUMBER] [--cycles N] [--seed N] [--family NAME,…] [--fault NAME] [--episode N]
-//! [--small yes|no] [--trace FILE]` `adversary --known`
+//! [--small yes|no] [--trace FILE] [--altered TIMES]` `adversary --known`
 //!
 //! With `--fault` it hunts as the table in `known.rs` has it for that fault, but for what the options behind it say; without, with all weapons.
 //! The scenario is told as small as it gets, with `--small no` as it was found. `--trace` also writes it for `oracle
-//! explore --as-recorded`. `--known` lists the table. Exit code 1 if an accident was found.
+//! explore --as-recorded`. `--altered` alters the file so often at random, and hunts for `--cycles` on each that breaks no rule. `--known` lists the table. Exit code 1 if an accident was found.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -13,7 +13,7 @@ use std::time::Instant;
 use atc_adversary::arsenal::Arsenal;
 use atc_adversary::hunt::{Hunt, hunt, minimise};
 use atc_adversary::judge::Family;
-use atc_adversary::{device, known, stations, trace, words};
+use atc_adversary::{altered, device, known, stations, trace, words};
 
 struct Wanted {
     layout: Option<String>,
@@ -21,6 +21,7 @@ struct Wanted {
     hunt: Hunt,
     small: bool,
     trace: Option<String>,
+    altered: usize,
 }
 
 fn wanted() -> Result<Wanted, String> {
@@ -31,7 +32,7 @@ fn wanted() -> Result<Wanted, String> {
         arsenal: Arsenal::ALL,
         sought: Family::ALL.to_vec(),
     };
-    let mut wanted = Wanted { layout: None, random: None, hunt, small: true, trace: None };
+    let mut wanted = Wanted { layout: None, random: None, hunt, small: true, trace: None, altered: 0 };
     let mut arguments = std::env::args().skip(1);
     while let Some(option) = arguments.next() {
         let value = arguments.next().ok_or(format!("{option} needs a value"))?;
@@ -50,6 +51,7 @@ fn wanted() -> Result<Wanted, String> {
                 wanted.hunt = fault.hunt();
                 wanted.layout = Some(format!("layouts/{}.toml", fault.layout));
             }
+            "--altered" => wanted.altered = usize::try_from(number()?).unwrap_or(usize::MAX),
             "--small" => wanted.small = value != "no",
             "--trace" => wanted.trace = Some(value),
             "--family" => {
@@ -83,6 +85,25 @@ fn list() {
     }
 }
 
+/// Hunts on altered files.
+fn attacked(description: &atc_layout::Description, wanted: &Wanted) -> ExitCode {
+    let attack = altered::attack(description, wanted.hunt.seed, wanted.altered, wanted.hunt.cycles);
+    for (said, description, told) in &attack.finds {
+        println!("--- {said}\n{told}\n{}", description.to_toml());
+    }
+    println!(
+        "{}: {} altered files break no rule, {} do; {} cycles, {} routes set, {} trains; {} accidents",
+        description.station.name,
+        attack.accepted,
+        attack.rejected,
+        attack.tally.cycles,
+        attack.tally.routes_set,
+        attack.tally.trains,
+        attack.finds.len()
+    );
+    if attack.finds.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
 fn run() -> Result<ExitCode, String> {
     if std::env::args().skip(1).eq(["--known"]) {
         list();
@@ -97,6 +118,9 @@ fn run() -> Result<ExitCode, String> {
             atc_layout::import::read_any(file).map_err(|error| error.to_string())?.description
         }
     };
+    if wanted.altered > 0 {
+        return Ok(attacked(&description, &wanted));
+    }
     let (mut device, ground) = device::kernel(&description).map_err(|error| error.to_string())?;
     let start = Instant::now();
     let (find, tally) = hunt(&mut *device, &ground, &wanted.hunt);

@@ -50,7 +50,13 @@ impl World<'_> {
                 let inward = !self.outward(line, leg(ground, &self.points, piece, enter, None).exit, piece);
                 (self.neighbours[line].sends, self.neighbours[line].consents) = (inward, !inward);
             }
+            let exit = leg(ground, &self.points, piece, enter, None).exit;
+            let signal = ground.routes.iter().any(|route| route.start == exit && route.entry == circuit);
             self.appear(piece, enter, at, Arrival { length: arrival.length.min(at - 1000), speed: 0, ..arrival });
+            // Where no signal stands ahead of it, it came the other way and its driver has changed ends.
+            if let Some(train) = self.trains.last_mut() {
+                train.about = line.is_none() && !signal;
+            }
         }
     }
 
