@@ -77,6 +77,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     BeyondApart => (Asked::Engineering, Stage::Model, Scope::Routes);
     FoulingNotHeld => (Asked::Engineering, Stage::Model, Scope::Pairs);
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
+    CircuitTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderRun => (Asked::Engineering, Stage::Model, Scope::File);
     StandstillTooShort => (Asked::Engineering, Stage::Model, Scope::File);
