@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Name, value, how it was made of what the file says, and where that stands.
 pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
-    let Station { times, braking, overlaps, longest_train_m, .. } = &description.station;
+    let Station { times, braking, overlaps, longest_train_m, shortest_train_m, .. } = &description.station;
     let at = |span: &Range<usize>| at(description, span);
     let row =
         |name: &str, value: String, formula: &str, span: &Range<usize>| Derived::row(name, value, formula, &at(span));
@@ -62,8 +62,10 @@ pub fn parameters(description: &Description, model: &Model) -> Vec<Derived> {
         ),
         row("Least overlap", format!("{} m", overlaps.least_m), "", &overlaps.least_m.span),
     ];
-    if let Some(length) = longest_train_m {
-        rows.push(row("Longest train", format!("{length} m"), "", &length.span));
+    for (name, length) in [("Longest train", longest_train_m), ("Shortest train", shortest_train_m)] {
+        if let Some(length) = length {
+            rows.push(row(name, format!("{length} m"), "", &length.span));
+        }
     }
     let codes = model.values.speeds_kmh.iter().zip(&model.values.braking).enumerate().skip(1);
     for (code, (speed, distance)) in codes.filter(|(_, (speed, _))| **speed > 0) {

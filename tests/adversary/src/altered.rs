@@ -17,6 +17,35 @@ const FACTORS: [u64; 6] = [0, 1, 5, 9, 20, 100];
 /// The most alterations of one file.
 const MOST: usize = 3;
 
+/// What may be added to a table that lacks it: a number of these, or circuits.
+const ADDED: [(&str, &[&str]); 5] = [
+    (
+        "[times]",
+        &[
+            "clear_ms",
+            "shunt_loss_ms",
+            "drive_ms",
+            "throw_ms",
+            "start_ms",
+            "settle_ms",
+            "release_ms",
+            "residual_ms",
+            "stay_ms",
+            "standstill_ms",
+            "turn_ms",
+            "telegram_age_ms",
+            "cycle_ms",
+        ],
+    ),
+    ("[braking]", &["deceleration_mm_s2", "heard_beyond_m"]),
+    ("[[route]]", &["approach", "beyond", "overlap", "speed_kmh", "approach_kmh", "drive_ms", "release_ms", "stay_ms"]),
+    ("[[point]]", &["detectors", "fouled_in", "throw_ms"]),
+    ("[[segment]]", &["shared", "throat", "speed_kmh"]),
+];
+
+/// The numbers that are added.
+const NUMBERS: [u64; 14] = [0, 1, 10, 25, 45, 75, 100, 500, 1_000, 2_000, 5_000, 20_000, 40_000, 90_000];
+
 /// What was altered, in words, and the altered file; nothing if it breaks a rule, or if nothing is left to alter.
 pub fn altered(original: &Description, dice: &mut Dice) -> Option<(String, Description)> {
     let mut blocks = blocks(&original.to_toml());
@@ -92,8 +121,47 @@ fn blocks(text: &str) -> Vec<Vec<String>> {
     blocks
 }
 
+/// Adds a value that was derived until now.
+fn add(blocks: &mut Vec<Vec<String>>, dice: &mut Dice) -> Option<String> {
+    let (head, keys) = dice.pick(&ADDED)?;
+    let key = dice.pick(keys)?;
+    let circuits: Vec<String> = blocks
+        .iter()
+        .filter(|block| block[0] == "[[circuit]]")
+        .flatten()
+        .filter_map(|line| line.strip_prefix("name = "))
+        .map(ToOwned::to_owned)
+        .collect();
+    let mut circuit = || circuits.get(dice.below(circuits.len())).cloned().unwrap_or_default();
+    let value = match key {
+        "throat" => circuit(),
+        "approach" | "beyond" | "overlap" | "detectors" | "fouled_in" | "shared" => {
+            let (one, other) = (circuit(), circuit());
+            if dice.once_in(2) { format!("[{one}]") } else { format!("[{one}, {other}]") }
+        }
+        _ => dice.pick(&NUMBERS)?.to_string(),
+    };
+    let places: Vec<usize> = (0..blocks.len()).filter(|number| blocks[*number][0] == head).collect();
+    let place = match dice.pick(&places) {
+        Some(place) => place,
+        None if head.starts_with("[[") => return None,
+        None => {
+            blocks.push(vec![head.to_owned()]);
+            blocks.len() - 1
+        }
+    };
+    let line = format!("{key} = {value}");
+    // In place of what the file has.
+    blocks[place].retain(|line| !line.starts_with(&format!("{key} = ")));
+    blocks[place].push(line.clone());
+    Some(format!("{} with {line}", blocks[place].join(" ")))
+}
+
 /// Alters one thing.
 fn alter(blocks: &mut Vec<Vec<String>>, dice: &mut Dice) -> Option<String> {
+    if dice.once_in(3) {
+        return add(blocks, dice);
+    }
     let number = dice.below(blocks.len());
     let head = blocks[number].first().cloned().unwrap_or_default();
     if dice.once_in(8) && head.starts_with("[[") {

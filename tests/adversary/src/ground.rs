@@ -126,8 +126,8 @@ pub struct Ground {
     pub brake: i64,
     /// The speed of each code.
     pub codes: Vec<i64>,
-    /// The limit over a reverse point.
-    pub reverse: i64,
+    /// The limit over each point in reverse: that of the station, or of a route whose own speed is higher.
+    pub reverse: Vec<i64>,
     /// The highest speed at which a train runs, so that every approach covers it.
     pub fastest: i64,
     /// The length of the longest train.
@@ -184,16 +184,19 @@ impl Ground {
             start: i64::from(model.values.start.0),
             brake: whole(i64::from(station.braking.deceleration_mm_s2.value), cycle_ms),
             codes: model.values.speeds_kmh.iter().map(|kmh| mm_s(i64::from(*kmh))).collect(),
-            reverse: 0,
+            reverse: Vec::new(),
             fastest: 0,
             longest: model.values.longest_train.map_or(200_000, |length| i64::from(length.0) * 1000),
         };
         let highest = ground.codes.iter().copied().max().unwrap_or(0);
         let kmh = |given: &Option<atc_layout::At<u16>>| given.as_ref().map(|kmh| mm_s(i64::from(kmh.value)));
         let line = kmh(&station.speed.line_kmh).unwrap_or(highest);
-        ground.reverse = kmh(&station.speed.reverse_kmh).unwrap_or(highest);
+        let reverse = kmh(&station.speed.reverse_kmh).unwrap_or(highest);
         ground.lay(model);
         ground.draw_routes(model);
+        let over = |route: &&Route, point| route.points.contains(&(point, true));
+        let fastest = |point| ground.routes.iter().filter(|route| over(route, point)).map(|route| route.limit).max();
+        ground.reverse = (0..model.points.len()).map(|point| fastest(point).unwrap_or(0).max(reverse)).collect();
         ground.draw_lines(model);
         ground.fastest = line.min(ground.covered());
         ground

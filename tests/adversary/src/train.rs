@@ -200,8 +200,8 @@ pub fn leg(ground: &Ground, points: &Points, piece: usize, joint: usize, route: 
     let reverse = ground.pieces[piece].point.is_some_and(|point| points.lies(point));
     let (exit, over) = ground.leave(piece, joint, reverse);
     let mut limit = route.map_or(i64::MAX, |route| ground.routes[route].limit);
-    if over.is_some_and(|(_, reverse)| reverse) {
-        limit = limit.min(ground.reverse);
+    if let Some((point, true)) = over {
+        limit = limit.min(ground.reverse[point]);
     }
     Leg { piece, enter: joint, exit, length: ground.pieces[piece].length, limit, over }
 }
