@@ -53,7 +53,7 @@ fn altered_files_that_break_no_rule() {
         let first = attack.finds.first().map(|(said, _, told)| format!("{said}\n{told}"));
         assert_eq!(first, None, "{name}");
         assert!(attack.accepted > 20 && attack.rejected > 100, "{name}: {} accepted", attack.accepted);
-        assert!(attack.tally.routes_set > 100 && attack.tally.trains > 50, "{name}: no traffic: {:?}", attack.tally);
+        assert!(attack.tally.routes_set > 50 && attack.tally.trains > 20, "{name}: no traffic: {:?}", attack.tally);
     }
 }
 
