@@ -87,23 +87,24 @@ pub enum Tests {
 }
 
 impl Tests {
-    /// What cargo is told besides `test`.
-    pub fn arguments(&self) -> Vec<String> {
-        let pair = |flag: &str, name: &String| [flag.to_owned(), name.clone()];
+    /// What cargo is told besides `test`; nothing where there are none to run.
+    pub fn arguments(&self) -> Option<Vec<&str>> {
+        let mut arguments = vec!["--workspace"];
         match self {
-            Self::All => vec!["--workspace".to_owned()],
-            Self::Named(programs) => ["--workspace", "--lib"]
-                .map(ToOwned::to_owned)
-                .into_iter()
-                .chain(programs.iter().flat_map(|program| pair("--test", program)))
-                .collect(),
-            Self::None => vec!["--no-run".to_owned()],
-            Self::Some(targets) => targets
-                .iter()
-                .flat_map(|(package, target)| [pair("--package", package), pair("--test", target)])
-                .flatten()
-                .collect(),
+            Self::All => {}
+            Self::Named(programs) => {
+                arguments.push("--lib");
+                arguments.extend(programs.iter().flat_map(|program| ["--test", program]));
+            }
+            Self::Some(targets) if !targets.is_empty() => {
+                arguments.clear();
+                let each = |(package, target)| ["--package", package, "--test", target];
+                arguments
+                    .extend(targets.iter().map(|(package, target)| (package.as_str(), target.as_str())).flat_map(each));
+            }
+            Self::None | Self::Some(_) => return None,
         }
+        Some(arguments)
     }
 }
 

@@ -114,3 +114,41 @@ fn the_parts_have_everything_and_what_they_need() {
     let fault = Chosen::of(here(), &Scope::Part("aspects".to_owned())).expect_err("no such part");
     assert!(fault.to_string().contains("--part aspects") && fault.text.contains("supervision"), "{fault}");
 }
+
+/// The programs whose tests are of tools that the case does not rest on: `ci/test` runs them. A new program is named in the
+/// argument, or here.
+const OF_TOOLS: [&str; 16] = [
+    "c_abi",
+    "command",
+    "conform",
+    "dialects",
+    "drawing",
+    "explore",
+    "files",
+    "for_kani",
+    "foreign",
+    "importers",
+    "imports",
+    "killed",
+    "protocol",
+    "second",
+    "shards",
+    "signal_wav",
+];
+
+#[test]
+fn every_test_program_is_named_or_of_a_tool() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the checkout");
+    let folders =
+        ["arithmetic", "c-abi", "evidence", "layout", "line", "models", "proofs/runner", "simulation", "tests"];
+    let more = ["film", "film/kernel", "kernel", "oracle", "proofs", "tests/adversary", "tests/commands", "waveform"];
+    let programs =
+        folders.iter().chain(&more).filter_map(|folder| std::fs::read_dir(root.join(folder).join("tests")).ok());
+    let paths = programs.flatten().map(|entry| entry.expect("readable").path());
+    let is_program =
+        |path: &std::path::PathBuf| path.extension().is_some_and(|it| it == "rs") || path.join("main.rs").is_file();
+    let names = paths.filter(is_program).map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned());
+    let named = here().test_programs();
+    let others: BTreeSet<_> = names.filter(|name| !named.contains(name)).collect();
+    assert_eq!(others, OF_TOOLS.map(ToOwned::to_owned).into());
+}

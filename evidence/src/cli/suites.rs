@@ -88,18 +88,17 @@ impl Engines<'_> {
             enter(tests::parse(&text, !text.contains("error: ")));
             return Ok(());
         }
-        match &self.chosen.tests {
-            Tests::None => return Ok(()),
-            _ if self.options.no_tests => {
-                enter(tests::Run::NotRun("left out by --no-tests".to_owned()));
-                return Ok(());
-            }
-            Tests::Some(targets) if targets.is_empty() => {
-                enter(tests::Run::NotRun(self.scope.why()));
-                return Ok(());
-            }
-            Tests::Some(_) | Tests::Named(_) | Tests::All => {}
+        if self.chosen.tests == Tests::None {
+            return Ok(());
         }
+        if self.options.no_tests {
+            enter(tests::Run::NotRun("left out by --no-tests".to_owned()));
+            return Ok(());
+        }
+        let Some(arguments) = self.chosen.tests.arguments() else {
+            enter(tests::Run::NotRun(self.scope.why()));
+            return Ok(());
+        };
         if self.budget.affordable(vec![()], self.jobs, |()| PART_OF_TESTS).is_empty() {
             return Ok(());
         }
@@ -107,8 +106,7 @@ impl Engines<'_> {
             let log = self.folder.stage().join("tests.log");
             live.progress.watch(&log);
             let watch = Watch::start(TESTS);
-            let run =
-                tests::run(self.root, &log, &self.chosen.tests).map_err(|error| Fault::new(&"cargo test", error))?;
+            let run = tests::run(self.root, &log, &arguments).map_err(|error| Fault::new(&"cargo test", error))?;
             enter(run);
             Ok(vec![("cargo test".to_owned(), watch.end(Vec::new()).wall_seconds)])
         })

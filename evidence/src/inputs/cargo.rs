@@ -90,7 +90,6 @@ pub fn status_beside(command: &mut Command) -> io::Result<(ExitStatus, f64)> {
 #[cfg(test)]
 mod checks {
     use crate::inputs::tests::{self, Run};
-    use crate::scope::Tests;
     use std::fs::{self, File};
     use std::path::{Path, PathBuf};
     use std::time::{Duration, SystemTime};
@@ -125,7 +124,8 @@ mod checks {
         let good = checkout(&at("good"), &at("shared"), "#[test]\nfn one() {}\n", 3600);
         let bad = checkout(&at("bad"), &at("shared"), "#[test]\nfn one() {\n    panic!()\n}\n", 7200);
         for (root, counts) in [(good, (1, 0)), (bad, (0, 1))] {
-            let Run::Ran { suites, success } = tests::run(&root, &at("log"), &Tests::All).expect("cargo runs") else {
+            let Run::Ran { suites, success } = tests::run(&root, &at("log"), &["--workspace"]).expect("cargo runs")
+            else {
                 panic!("it ran")
             };
             let log = fs::read_to_string(at("log")).expect("a log");

@@ -5,7 +5,6 @@
 
 use super::cargo;
 use crate::case::{Evidence, Kind};
-use crate::scope::Tests;
 use crate::verdict::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -44,14 +43,14 @@ pub enum Run {
     },
 }
 
-/// Runs `cargo test` on these tests of the workspace at `root`, with its output in the file `log`.
+/// Runs `cargo test` with these arguments on the workspace at `root`, with its output in the file `log`.
 ///
 /// # Errors
 /// Cargo cannot be started, or the log cannot be written.
-pub fn run(root: &Path, log: &Path, chosen: &Tests) -> io::Result<Run> {
+pub fn run(root: &Path, log: &Path, arguments: &[&str]) -> io::Result<Run> {
     let file = File::create(log)?;
     let mut command = cargo::command(root);
-    command.args(["test", "--no-fail-fast", "--color=never"]).args(chosen.arguments());
+    command.args(["test", "--no-fail-fast", "--color=never"]).args(arguments);
     // One file for both streams: the binaries' names are on one, their results on the other, in turn.
     command.stdout(file.try_clone()?).stderr(file);
     let status = cargo::status(&mut command, None)?;
@@ -69,7 +68,8 @@ pub struct Files {
     pub native: PathBuf,
 }
 
-/// Runs tests of the checkout at `root` as `ci/test` does, beside other work: these programs, or all. Also their seconds of processors.
+/// Runs tests of the checkout at `root` as `ci/test` does, beside other work: these programs, or all. Also their seconds of
+/// processors.
 ///
 /// # Errors
 /// They cannot be started, or the log cannot be written.

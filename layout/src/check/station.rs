@@ -119,7 +119,8 @@ pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (number, joint) in model.graph.joints.iter().enumerate() {
         let last = model.graph.circuits_at(number).next();
         let ends_here = |segment: &Segment| last.is_some() && ends_at(model, segment, number);
-        // What a leg of a point leads off to is held against the flank protection of the routes over the other one, unless a route leads out over it.
+        // What a leg of a point leads off to is held against the flank protection of the routes over the other one, unless a
+        // route leads out over it.
         let passed = |point: usize| {
             let over =
                 |route: &Route| route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.point == point);
@@ -153,7 +154,8 @@ pub fn lines(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Beyond a segment is the neighbour's: what lies there is neither held nor asked for when a train is sent, and a point there may be driven.
+/// Beyond a segment is the neighbour's: what lies there is neither held nor asked for when a train is sent, and a point there
+/// may be driven.
 fn beyond_segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (given, segment) in station.segments.iter().zip(&model.segments) {
         let is_line = |joint: usize| model.graph.joints[joint].end == Some(EndKind::Line);
@@ -170,7 +172,8 @@ fn beyond_segments(station: &Station, model: &Model, problems: &mut Vec<Problem>
     }
 }
 
-/// Whether the track of a segment that comes from the station ends at this joint: not another one that crosses it in its outermost circuit.
+/// Whether the track of a segment that comes from the station ends at this joint: not another one that crosses it in its
+/// outermost circuit.
 fn ends_at(model: &Model, segment: &Segment, joint: usize) -> bool {
     let Some((last, inner)) = segment.circuits.split_last() else { return false };
     let comes_from = inner.last().copied().or(segment.throat);

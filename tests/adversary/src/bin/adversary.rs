@@ -5,7 +5,8 @@
 //!
 //! With `--fault` it hunts as the table in `known.rs` has it for that fault, but for what the options behind it say; without, with all weapons.
 //! The scenario is told as small as it gets, with `--small no` as it was found. `--trace` also writes it for `oracle
-//! explore --as-recorded`. `--altered` alters the file so often at random, and hunts for `--cycles` on each that breaks no rule. `--known` lists the table. Exit code 1 if an accident was found.
+//! explore --as-recorded`. `--altered` alters the file so often at random, and hunts for `--cycles` on each that breaks no
+//! rule. `--known` lists the table. Exit code 1 if an accident was found.
 
 use std::process::ExitCode;
 use std::time::Instant;
