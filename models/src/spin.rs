@@ -111,10 +111,9 @@ pub fn opinion(spin: &Result<Spin, String>, twin: &Twin, outcome: &Outcome) -> S
 fn look(spin: &Spin, twin: &Twin, outcome: &Outcome) -> Result<(Counted, Vec<bool>), String> {
     let folder = Folder::new(&outcome.model)?;
     spin.generate(&folder, twin)?;
-    // Compiling takes longer than most searches: little of it pays.
-    let counter = folder.compile("count", &[COUNTER, &["-O1"]].concat())?;
-    let counted = counter.count()?;
-    let claims = folder.compile("claims", &[CHECKER, &["-O1"]].concat())?;
+    // Compiling takes longer than every search: nothing is optimised.
+    let counted = folder.compile("count", COUNTER)?.count()?;
+    let claims = folder.compile("claims", CHECKER)?;
     let refuted = outcome.properties.iter().map(|property| claims.refutes(&formula(property)));
     Ok((counted, refuted.collect::<Result<_, _>>()?))
 }

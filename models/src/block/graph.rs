@@ -1,7 +1,7 @@
 //! A plain breadth-first search that keeps its graph: for questions that are not about single states.
 
 use crate::check::Limits;
-use std::collections::HashMap;
+use ahash::AHashMap;
 use std::collections::hash_map::Entry;
 use std::hash::Hash;
 use std::time::Instant;
@@ -27,7 +27,7 @@ impl<T: Copy + Eq + Hash, A: Clone> Graph<T, A> {
     ) -> Option<Self> {
         let start = Instant::now();
         let mut graph = Self { states: Vec::new(), found_by: Vec::new(), after: Vec::new() };
-        let mut numbers = HashMap::new();
+        let mut numbers = AHashMap::new();
         for state in initial {
             if let Entry::Vacant(free) = numbers.entry(state) {
                 free.insert(graph.states.len());

@@ -12,8 +12,9 @@ pub(crate) const CHECKER: &[&str] = &["-DSAFETY", "-DNOREDUCE"];
 /// For one that only counts states.
 pub(crate) const COUNTER: &[&str] = &["-DSAFETY", "-DNOREDUCE", "-DNOCLAIM"];
 
-/// The deepest path, in steps within cycles, and the minutes, that a search may take. Beyond either it has no result.
-const SEARCH: &[&str] = &["-E", "-m2000000", "-w22", "-Q10"];
+/// The deepest path, in steps within cycles, and the minutes, that a search may take. Beyond either it has no result. Room for more would
+/// cost more than the searches: it is cleared first.
+const SEARCH: &[&str] = &["-E", "-m400000", "-w20", "-Q10"];
 
 /// SPIN, found.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::report::{ClaimResult, CoverResult, HarnessResult, Verdict};
 use atc_proofs::{Engine, Harness};
-use proptest::prelude::Rng;
+use proptest::prelude::RngCore;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -49,20 +49,26 @@ struct Native<'a> {
     run: Run,
 }
 
+/// A value of 32 random bits: one in 64 is any; of the others a quarter is an end of what is likely, and the rest is evenly in it.
+///
+/// One draw a value, and no more than this: drawing is what testing natively spends its time on.
+fn drawn_of(bits: u32, likely: &RangeInclusive<u16>) -> u16 {
+    let (first, last) = (*likely.start(), *likely.end());
+    // The upper half of the bits.
+    let any = bits >> 16;
+    let within = match (bits >> 6) & 7 {
+        _ if first > last || bits.is_multiple_of(64) => any,
+        0 => u32::from(first),
+        1 => u32::from(last),
+        _ => u32::from(first) + ((any * (u32::from(last - first) + 1)) >> 16),
+    };
+    u16::try_from(within).unwrap_or(last)
+}
+
 impl Engine for Native<'_> {
     fn word(&mut self, what: &'static str, likely: RangeInclusive<u16>) -> u16 {
         let value = match &mut self.source {
-            Source::Random(random) => {
-                if likely.is_empty() || random.random_ratio(1, 64) {
-                    random.random()
-                } else {
-                    match random.random_range(0..8) {
-                        0 => *likely.start(),
-                        1 => *likely.end(),
-                        _ => random.random_range(likely),
-                    }
-                }
-            }
+            Source::Random(random) => drawn_of(random.next_u32(), &likely),
             Source::Tape(values) | Source::Proved(_, values) => values.next().copied().unwrap_or(0),
         };
         self.run.drawn.push((what, value));
