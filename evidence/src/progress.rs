@@ -12,8 +12,9 @@ use std::time::{Duration, Instant};
 const PLAIN: Duration = Duration::from_secs(15);
 /// And how often the line changes on a terminal.
 const TERMINAL: Duration = Duration::from_secs(1);
-/// For so many seconds the forecast rests on the costs rather than on what has been seen.
-const TRUST: f64 = 20.0;
+/// For so many seconds the forecast rests on the costs rather than on what has been seen: while a kernel with many mutants is compiled, or the
+/// tests run beside the proofs, what has been done is not seen yet.
+const TRUST: f64 = 120.0;
 /// How many items are named.
 const NAMED: usize = 3;
 /// The programs that are named where no item is.

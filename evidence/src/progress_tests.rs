@@ -14,14 +14,14 @@ fn the_line_says_what_is_done_what_is_left_and_what_runs() {
     progress.begin("proofs");
     // Nothing is known yet: 400 s of a processor on two, and one second has shown nothing.
     let line = progress.line(Duration::from_secs(1));
-    assert!(line.starts_with("proofs 0/10 · 1 s so far · about 4 m left"), "{line}");
+    assert!(line.starts_with("proofs 0/10 · 1 s so far · about 3 m left"), "{line}");
     for place in 0..9 {
         progress.done(&format!("proofs{place}"));
         progress.done(&format!("proofs{place}"));
     }
-    // 180 s of 400 in a minute: at (180 + 40) / (60 + 20) a second, 220 are left for 80.
+    // 180 s of 400 in a minute: at (180 + 240) / (60 + 120) a second, 220 are left for 94.
     let line = progress.line(Duration::from_mins(1));
-    assert_eq!(line, "proofs 9/10 · 1 m so far · about 1 m 20 s left · now proofs9");
+    assert_eq!(line, "proofs 9/10 · 1 m so far · about 2 m left · now proofs9");
     progress.end();
     progress.begin("models");
     progress.running("a-station");

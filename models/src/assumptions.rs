@@ -221,4 +221,9 @@ pub const ASSUMPTIONS: &[Assumption] = &[
         text: "What two stations see of the line between them overlaps, or meets at one joint.",
         without: "A train stands on a stretch that neither sees, and the other station sends against it.",
     },
+    Assumption {
+        id: "start-outlasts-running",
+        text: "When the time after a start has passed, every train that could count on a signal from before it has passed that signal, or stands.",
+        without: "A train goes out onto the line after its station's device has started, and the line is turned against it.",
+    },
 ];

@@ -10,6 +10,7 @@ use crate::interlocking::{Purpose, Sight};
 use atc_kernel::interlocking::{PointId, Position, Request, RouteId, SegmentId, Travel};
 use atc_kernel::time::Ticks;
 
+mod between;
 mod counted;
 mod line;
 mod others;
@@ -21,6 +22,7 @@ pub(super) fn entries() -> Vec<Entry> {
     let mut entries = passing_loop::entries();
     entries.extend(others::entries());
     entries.extend(line::entries());
+    entries.extend(between::entries());
     entries.extend(counted::entries());
     entries.extend(wrong::entries());
     entries

@@ -13,9 +13,11 @@
 //! | `claims` | what is claimed of it |
 //! | `progress` | the states from which not every train can arrive any more |
 //! | `trace` | a path as a run of the kernel |
+//! | [`between`] | two stations, the line between them, and trains that go to and fro |
 //! | [`neighbours`] | two stations that turn the line between them |
 //! | [`counted`] | a station whose line is counted: block counting in front of the interlocking |
 
+pub mod between;
 mod claims;
 pub mod counted;
 pub mod device;

@@ -47,12 +47,22 @@ pub enum View {
 
 impl View {
     /// The places of the line that each station sees, a bit each; and how many places there are.
-    const fn seen(self) -> ([u8; 2], u8) {
+    pub(super) const fn seen(self) -> ([u8; 2], u8) {
         match self {
             Self::Whole => ([0b1, 0b1], 1),
             Self::Overlapping => ([0b011, 0b110], 3),
             Self::Adjoining => ([0b01, 0b10], 2),
             Self::Apart => ([0b001, 0b100], 3),
+        }
+    }
+
+    /// It in words, of the line.
+    pub(super) const fn words(self) -> &'static str {
+        match self {
+            Self::Whole => "which both see",
+            Self::Overlapping => "of which each sees the part next to it and both the middle",
+            Self::Adjoining => "of which each sees the half next to it",
+            Self::Apart => "of which each sees the part next to it and nobody the middle",
         }
     }
 }
@@ -298,12 +308,7 @@ impl Subject for Pair {
     fn parameters(&self) -> String {
         format!(
             "two stations, one line, {}; turn time {} cycles, telegrams live for {} cycles",
-            match self.view {
-                View::Whole => "which both see",
-                View::Overlapping => "of which each sees the part next to it and both the middle",
-                View::Adjoining => "of which each sees the half next to it",
-                View::Apart => "of which each sees the part next to it and nobody the middle",
-            },
+            self.view.words(),
             self.turn,
             self.life
         )

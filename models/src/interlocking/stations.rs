@@ -9,6 +9,7 @@
 //! terminus    L ──▷ throat ═══ one                     point 0 in throat; normal leads to one
 //!                          ╲══ two
 //! siding      L ──▷ throat ─── first ─── second
+//! halt        L ──▷ throat ◁── platform
 //! counted     far ─── near ──▷ throat ═══ one          point 0 in throat; normal leads to one
 //!                                     ╲══ two
 //! ```
@@ -17,7 +18,10 @@
 
 mod others;
 
-pub use others::{BRANCH, MAIN, counted, counted_line, crossing, diamond, end, fork, junction, rest, siding, terminus};
+pub use others::{
+    BRANCH, IN, MAIN, OUT, counted, counted_line, crossing, diamond, end, fork, halt, junction, rest, siding, stop,
+    terminus,
+};
 
 use super::ground::{Edge, Ground, Heading, Signal, Station};
 use atc_kernel::distance::Metres;

@@ -208,7 +208,7 @@ fn ask(
 
 /// One in this many mutants that a kept counterexample rejects is asked of the prover all the same. Those that share a harness are drawn
 /// together: they have one symbolic execution.
-const ONE_IN: u8 = 16;
+const ONE_IN: u8 = 32;
 
 /// Whether the sample of these sources has the harness in it.
 fn is_drawn(sources: &str, harness: &str) -> bool {

@@ -209,3 +209,40 @@ pub fn counted_line() -> Station {
     plan.segments[0] = line;
     checked("counted line", ground, &plan)
 }
+
+/// Circuits of the halt.
+pub mod stop {
+    /// Plain line, as far as the halt sees it.
+    pub const L: u8 = 0;
+    /// The throat, where trains end that come in.
+    pub const THROAT: u8 = 1;
+    /// The platform, where trains begin.
+    pub const PLATFORM: u8 = 2;
+}
+
+/// The halt's route from the line.
+pub const IN: u8 = 0;
+/// Its route out to the line.
+pub const OUT: u8 = 1;
+
+/// One end of a line: a way in over the throat, and a way out from a platform over the same throat.
+pub fn halt() -> Station {
+    use stop::{L, PLATFORM, THROAT};
+    let ground = Ground {
+        circuits: &["line", "throat", "platform"],
+        edges: vec![edge(L, THROAT, Up), edge(PLATFORM, THROAT, Down), edge(THROAT, L, Down)],
+        signals: vec![signal(L, Up, 1 << IN), signal(PLATFORM, Down, 1 << OUT)],
+        points_in: [THROAT, THROAT],
+        fouls: Vec::new(),
+        line: 1 << L,
+        ends: vec![(THROAT, Up), (L, Down)],
+        turning: 0,
+        catching: 0,
+    };
+    let mut plan = plan(3);
+    let throat = [(THROAT, Positions::NONE)];
+    plan.routes[usize::from(IN)] = Route { from: alone(0), ..route(L, &throat, 1 << PLATFORM) };
+    plan.routes[usize::from(OUT)] = Route { to: alone(0), ..route(PLATFORM, &throat, 1 << L) };
+    plan.segments[0] = segment(L, 1 << THROAT);
+    checked("halt", ground, &plan)
+}
