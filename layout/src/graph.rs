@@ -125,6 +125,12 @@ impl Graph {
         }
         for end in &station.ends {
             match numbers.get(&end.joint.value) {
+                Some(joint) if graph.joints[*joint].end.is_some() => problems.push(Problem::new(
+                    Rule::NameTwice,
+                    &end.joint.span,
+                    format!("joint {} is given two ends", end.joint),
+                    "say once whether the line goes on there",
+                )),
                 Some(joint) => graph.joints[*joint].end = Some(end.kind),
                 None => problems.push(Problem::new(
                     Rule::NoSuchName,

@@ -97,6 +97,9 @@ fn form() {
 #[test]
 fn name_twice() {
     breaks(&change(LOOP, "name = \"W-2\"", "W-2", "W-1"), Rule::NameTwice, "two routes called W-1");
+    // Else the last would count, and `buffer` behind `line` ask for no flank protection.
+    let twice = "[[end]]\njoint = \"a\"\nkind = \"buffer\"\n\n[[segment]]";
+    breaks(&change(LOOP, "[[segment]]", "[[segment]]", twice), Rule::NameTwice, "joint a is given two ends");
 }
 
 #[test]

@@ -429,6 +429,10 @@ static const char *set_route(int r) {
         if (want && want != detected[p] && kept_point[p]) return "unswept";
     }
     if (((route->path | route->overlap) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
+    for (int p = 0; p < plan.points; p++) {
+        enum position want = wanted_point(r, p);
+        if (want && want != detected[p] && (plan.detectors[p] & now.blocked)) return "blocked";
+    }
     if (route->from >= 0 && now.travel[route->from] != TOWARD) return "direction";
     if (route->to >= 0 && (now.travel[route->to] != AWAY || !(consent & one(route->to)))) return "direction";
     for (int p = 0; p < plan.points; p++) {
@@ -794,7 +798,7 @@ static bool step(const struct json *input) {
             if (now.route[r].phase == PROVISIONAL && held_point(r, p)) want = held_point(r, p);
             if (now.route[r].phase > PROVISIONAL && held_point(r, p)) locked = true;
         }
-        now.drives[p] = want && want != detected[p] && !locked && (!(plan.detectors[p] & now.occupied) || FAULTY(21)) ? want : NOWHERE;
+        now.drives[p] = want && want != detected[p] && !locked && !(plan.detectors[p] & now.blocked) && (!(plan.detectors[p] & now.occupied) || FAULTY(21)) ? want : NOWHERE;
         if (now.drives[p]) now.stood[p] = 0;
     }
 
@@ -814,7 +818,10 @@ static bool step(const struct json *input) {
 
     // Confirmation.
     set held = 0;
-    for (int r = 0; r < plan.routes; r++) held |= held_path(r) | held_overlap(r);
+    for (int r = 0; r < plan.routes; r++) {
+        held |= held_path(r) | held_overlap(r);
+        for (int p = 0; p < plan.points; p++) held |= held_point(r, p) ? plan.detectors[p] : 0;
+    }
     for (int c = 0; c < plan.circuits && !starting; c++) {
         if (!(now.blocked & one(c)) || ((held | (FAULTY(38) ? 0 : now.unswept)) & one(c)) || (now.occupied & one(c))) continue;
         bool safe = true;

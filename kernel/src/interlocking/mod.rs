@@ -138,7 +138,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let answer = if refused { Some(Err(Refusal::Starting)) } else { answer };
         //= spec/interlocking.md#ilk-30-points-ahead
         //# A point that a kept place, or a kept overlap, needs MUST NOT be driven.
-        let mut demand = Demand { wanted: alone, locked: ways.points };
+        let shut = point::meeting(self, state.works.blocked);
+        let mut demand = Demand { wanted: alone, locked: ways.points.or(shut) };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
             demand = demand.with(route, *held);
         }
@@ -155,7 +156,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits);
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
-            circuits = circuits.or(held.circuits(route));
+            let needed = point::detectors(self, held.positions(route).points());
+            circuits = circuits.or(held.circuits(route)).or(needed);
         }
         if !starting {
             state.works = state.works.confirm(circuits, occupied);

@@ -17,6 +17,19 @@ pub(super) fn meeting<const R: usize, const P: usize, const N: usize, const S: u
     points
 }
 
+/// The detector circuits of `points`.
+#[inline]
+pub(super) fn detectors<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    points: PointSet,
+) -> CircuitSet {
+    let mut circuits = CircuitSet::EMPTY;
+    for (number, point) in layout.plan().points.iter().enumerate() {
+        circuits = circuits.or(point.detectors.only_if(points.meets(PointSet::nth(number))));
+    }
+    circuits
+}
+
 /// For how many cycles in a row each point has been detected in one position and not been driven, up to the layout's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Settling {
@@ -101,7 +114,7 @@ impl Demand {
     #[inline]
     pub(super) fn drives(self, detected: Positions, under: PointSet) -> Positions {
         //= spec/interlocking.md#ilk-8-detector-locking
-        //# A point MUST be driven only while a provisional route or an individual command wants it elsewhere than it is detected, no detector circuit of it is occupied, and no route past provisional locks it.
+        //# A point MUST be driven only while a provisional route or an individual command wants it elsewhere than it is detected, no detector circuit of it is occupied or blocked, and no route past provisional locks it.
         self.wanted.missing_in(detected).without(under.or(self.locked))
     }
 }

@@ -42,7 +42,7 @@ pub enum Refusal {
     Occupied,
     /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
     Unswept,
-    /// A circuit of path or overlap, the point's detector, or a circuit of the segment that the route leads to is blocked.
+    /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked.
     Blocked,
     /// A point must move, and a train stands on it.
     PointUnderTrain,
@@ -83,7 +83,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     sight: Sight,
 ) -> Option<Refusal> {
     //= spec/interlocking.md#ilk-1-request
-    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train.
+    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
     let route = &layout.plan().routes[asked];
     if !route.exists() {
         return Some(Refusal::Unknown);
@@ -103,6 +103,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     let needed = path.positions.or(overlap.positions);
     let (toward, away) = sight.directions;
     let moves = needed.missing_in(sight.detected).points();
+    let shut = point::meeting(layout, sight.blocked);
     //= spec/interlocking.md#ilk-29-route-ahead
     //# A route MUST be refused if it meets what a route keeps, other than as the way on of that route's train, if a point that is kept would have to move, or if it shares nothing with a route that keeps anything and is declared to conflict with it.
     if refusal.is_some() {
@@ -111,7 +112,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
         Some(Refusal::Occupied)
     } else if sight.from_before.is_in_the_way(layout, asked, sight.occupied) || moves.meets(sight.ways.points) {
         Some(Refusal::Unswept)
-    } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) {
+    } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) || moves.meets(shut) {
         Some(Refusal::Blocked)
     } else if !toward.contains(route.from) || !away.contains(route.to) {
         Some(Refusal::Direction)

@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A train. Its places count from the platform where it begins: 0 the platform, 1 the throat there, then the line, then the throat of the
 /// other station, where it ends. It begins again at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Train {
     /// The place of its front.
     pub front: u8,
@@ -341,10 +341,6 @@ impl Between {
     fn runs(&self, train: Train) -> bool {
         train.front >= 2 && train.front < self.end()
     }
-
-    fn is_away(&self, device: Number) -> bool {
-        !self.device(device).directions.away.is_empty()
-    }
 }
 
 impl Subject for Between {
@@ -421,16 +417,6 @@ impl Subject for Between {
                 Claim::<Self>::sometimes("second-goes", "the train of the second station is on the line", |m, s| {
                     m.runs(s.trains[1])
                 }),
-                Claim::<Self>::sometimes(
-                    "turned-behind",
-                    "a train has come in, the line is turned, and the other one is let out",
-                    |m, s| {
-                        s.trains[0].front == 0
-                            && m.is_away(s.devices[1])
-                            && s.trains[1].front == 0
-                            && s.trains[1].since_proceed <= m.lives.residual
-                    },
-                ),
             ]),
             Purpose::Hazard(excluded_by) => claims.push(Claim::<Self>::hazard(
                 "met",

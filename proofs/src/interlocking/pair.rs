@@ -1,7 +1,8 @@
 //! Two routes, and three: what may be held together (T-ILK-1).
 
 use super::{
-    PATH, any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, any_unswept, bit, held, kept,
+    PATH, any_circuits, any_layout, any_positions, any_route_state, any_routes_layout, any_segments, any_unswept, bit,
+    held, kept,
 };
 use crate::Engine;
 use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, SegmentSet, Sight, Ways, refuse_route};
@@ -76,7 +77,8 @@ fn together<const P: usize>(
 
 harness! {
     /// A route is reserved only if it can be held together with what another route holds, whatever that has released already; if all
-    /// of it is clear, unblocked and has its direction; and if no point of it would have to move under a train.
+    /// of it is clear, unblocked and has its direction; and if no point of it would have to move under a train or in a
+    /// blocked circuit.
     t_ilk_1(e)
     theorem "T-ILK-1";
     requirements ["ILK-1", "ILK-2", "ATC-10"];
@@ -94,14 +96,15 @@ harness! {
         Conflicts: "neither is declared to conflict with the other while both are held, and if they start from one circuit they lead the same way",
         Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
         Direction: "every segment that the route needs has the direction that it needs",
-        Moves: "a point that is not detected in position has no train on it",
+        Moves: "a point that is not detected in position has no train on it, and is in no blocked circuit",
     }
     covers {
         Both: "a route is reserved while the other is held",
         Under: "a route is reserved over the overlap that another holds",
     }
     {
-        let Some(layout) = any_routes_layout::<E, 2, FEWER>(e) else { return };
+        // One point has detectors; the others are positions only.
+        let Some(layout) = any_layout::<E, 2, FEWER, 1, 0>(e) else { return };
         let asked = e.choose("the route that is asked for", 2);
         let other = 1 - asked;
         let routes = &layout.plan().routes;
@@ -133,7 +136,11 @@ harness! {
         let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
         let reverse = mine.0.positions.reverse.bits() | mine.1.positions.reverse.bits();
         let moves = normal & !sight.detected.normal.bits() | reverse & !sight.detected.reverse.bits();
-        e.claim(Claim::Moves as u32, !reserved || u64::from(moves & sight.under.bits()) & point == 0);
+        let mut shut = 0;
+        for (number, point) in layout.plan().points.iter().enumerate() {
+            shut |= u32::from(point.detectors.bits() & sight.blocked.bits() != 0) << number;
+        }
+        e.claim(Claim::Moves as u32, !reserved || u64::from(moves & (sight.under.bits() | shut)) & point == 0);
         let both = reserved && state.phase != Phase::Idle;
         e.cover(Cover::Both as u32, both);
         e.cover(Cover::Under as u32, both && mine.0.circuits.bits() & kept(&routes[other], state).circuits.bits() & circuit != 0);

@@ -11,8 +11,8 @@ const PATH: usize = if cfg!(small) { 2 } else { 4 };
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 1 segment of up to 4 circuits";
 
 harness! {
-    /// A circuit is blocked or restricted by command only, and always by command. A block is confirmed only where no route holds the circuit
-    /// and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and before this cycle the
+    /// A circuit is blocked or restricted by command only, and always by command. No point in a blocked circuit is driven. A block is confirmed only
+    /// where no route holds the circuit or needs a point in it and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and before this cycle the
     /// neighbour has not been permitted to send for the turn time; what makes it protection lasts.
     t_ilk_8(e)
     theorem "T-ILK-8";
@@ -25,8 +25,8 @@ harness! {
         Blocked: "a circuit is blocked exactly if that is commanded, or it was and the opposite is not commanded",
         Restricted: "its restriction is the commanded one, and changes by command only; a command to restrict goes before one to lift",
         Told: "the shared table has these blocks, and no limit above the restriction, whatever routes do",
-        Confirmed: "only a blocked circuit that no route holds is confirmed",
-        Clear: "it becomes confirmed only while it is not occupied",
+        Confirmed: "only a blocked circuit that no route holds is confirmed, and no point in a blocked one is driven",
+        Clear: "it becomes confirmed only while it is not occupied, and no held route needs a point in it",
         Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time",
         Stays: "a confirmed circuit stays confirmed until its block is lifted",
         Lasts: "while it stays confirmed, the neighbour is not permitted to send and no route out is held",
@@ -37,6 +37,7 @@ harness! {
         Moving: "a blocked circuit of plain line is not confirmed because the neighbour was permitted to send",
         Both: "a circuit is to be blocked and unblocked",
         Lifts: "a restriction is lifted",
+        Needed: "a blocked circuit that no route holds is not confirmed because a route needs the point in it",
     }
     {
         let Some(layout) = any_layout::<E, ROUTES, PATH, 1, 1>(e) else { return };
@@ -108,10 +109,21 @@ harness! {
             in_route |= has(held(route, after.routes[number]).circuits.bits() | kept(route, after.routes[number]).circuits.bits());
         }
         let confirmed = has(after.works.confirmed.bits()) || has(output.confirmed.bits());
-        e.claim(Claim::Confirmed as u32, !confirmed || is_blocked && !in_route);
         let occupied = input.occupied.bits();
         let becomes = confirmed && !was_confirmed;
-        e.claim(Claim::Clear as u32, !becomes || !has(occupied));
+        let in_it = layout.plan().points[0].detectors.bits() & it != 0;
+        let mut needed = 0;
+        for number in 0..ROUTES {
+            let route = &layout.plan().routes[number];
+            let of_route = [held(route, after.routes[number]).positions, kept(route, after.routes[number]).positions];
+            for positions in of_route {
+                needed |= (positions.normal.bits() | positions.reverse.bits()) & 1;
+            }
+        }
+        let needed = in_it && needed == 1;
+        e.claim(Claim::Clear as u32, !becomes || !has(occupied) && !needed);
+        let driven = in_it && (output.drives.normal.bits() | output.drives.reverse.bits()) & 1 == 1;
+        e.claim(Claim::Confirmed as u32, (!confirmed || is_blocked && !in_route) && (!is_blocked || !driven));
         let clear = occupied & (line | segment.throat.bits()) == 0;
         let quiet = clear && protects(&after) && before.directions.withdrawn[0] == turn;
         e.claim(Claim::Quiet as u32, !becomes || !on_line || quiet);
@@ -122,6 +134,8 @@ harness! {
         e.cover(Cover::Held as u32, is_blocked && !confirmed && in_route && !has(occupied));
         e.cover(Cover::Moving as u32, is_blocked && !confirmed && on_line && clear && !out(&after));
         e.cover(Cover::Both as u32, block && unblock);
+        let quiet_place = !on_line && !has(occupied) && !in_route;
+        e.cover(Cover::Needed as u32, is_blocked && !confirmed && quiet_place && needed && !has(after.unswept.circuits.bits()));
         e.cover(Cover::Lifts as u32, lift && !restrict && restriction.0 < 7);
     }
 }

@@ -1,6 +1,6 @@
 //! A point that was told to move may leave later than it is looked at.
 
-use atc_kernel::interlocking::{PointId, Position, Positions, Travel};
+use atc_kernel::interlocking::{Phase, PointId, Position, Positions, Refusal, SegmentSet, Travel};
 
 use crate::session::Session;
 
@@ -48,4 +48,58 @@ fn a_point_that_was_not_driven_delays_nothing() {
     assert_eq!(session.ask(set, &["W1"]), Ok(()));
     assert!(session.proceed("W-1"));
     assert_ne!(session.detected, Positions::NONE);
+}
+
+/// A terminus whose line out is turned away, with a train in platform 3. The route 3-D needs P4 in normal position as flank protection, beside its path.
+fn before_departure(p4: Option<Position>) -> Session {
+    let mut session = Session::terminus();
+    let others = ["P1", "P2", "P3", "P5"].map(|name| (name, Position::Normal));
+    session.lie(&others.into_iter().chain(p4.map(|position| ("P4", position))).collect::<Vec<_>>());
+    session.consent = SegmentSet::ALL;
+    let away = session.turn("Departures", Travel::Away);
+    let turned = (0..2_000).any(|_| session.ask(away, &["3T"]).is_ok());
+    assert!(turned);
+    session
+}
+
+/// Staff are at P4, in a confirmed block. A route that needs it elsewhere as flank protection is refused, like a command by hand.
+#[test]
+fn a_point_among_staff_is_not_driven_for_a_route_beside_it() {
+    let mut session = before_departure(Some(Position::Reverse));
+    session.block(&["P4T"], &["3T"]);
+    assert!(session.is_confirmed("P4T"));
+    for request in [session.drive("P4", Position::Normal), session.set("3-D")] {
+        assert_eq!(session.ask(request, &["3T"]), Err(Refusal::Blocked));
+        assert!(session.drives().is_empty());
+    }
+    // Where it lies right nothing moves, and it is not driven when staff move it by hand.
+    let mut session = before_departure(Some(Position::Normal));
+    session.block(&["P4T"], &["3T"]);
+    let set = session.set("3-D");
+    assert_eq!(session.ask(set, &["3T"]), Ok(()));
+    session.lie(&["P1", "P2", "P3", "P5"].map(|name| (name, Position::Normal)));
+    for _ in 0..50 {
+        session.wait(1, &["3T"]);
+        assert!(session.drives().is_empty());
+    }
+    assert!(session.is_confirmed("P4T"));
+}
+
+/// The block comes while the route drives the point: the drive ends at once, and staff may rely on the block when no route needs the point any more.
+#[test]
+fn a_block_ends_a_drive_and_is_confirmed_when_no_route_needs_the_point() {
+    let mut session = before_departure(None);
+    let set = session.set("3-D");
+    assert_eq!(session.ask(set, &["3T"]), Ok(()));
+    assert!(!session.drives().is_empty());
+    session.block(&["P4T"], &["3T"]);
+    assert!(session.drives().is_empty());
+    while session.phase("3-D") != Phase::Failed {
+        assert!(!session.is_confirmed("P4T"));
+        session.wait(1, &["3T"]);
+    }
+    assert!(!session.is_confirmed("P4T"));
+    let withdraw = session.withdraw("3-D");
+    assert_eq!(session.ask(withdraw, &["3T"]), Ok(()));
+    assert!(session.is_confirmed("P4T") && session.drives().is_empty());
 }

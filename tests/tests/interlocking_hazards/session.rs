@@ -10,6 +10,8 @@ use atc_layout::{Description, Names};
 
 const LOOP: &str = include_str!("../../../layouts/passing-loop.toml");
 
+const TERMINUS: &str = include_str!("../../../layouts/terminus.toml");
+
 /// All circuits, from west to east.
 pub const ALL: [&str; 8] = ["W2", "W1", "P1T", "1T", "2T", "P2T", "E1", "E2"];
 
@@ -51,6 +53,21 @@ impl Session {
         let mut session = Self::of(&format!("{}\n{lines}\n", kept.collect::<Vec<_>>().join("[[route]]")));
         session.wait(usize::from(session.layout.plan().start.0), &[]);
         session
+    }
+
+    /// A device of the terminus, unblocked, and quiet until it may be used.
+    pub fn terminus() -> Self {
+        let mut session = Self::of(TERMINUS);
+        session.wait(usize::from(session.layout.plan().start.0), &[]);
+        session
+    }
+
+    /// These points lie so from now on, and no others are detected.
+    pub fn lie(&mut self, points: &[(&str, Position)]) {
+        let of = |(name, position): &(&str, Position)| {
+            Positions::of(PointId::new(number(&self.names.points, name)).expect("a point"), *position)
+        };
+        self.detected = points.iter().map(of).fold(Positions::NONE, Positions::or);
     }
 
     /// All points lie in reverse from now on.

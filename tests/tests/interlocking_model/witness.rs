@@ -263,7 +263,8 @@ impl Witness {
         firm
     }
 
-    /// Points that provisional routes and an individual command want elsewhere than they are; not under a train, not locked.
+    /// Points that provisional routes and an individual command want elsewhere than they are; not under a train, not
+    /// locked, not in a block.
     fn drives(&self, sketch: &Sketch, alone: Option<Need>, occupied: &Set, seen: &[Need]) -> Vec<Need> {
         let routes = || self.routes.iter().zip(&sketch.routes);
         let wanted = routes()
@@ -275,7 +276,7 @@ impl Witness {
         let locked: Set = locked.by_ref().map(|need| need.0).collect();
         let mut drives: Vec<Need> = wanted.chain(alone).collect();
         drives.retain(|need| {
-            let ahead = self.unswept.needs(need.0);
+            let ahead = self.unswept.needs(need.0) || meets(&sketch.points[need.0], &self.blocked);
             !ahead && !seen.contains(need) && !locked.contains(&need.0) && !meets(&sketch.points[need.0], occupied)
         });
         drives
@@ -296,7 +297,8 @@ impl Witness {
         meets(&sketch.segments[segment].circuits, &self.blocked)
     }
 
-    /// Whether a train may be on its way to a circuit: what is held may be run over, and on plain line what is sent comes.
+    /// Whether a train may be on its way to a circuit, or a point in it may move: what is held may be run over, what a route needs may be
+    /// driven, and on plain line what is sent comes.
     fn may_be_coming(&self, sketch: &Sketch, circuit: usize, occupied: &Set) -> bool {
         let routes = || self.routes.iter().zip(&sketch.routes).filter(|(held, _)| held.is_held());
         let on_line = |number: usize| {
@@ -308,7 +310,10 @@ impl Witness {
                 || self.stretches[number].travel == Some(Travel::Toward)
         };
         let line = sketch.segments.iter().position(|line| line.circuits.contains(&circuit));
-        routes().any(|(held, way)| held.circuits(way).contains(&circuit)) || line.is_some_and(on_line)
+        let needed = |need: &Need| sketch.points[need.0].contains(&circuit);
+        let of_route =
+            routes().any(|(held, way)| held.circuits(way).contains(&circuit) || held.needs(way).iter().any(needed));
+        of_route || line.is_some_and(on_line)
     }
 
     fn confirm(&mut self, sketch: &Sketch, occupied: &Set) {

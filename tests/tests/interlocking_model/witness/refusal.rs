@@ -59,12 +59,14 @@ impl Witness {
         }
         let has = |segment: Option<usize>, travel| segment.is_none_or(|it| self.stretches[it].travel == Some(travel));
         let stuck = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], occupied);
+        let shut = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], &self.blocked);
         reasons.extend(listed(&[
             (meets(&path, occupied) || meets(overlap, occupied), Refusal::Occupied),
             (self.unswept.is_in_the_way(sketch, asked, occupied), Refusal::Unswept),
             (needs.iter().any(|need| !seen.contains(need) && self.unswept.needs(need.0)), Refusal::Unswept),
             (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),
             (way.to.is_some_and(|segment| self.closed(sketch, segment)), Refusal::Blocked),
+            (needs.iter().any(shut), Refusal::Blocked),
             (!has(way.from, Travel::Toward) || !has(way.to, Travel::Away), Refusal::Direction),
             (way.to.is_some_and(|segment| !self.sends.contains(&segment)), Refusal::Direction),
             (needs.iter().any(stuck), Refusal::PointUnderTrain),
