@@ -94,7 +94,7 @@ impl Settling {
 pub(super) struct Demand {
     /// Provisional routes and individual commands want these positions.
     pub wanted: Positions,
-    /// Routes past provisional lock these points.
+    /// What must not move: routes past provisional lock points, what the start has left unswept keeps some, and blocks are on others.
     pub locked: PointSet,
 }
 

@@ -62,7 +62,10 @@ impl Interlocked {
                 }
                 _ => self.points_of(asked.positions.missing_in(detected).points()),
             },
-            Refusal::Blocked => self.circuits_of(all.or(self.line(asked.out)).and(self.state().works.blocked)),
+            Refusal::Blocked => {
+                let moving = self.detectors(asked.positions.missing_in(detected).points());
+                self.circuits_of(all.or(self.line(asked.out)).or(moving).and(self.state().works.blocked))
+            }
             Refusal::PointUnderTrain => match request {
                 Request::Drive(point, _) => self.points_of(point.alone()),
                 _ => self.points_of(self.under(asked.positions.missing_in(detected).points(), occupied)),
@@ -115,6 +118,14 @@ impl Interlocked {
             circuits = circuits.or(segment.all().only_if(segments.meets(SegmentSet::nth(number))));
         }
         circuits
+    }
+
+    /// The detector circuits of points.
+    fn detectors(&self, points: PointSet) -> CircuitSet {
+        let all = self.layout.plan().points.iter().enumerate();
+        all.fold(CircuitSet::EMPTY, |circuits, (number, point)| {
+            circuits.or(point.detectors.only_if(points.meets(PointSet::nth(number))))
+        })
     }
 
     fn under(&self, points: PointSet, occupied: CircuitSet) -> PointSet {

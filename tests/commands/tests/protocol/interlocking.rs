@@ -182,6 +182,20 @@ fn what_is_in_the_way_on_plain_line() {
     assert_eq!(ask(&outward, &throat), refused("direction", &["A"]));
 }
 
+/// A route that would have to move a point in a block, beside its path, is told the blocked circuit.
+#[test]
+fn a_point_in_a_block_is_in_the_way() {
+    let mut fork = plan();
+    fork["plan"]["routes"][0]["path"] = json!([{"circuits": ["B"], "points": {"P": "normal"}}]);
+    let at = |more: &str| step(&format!(r#"{{"occupied":[],"detected":{{"P":"reverse"}}{more}}}"#));
+    let unblock = at(r#","orders":{"unblock":["W","B","E"],"lift":["W","A","B","E"]}"#);
+    let set = at(r#","request":{"set":"in"}"#);
+    let lines = [start("interlocking", &fork.to_string()), unblock, at(""), at(""), set];
+    let said = converse(&lines.each_ref().map(String::as_str));
+    let refused = json!({"refused": "blocked", "because": ["A"]});
+    assert_eq!(output(said.last().expect("an answer"))["answer"], refused);
+}
+
 /// A start that is not understood or breaks a rule of layouts, and what its reason must say.
 #[test]
 fn wrong_starts() {
