@@ -6,18 +6,24 @@
 //!
 //! A train is where it is on the ground, never where a device has it.
 
+mod conditions;
+mod known;
+
+pub use conditions::{Faults, Lives, Times};
+pub use known::{Number, Outcome};
+
 use super::neighbours::View;
 use super::stations::{self, IN, OUT, Small, circuits, stop};
-use super::trace::Run;
+use super::trace::{Run, direction_word};
 use super::yard::Kept;
 use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
-use ahash::AHashMap;
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Directions, Input, Orders, Positions, Request, RouteId, SegmentId, SegmentSet, Travel,
+    self as kernel, CircuitSet, Input, Orders, Positions, Request, RouteId, SegmentId, SegmentSet, Travel,
 };
 use atc_kernel::time::Ticks;
+use known::Known;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -34,24 +40,6 @@ pub struct Train {
     pub since_proceed: u8,
     /// For how many cycles in a row it has not been reported.
     pub unheard: u8,
-}
-
-/// A device's state: its number among those that the model has met. A state of two devices is short so, and quick to compare.
-pub type Number = usize;
-
-/// What a device makes of one cycle. What it has read first to come there stands for all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome {
-    /// Its state.
-    pub device: Number,
-    /// The routes that show proceed: a mask.
-    pub proceed: u8,
-    /// Whether it permits the other station to send.
-    pub permits: bool,
-    /// Whether it has started again in this cycle.
-    pub started: bool,
-    /// What it has read: the place among the inputs of the model.
-    read: usize,
 }
 
 /// Two devices, what is on its way between them, and two trains.
@@ -76,63 +64,6 @@ pub struct Cycle {
     pub outcomes: [Outcome; 2],
 }
 
-/// For how long something counts after it has ended, in cycles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lives {
-    /// For how long after it was sent a permission may still be read; 0: only in the cycle after.
-    pub permission: u8,
-    /// For how long after a signal fell a train may still pass it.
-    pub residual: u8,
-}
-
-/// The times of both stations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Times {
-    /// The turn time.
-    pub turn: Ticks,
-    /// The time after a start.
-    pub start: Ticks,
-    /// For how many cycles a circuit must be reported clear to count as clear.
-    pub clear: u8,
-}
-
-impl Times {
-    /// What the rules of a layout ask for, where a train may be lost for so many cycles: the turn time covers a permission's life, the
-    /// residual running and the loss; the time after a start covers the turn time and every release; a train that is lost where it leaves a
-    /// circuit, and again where it enters the next one, still counts.
-    pub fn right(lives: Lives, unheard: u8) -> Self {
-        let release = u16::from(lives.residual) + u16::from(unheard);
-        let turn = Ticks(u16::from(lives.permission) + release);
-        Self { turn, start: turn, clear: (2 * unheard).max(1) }
-    }
-}
-
-/// What may happen besides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Faults {
-    /// For how many cycles in a row a train may not be reported.
-    pub unheard: u8,
-    /// The circuits of each station that may be reported occupied without a train: a mask.
-    pub falsely: u8,
-    /// Whether a device may start again.
-    pub restarts: bool,
-}
-
-impl Faults {
-    /// They in words, behind others.
-    pub fn words(self) -> String {
-        let falsely = match self.falsely {
-            0 => "",
-            1 => "; the line may be reported occupied without a train, to either station",
-            _ => "; the line and the throats may be reported occupied without a train",
-        };
-        let unheard =
-            if self.unheard > 0 { format!("; a train may be lost for {} cycle", self.unheard) } else { String::new() };
-        let restarts = if self.restarts { "; either device may start again" } else { "" };
-        format!("{falsely}{unheard}{restarts}")
-    }
-}
-
 /// What a model is there to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -140,26 +71,6 @@ pub enum Purpose {
     Safe,
     /// They do, and each of these assumptions excludes it.
     Hazard(&'static [&'static str]),
-}
-
-/// What was worked out before: a device's states, and what it makes of a cycle.
-#[derive(Debug, Default)]
-struct Known {
-    devices: Vec<Kept>,
-    numbers: AHashMap<Kept, Number>,
-    inputs: Vec<Input>,
-    /// By its state, what is really occupied, and whether there is a permission that it may read.
-    outcomes: AHashMap<(Number, u8, bool), Arc<[Outcome]>>,
-}
-
-impl Known {
-    /// The number of a device's state.
-    fn number(&mut self, device: Kept) -> Number {
-        *self.numbers.entry(device).or_insert_with(|| {
-            self.devices.push(device);
-            self.devices.len() - 1
-        })
-    }
 }
 
 /// The model.
@@ -457,19 +368,14 @@ impl Subject for Between {
                 run.step(&input, BTreeMap::from([("hazard".to_owned(), json!(false))]));
             }
         }
-        let word = |directions: Directions<2>| match (directions.away.is_empty(), directions.toward.is_empty()) {
-            (false, _) => "away",
-            (true, false) => "toward",
-            (true, true) => "none",
-        };
         for (place, (_, cycle)) in path.iter().enumerate().skip(started.unwrap_or(0)) {
             let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
             let train =
                 |train: Train| json!({"front": train.front, "rear": train.rear, "reported": train.unheard == 0});
             let words = BTreeMap::from([
                 ("trains".to_owned(), json!(cycle.trains.map(train))),
-                ("direction".to_owned(), json!(word(self.device(after.devices[0]).directions))),
-                ("neighbour_direction".to_owned(), json!(word(self.device(after.devices[1]).directions))),
+                ("direction".to_owned(), json!(direction_word(&self.device(after.devices[0]).directions))),
+                ("neighbour_direction".to_owned(), json!(direction_word(&self.device(after.devices[1]).directions))),
                 ("neighbour_starts".to_owned(), json!(cycle.outcomes[1].started)),
                 ("neighbour_proceed".to_owned(), json!(cycle.outcomes[1].proceed)),
                 ("hazard".to_owned(), json!(after.met)),

@@ -5,7 +5,7 @@
 //! train; the line is then occupied for both until the train has left it.
 
 use super::stations::circuits;
-use super::trace::Run;
+use super::trace::{Run, direction_word};
 use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
 use atc_kernel::Machine;
@@ -322,15 +322,6 @@ impl Subject for Pair {
             &self.unblocking(path.first().and_then(|(state, _)| state.train)),
             BTreeMap::from([("hazard".to_owned(), json!(false))]),
         );
-        let word = |directions: Directions<1>| {
-            if Self::sends(directions) {
-                "away"
-            } else if directions.toward.is_empty() {
-                "none"
-            } else {
-                "toward"
-            }
-        };
         for (place, (_, cycle)) in path.iter().enumerate() {
             let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
             let travel = |command: Option<Travel>| {
@@ -338,10 +329,10 @@ impl Subject for Pair {
                     .map(|travel| json!({"turn": "S0", "to": if travel == Travel::Toward { "toward" } else { "away" }}))
             };
             let words = BTreeMap::from([
-                ("direction".to_owned(), json!(word(after.directions[0]))),
+                ("direction".to_owned(), json!(direction_word(&after.directions[0]))),
                 ("neighbour_command".to_owned(), json!(travel(cycle.commands[1]))),
                 ("neighbour_consent".to_owned(), json!(cycle.consent[1])),
-                ("neighbour_direction".to_owned(), json!(word(after.directions[1]))),
+                ("neighbour_direction".to_owned(), json!(direction_word(&after.directions[1]))),
                 ("hazard".to_owned(), json!(after.against)),
             ]);
             run.step(&self.input(*cycle, 0), words);

@@ -7,8 +7,8 @@ use super::yard::{Cycle, Harm, State, Yard};
 use crate::outcome::{Step, Trace};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Element, Input, Layout, MAX_CODES, Output, Phase, PointSet, Position, Positions,
-    Refusal, Request, RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
+    self as kernel, CircuitSet, Directions, Element, Input, Layout, MAX_CODES, Output, Phase, PointSet, Position,
+    Positions, Refusal, Request, RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
 };
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -207,6 +207,18 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
 /// The speed that stands for a code: the models know codes only.
 const fn speed_km_h(code: SpeedCode) -> u16 {
     code.0 as u16 * 20
+}
+
+/// The direction of the first segment.
+pub(super) fn direction_word<const S: usize>(directions: &Directions<S>) -> &'static str {
+    let it = SegmentSet::nth(0);
+    if directions.away.meets(it) {
+        "away"
+    } else if directions.toward.meets(it) {
+        "toward"
+    } else {
+        "none"
+    }
 }
 
 fn point_name(number: usize) -> String {

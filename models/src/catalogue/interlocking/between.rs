@@ -57,19 +57,19 @@ pub(super) fn entries() -> Vec<Entry> {
     vec![
         sound(
             "interlocking-between",
-            "Two trains go to and fro over a line between two stations, whose circuits are falsely occupied at will: they never meet.",
+            "Two trains go to and fro over a line between two stations; line and throats are falsely occupied at will: the trains never meet.",
             (View::Adjoining, OLD),
             Faults { falsely: BOTH, ..NONE },
         ),
         sound(
             "interlocking-between-lost",
-            "The same, and each train is lost for a cycle at will.",
+            "The line is falsely occupied, and each train is lost for a cycle, at will: the trains never meet.",
             (View::Adjoining, SHORT),
             Faults { unheard: 1, falsely: LINE, ..NONE },
         ),
         sound(
             "interlocking-between-start",
-            "The same as the first, and either device starts again at will, any number of times.",
+            "The line is falsely occupied, and either device starts again, at will and any number of times: the trains never meet.",
             (View::Adjoining, OLD),
             Faults { falsely: LINE, restarts: true, ..NONE },
         ),
@@ -87,7 +87,7 @@ pub(super) fn entries() -> Vec<Entry> {
         ),
         hazard(
             "interlocking-between-short-turn",
-            "A turn time that is shorter than permissions live by more than their way takes: each station sends on the other's old permission.",
+            "A turn time of two cycles where permissions live for three: each station sends on the other's old permission.",
             TURNS,
             (View::Adjoining, OLD),
             NONE,
