@@ -839,7 +839,7 @@ typedef struct atc_interlocking_input {
   uint64_t unblock;
   /// The circuits that staff restrict to `restrict_code`.
   uint64_t restrict_circuits;
-  /// The circuits whose restriction staff lift; one that is to be restricted as well is restricted.
+  /// The circuits whose restriction staff lift; one that is to be restricted as well has the new restriction only.
   uint64_t lift;
   /// The points that are detected in normal position.
   uint32_t detected_normal;

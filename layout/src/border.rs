@@ -57,6 +57,7 @@ pub fn compare(first: Station<'_>, second: Station<'_>) -> Result<Vec<Border>, E
             borders.push(border(first.1, segment, second.1, &second.1.segments[other]));
         }
     }
+    unmatched(first, second, &mut problems);
     if borders.is_empty() && problems.is_empty() {
         let lines = |(description, model): Station<'_>| {
             let named: Vec<&str> = model.segments.iter().filter_map(|segment| segment.line.as_deref()).collect();
@@ -68,6 +69,49 @@ pub fn compare(first: Station<'_>, second: Station<'_>) -> Result<Vec<Border>, E
         problems.push(Problem::new(Rule::ViewsApart, &(0..0), what, right));
     }
     if problems.is_empty() { Ok(borders) } else { Err(Errors::new(&first.0.source, problems)) }
+}
+
+/// The lines that one of two stations names and the other does not: of these nothing is compared. In words.
+pub fn not_compared((one, model): Station<'_>, (two, other_model): Station<'_>) -> Vec<String> {
+    let told = |(description, model): Station<'_>, (other, others): Station<'_>| -> Vec<String> {
+        let lines = model.segments.iter().filter_map(|segment| alone(segment, others));
+        let (here, there) = (&description.station.name, &other.station.name);
+        lines.map(|line| format!("line {line} of {here}: {there} names no such line, and it is not compared")).collect()
+    };
+    [told((one, model), (two, other_model)), told((two, other_model), (one, model))].concat()
+}
+
+/// The line of a segment, if no segment there is of it.
+fn alone<'a>(segment: &'a Segment, there: &Model) -> Option<&'a str> {
+    let line = segment.line.as_deref()?;
+    there.segments.iter().all(|other| other.line.as_deref() != Some(line)).then_some(line)
+}
+
+/// A line that each names in its own way: nothing would be compared. That both share a circuit of one name, or that both views end at one joint, says
+/// that one line is meant.
+fn unmatched((description, model): Station<'_>, (its, its_model): Station<'_>, problems: &mut Vec<Problem>) {
+    for (number, segment) in model.segments.iter().enumerate() {
+        for other in &its_model.segments {
+            let (Some(line), Some(its_line)) = (alone(segment, its_model), alone(other, model)) else { continue };
+            let (mine, theirs) = (shared(model, segment), shared(its_model, other));
+            let meet = outer_end(model, segment).is_some_and(|end| outer_end(its_model, other) == Some(end));
+            let why = if let Some(both) = mine.iter().find(|name| theirs.contains(name)) {
+                format!("both see {both}")
+            } else if meet {
+                "both views end at one joint".to_owned()
+            } else {
+                continue;
+            };
+            let (here, there) = (&description.station.name, &its.station.name);
+            let what = format!(
+                "{here} has a line {line}, and {there} a line {its_line}: {why}, and lines are compared by their names"
+            );
+            let given = &description.station.segments[number];
+            let span = given.line.as_ref().map_or(&segment.span, |line| &line.span);
+            let right = "give the two segments of a line the same line = \"…\"; if they are two lines, give circuits and joints names of their own";
+            problems.push(Problem::new(Rule::ViewsApart, span, what, right));
+        }
+    }
 }
 
 fn names<'a>(model: &'a Model, circuits: &[usize]) -> Vec<&'a str> {

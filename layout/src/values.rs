@@ -110,7 +110,7 @@ pub struct Speeds {
     /// The highest speed of a train that comes up to a signal, in km/h [default: that of the highest code].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line_kmh: Option<At<u16>>,
-    /// The highest speed on a route over a reverse point, in km/h [default: `route_kmh`].
+    /// The highest speed on a route over a reverse point, in km/h [default: that of the lowest code].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reverse_kmh: Option<At<u16>>,
     /// The highest speed on a route, in km/h [default: `line_kmh`].

@@ -1,7 +1,7 @@
 //! What two stations see of the line between them, held against each other: `layouts/passing-loop.toml` beside itself, the east of the one against
 //! the west of the other.
 
-use atc_layout::border::{Border, compare};
+use atc_layout::border::{Border, compare, not_compared};
 use atc_layout::{At, Description, Errors, Rule};
 
 const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
@@ -110,7 +110,8 @@ fn left_and_right_agree() {
 #[test]
 fn no_line_in_common_and_a_turn_time_that_is_too_short() {
     let one = station("One", "line = \"a\"", "line = \"b\"");
-    refused(&one, &neighbour("line = \"c\""), "no line in common (One: a, b; Neighbour: c)");
+    let far = renamed(&neighbour("line = \"c\""), &[("a", "west")]);
+    refused(&one, &far, "no line in common (One: a, b; Neighbour: c)");
     let other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
     assert!(held(&one, &other).is_ok());
     // With a strong brake the station's own trains have soon run out.
@@ -119,6 +120,36 @@ fn no_line_in_common_and_a_turn_time_that_is_too_short() {
     quick.station.braking.deceleration_mm_s2.value = 4000;
     slow.station.times.telegram_age_ms.value = 8000;
     refused(&quick, &slow, "One turns the line after 7500 ms, and telegrams in Neighbour live for 8000 ms");
+}
+
+/// A slip in the name of a second line between two stations; the twelfth attack's file was accepted, and that line was not looked at.
+#[test]
+fn a_line_under_two_names() {
+    let one = station("One", "line = \"north\"", "line = \"middle\"");
+    let two = |east: &str, joint: &str| {
+        let it = station("Two", "line = \"middle\"", east);
+        renamed(&it, &[("E1", "E8"), ("E2", "E9"), ("j", "far"), ("a", "j"), ("far", joint)])
+    };
+    let right = held(&one, &two("line = \"south\"", "far")).expect("two lines to others");
+    assert_eq!(right.len(), 1);
+    let (model, other) = (one.model().expect("a model"), two("line = \"south\"", "far"));
+    assert_eq!(
+        not_compared((&one, &model), (&other, &other.model().expect("a model"))),
+        [
+            "line north of One: Two names no such line, and it is not compared",
+            "line south of Two: One names no such line, and it is not compared"
+        ]
+    );
+    // Both views end at one joint.
+    refused(
+        &one,
+        &two("line = \"nort\"", "a"),
+        "One has a line north, and Two a line nort: both views end at one joint",
+    );
+    // Both share a circuit.
+    let sharing = station("One", "line = \"north\"\nshared = [\"W2\"]", "line = \"middle\"");
+    let also = renamed(&two("line = \"nort\"\nshared = [\"E9\"]", "far"), &[("W1", "V1"), ("W2", "V2"), ("E9", "W2")]);
+    refused(&sharing, &also, "One has a line north, and Two a line nort: both see W2");
 }
 
 /// The neighbour's trains may run on for longer, and be lost for longer, than the station's own.

@@ -142,11 +142,11 @@ fn a_speed_of_the_file_is_never_raised() {
         let model = model(&imported(text));
         model.values.speeds_kmh[usize::from(route(&model, name).speed.0)]
     };
-    assert_eq!((kmh(HEAD_ON, "W-1"), kmh(&slow, "W-1"), kmh(&slow, "1-W"), kmh(&slow, "W-2")), (90, 25, 25, 90));
+    assert_eq!((kmh(HEAD_ON, "W-1"), kmh(&slow, "W-1"), kmh(&slow, "1-W"), kmh(&slow, "W-2")), (90, 25, 25, 15));
     let stretch = "<speeds><speedSection id=\"v1\" maxSpeed=\"60\"><linearLocation id=\"v1l\"><associatedNetElement netElementRef=\"ne1\" intrinsicCoordBegin=\"0.6\" intrinsicCoordEnd=\"0.9\"/></linearLocation></speedSection></speeds><bufferStops>";
     let with = changed(HEAD_ON, "<bufferStops>", stretch);
     // It lies in 1Tb alone, which a train from 1W does not run over.
-    assert_eq!((kmh(&with, "W-1"), kmh(&with, "E-1"), kmh(&with, "1-W"), kmh(&with, "W-2")), (55, 55, 90, 90));
+    assert_eq!((kmh(&with, "W-1"), kmh(&with, "E-1"), kmh(&with, "1-W"), kmh(&with, "W-2")), (55, 55, 90, 15));
     let crawl = changed(
         HEAD_ON,
         "<leftBranch netRelationRef=\"nr0n\"/>",

@@ -100,6 +100,9 @@ fn name_twice() {
     // Else the last would count, and `buffer` behind `line` ask for no flank protection.
     let twice = "[[end]]\njoint = \"a\"\nkind = \"buffer\"\n\n[[segment]]";
     breaks(&change(LOOP, "[[segment]]", "[[segment]]", twice), Rule::NameTwice, "joint a is given two ends");
+    // Whoever commands or reads the one may mean the other.
+    let same = change(LOOP, "name = \"1-E\"", "signal = \"1E\"", "signal = \"1W\"");
+    breaks(&same, Rule::NameTwice, "signal 1W stands at joint");
 }
 
 #[test]
@@ -125,6 +128,39 @@ fn range() {
     let long = |metres: &str| LOOP.replace("longest_train_m = 200", metres);
     breaks(&long("longest_train_m = 0"), Rule::Range, "longest_train_m is 1 to 65535");
     breaks(&long("longest_train_m = 20\nshortest_train_m = 21"), Rule::Range, "longest_train_m is 21 to 65535");
+    // A slip of the finger is no limit.
+    let speed = |from: &str, to: &str| change(LOOP, "[speed]", from, to);
+    // Its approach is too short as well.
+    let line = errors(&speed("line_kmh = 75", "line_kmh = 750"));
+    assert!(
+        line.breaks(Rule::Range) && line.to_string().contains("line_kmh is 750 km/h, faster than any code"),
+        "{line}"
+    );
+    breaks(&speed("reverse_kmh = 45", "reverse_kmh = 450"), Rule::Range, "reverse_kmh is 450 km/h");
+    breaks(&speed("reverse_kmh = 45", "reverse_kmh = 45\nroute_kmh = 91"), Rule::Range, "route_kmh is 91 km/h");
+    let route = |field: &str| change(LOOP, "name = \"W-1\"", "signal", &format!("{field} = 450\nsignal"));
+    breaks(&route("speed_kmh"), Rule::Range, "route W-1: speed_kmh is 450 km/h");
+    let approach = errors(&route("approach_kmh"));
+    let says = "route W-1: approach_kmh is 450 km/h, faster than any code";
+    assert!(approach.breaks(Rule::Range) && approach.to_string().contains(says), "{approach}");
+}
+
+/// What nobody has said costs speed: over reverse points it is the lowest code.
+#[test]
+fn reverse_points_without_a_speed() {
+    let compiled = |text: &str| {
+        let made = Description::from_toml("station.toml", text).and_then(|description| description.compile());
+        made.unwrap_or_else(|errors| panic!("{errors}"))
+    };
+    let kmh = |text: &str, name: &str| {
+        let model = compiled(text).model;
+        let route = model.routes.iter().find(|route| route.name == name).expect(name);
+        model.values.speeds_kmh[usize::from(route.speed.0)]
+    };
+    let (given, silent) = (LOOP.to_owned(), change(LOOP, "[speed]", "reverse_kmh = 45\n", ""));
+    assert_eq!((kmh(&given, "W-1"), kmh(&given, "W-2")), (75, 45));
+    assert_eq!((kmh(&silent, "W-1"), kmh(&silent, "W-2")), (75, 15));
+    assert_eq!(kmh(&silent.replace("line_kmh = 75", "line_kmh = 75\nroute_kmh = 75"), "W-2"), 15);
 }
 
 /// A train that is through a whole circuit while it is lost, or between two cycles, is reported nowhere.

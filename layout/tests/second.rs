@@ -170,7 +170,10 @@ const FALSIFICATIONS: &[Falsification] = &[
     }),
     ("a branch is run over faster", |station| route(station, "W-1").speed_kmh = Some(At::derived(45))),
     ("a straight branch is run over faster", |station| route(station, "W-2").speed_kmh = Some(At::derived(75))),
-    ("a speed is not kept", |station| route(station, "1-W").speed_kmh = None),
+    ("a speed is left to the station, which has a higher one", |station| {
+        station.speed.reverse_kmh = Some(At::derived(90));
+        route(station, "1-W").speed_kmh = None;
+    }),
 ];
 
 fn swap_circuits(station: &mut Station, one: &str, other: &str) {

@@ -217,7 +217,12 @@ impl Reader {
     fn train(&mut self, given: &form::Train) -> Option<Train> {
         let brake = refusal::brake("brake_mm_s2", given.brake_mm_s2);
         let brake = self.keep_in(|field| format!("train.{field}"), brake)?;
-        Some(Train { longest: Metres(given.longest_m), brake, shunt_loss_ms: given.shunt_loss_ms })
+        let longest = if given.longest_m == 0 {
+            Err(Refusal::new(Rule::Range, "train.longest_m", "longest_m is 0 m; a train is 1 to 65535 m long"))
+        } else {
+            Ok(Metres(given.longest_m))
+        };
+        Some(Train { longest: self.keep(longest)?, brake, shunt_loss_ms: given.shunt_loss_ms })
     }
 
     fn stations(&mut self, file: &File, folder: &Path) -> Vec<Station> {

@@ -78,7 +78,7 @@ rules! {
     TelegramDiffers, "telegram-differs", Engineering, "A circuit that two stations see has the same section numbers in both.";
     TelegramMissing, "telegram-missing", Engineering, "A circuit in which trains run has a section number for their direction of travel.";
     TelegramSection, "telegram-section", Engineering, "A section number is that of a described section.";
-    SectionLonger, "section-longer", Engineering, "Sub telegrams call no circuit longer than it is.";
+    SectionLength, "section-length", Engineering, "Sub telegrams give each circuit the length that its layout gives it.";
     SectionGradient, "section-gradient", Engineering, "Sub telegrams call no circuit less steep than it is.";
     BorderNames, "border-names", Form, "A border names stations, a line and a segment that there are.";
     BorderMissing, "border-missing", Engineering, "A line that two stations name is a border of the line.";

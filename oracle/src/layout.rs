@@ -284,7 +284,8 @@ fn border(one: &Path, other: &Path) -> Result<String, Errors> {
     let (one, other) = (read_any(one)?.description, read_any(other)?.description);
     let (model, other_model) = (one.model()?, other.model()?);
     let borders = atc_layout::border::compare((&one, &model), (&other, &other_model))?;
-    let told: Vec<String> = borders.iter().map(ToString::to_string).collect();
+    let mut told: Vec<String> = borders.iter().map(ToString::to_string).collect();
+    told.extend(atc_layout::border::not_compared((&one, &model), (&other, &other_model)));
     Ok(told.join("\n") + "\n")
 }
 

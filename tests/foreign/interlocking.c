@@ -766,7 +766,7 @@ static bool step(const struct json *input) {
     if (!FAULTY(20)) now.confirmed &= now.blocked;
     for (int c = 0; c < plan.circuits; c++) {
         if (orders.lift & one(c)) now.limit[c] = plan.codes - 1;
-        if (orders.restrict_ & one(c)) now.limit[c] = orders.code;
+        if (orders.restrict_ & one(c) && orders.code < now.limit[c]) now.limit[c] = orders.code;
     }
 
     for (int r = 0; r < plan.routes; r++) follow(r);

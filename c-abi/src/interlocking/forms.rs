@@ -259,7 +259,7 @@ pub struct atc_interlocking_input {
     pub unblock: u64,
     /// The circuits that staff restrict to `restrict_code`.
     pub restrict_circuits: u64,
-    /// The circuits whose restriction staff lift; one that is to be restricted as well is restricted.
+    /// The circuits whose restriction staff lift; one that is to be restricted as well has the new restriction only.
     pub lift: u64,
     /// The points that are detected in normal position.
     pub detected_normal: u32,

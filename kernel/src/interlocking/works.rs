@@ -11,11 +11,11 @@ pub struct Orders {
     pub block: CircuitSet,
     /// Circuits to unblock; a circuit that is to be blocked as well is blocked.
     pub unblock: CircuitSet,
-    /// Circuits to restrict to `speed`.
+    /// Circuits to restrict to `speed`, where they are not restricted to less.
     pub restrict: CircuitSet,
     /// The highest speed code on them.
     pub speed: SpeedCode,
-    /// Circuits whose restriction is lifted; a circuit that is to be restricted as well is restricted.
+    /// Circuits whose restriction is lifted; a circuit that is to be restricted as well has the new restriction only.
     pub lift: CircuitSet,
 }
 
@@ -45,11 +45,10 @@ impl Works {
     #[must_use]
     pub fn obey(mut self, orders: Orders) -> Self {
         //= spec/interlocking.md#ilk-15-commands-only
-        //# Blocks and restrictions MUST be set and cleared by command only, and a command to block or to restrict is always carried out.
+        //# Blocks and restrictions MUST be set and cleared by command only, a command to block or to restrict is always carried out, and only one to lift raises a restriction.
         self.blocked = self.blocked.without(orders.unblock).or(orders.block);
         self.confirmed = self.confirmed.and(self.blocked);
-        let changed = orders.restrict.or(orders.lift);
-        self.restrictions = self.restrictions.without(changed).and_at_most(orders.speed, orders.restrict);
+        self.restrictions = self.restrictions.without(orders.lift).and_at_most(orders.speed, orders.restrict);
         self
     }
 

@@ -63,6 +63,7 @@ pub fn check(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     segments(station, model, problems);
     fouling(station, model, problems);
     twice(model, problems);
+    signals(model, problems);
 }
 
 /// What is held beyond the end of a route is given up when its train stands. So early it cannot stand.
@@ -198,6 +199,23 @@ fn twice(model: &Model, problems: &mut Vec<Problem>) {
         if let Some(other) = model.routes[..number].iter().find(same) {
             let what = format!("routes {} and {} lead from one signal over one path", other.name, route.name);
             problems.push(Problem::new(Rule::RouteTwice, &route.span, what, "leave one out, or mend its path"));
+        }
+    }
+}
+
+/// Two places under one name: whoever commands or reads the one may mean the other.
+fn signals(model: &Model, problems: &mut Vec<Problem>) {
+    for (number, route) in model.routes.iter().enumerate().filter(|(_, route)| route.is_sound()) {
+        let elsewhere = |other: &&Route| {
+            other.is_sound() && other.signal == route.signal && (other.start, other.entry) != (route.start, route.entry)
+        };
+        if let Some(other) = model.routes[..number].iter().find(elsewhere) {
+            let place = |route: &Route| {
+                let (entry, joint) = (&model.circuits[route.entry].name, &model.graph.joints[route.start].name);
+                format!("at joint {joint}, the end of {entry} (route {})", route.name)
+            };
+            let what = format!("signal {} stands {} and {}", route.signal, place(other), place(route));
+            problems.push(Problem::new(Rule::NameTwice, &route.span, what, "give one of them another signal = \"…\""));
         }
     }
 }

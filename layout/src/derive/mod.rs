@@ -141,6 +141,12 @@ fn points(station: &Station, names: &Names, notes: &mut Vec<Note>, problems: &mu
 fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Vec<Problem>) -> Vec<Segment> {
     let mut segments = Vec::new();
     let line = values::line_kmh(station, values);
+    let speeds = &station.speed;
+    for (what, speed) in
+        [("line_kmh", &speeds.line_kmh), ("route_kmh", &speeds.route_kmh), ("reverse_kmh", &speeds.reverse_kmh)]
+    {
+        values::within_codes(what, speed.as_ref(), values, problems);
+    }
     for given in &station.segments {
         if given.circuits.is_empty() {
             let what = format!("segment {} has no circuit", given.name);

@@ -177,18 +177,18 @@ fn the_way(
 }
 
 fn route_speed(station: &Station, given: &form::Route, model: &Model, route: &mut Route, problems: &mut Vec<Problem>) {
-    let highest = model.values.speeds_kmh.into_iter().max().unwrap_or(0);
     let line = values::line_kmh(station, &model.values);
     let straight = station.speed.route_kmh.as_ref().unwrap_or(&line);
+    // What nobody has said costs speed.
+    let slowest = At::derived(model.values.speeds_kmh[1]);
     let over_reverse =
         route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.position == form::Position::Reverse);
-    let default = if over_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(straight) } else { straight };
+    let default = if over_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(&slowest) } else { straight };
     route.speed = values::code(&model.values, given.speed_kmh.as_ref().unwrap_or(default), problems);
     let approach = given.approach_kmh.as_ref().unwrap_or(&line);
-    if approach.value > highest {
-        let what = format!("route {}: trains come up at {approach} km/h, faster than any code", given.name);
-        let right = format!("give at most {highest} km/h, or add a speed to [braking]");
-        problems.push(Problem::new(Rule::Range, &approach.span, what, right));
+    for (field, speed) in [("approach_kmh", &given.approach_kmh), ("speed_kmh", &given.speed_kmh)] {
+        let what = format!("route {}: {field}", given.name);
+        values::within_codes(&what, speed.as_ref(), &model.values, problems);
     }
     route.approach_kmh = approach.value;
 }

@@ -264,6 +264,17 @@ pub fn line_kmh(station: &Station, values: &Values) -> At<u16> {
     station.speed.line_kmh.clone().unwrap_or_else(highest)
 }
 
+/// A speed over the highest code is a slip: no train is told to run so fast.
+pub fn within_codes(what: &str, speed: Option<&At<u16>>, values: &Values, problems: &mut Vec<Problem>) {
+    let highest = values.speeds_kmh.into_iter().max().unwrap_or(0);
+    // Codes without a speed are told by themselves.
+    if let Some(faster) = speed.filter(|speed| highest > 0 && speed.value > highest) {
+        let what = format!("{what} is {faster} km/h, faster than any code");
+        let right = format!("give at most {highest} km/h, or add a speed to [braking]");
+        problems.push(Problem::new(Rule::Range, &faster.span, what, right));
+    }
+}
+
 /// The highest code whose speed is not over `speed`.
 pub fn code(values: &Values, speed: &At<u16>, problems: &mut Vec<Problem>) -> SpeedCode {
     let fits = (1_u8..).zip(&values.speeds_kmh[1..]).filter(|(_, of_code)| (1..=speed.value).contains(*of_code));

@@ -157,6 +157,9 @@ fn slowest(infra: &Infra, station: &mut Station, report: &mut Report) -> bool {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of the type")]
     let kmh = kmh.clamp(0.0, f64::from(highest)) as u16;
     report.taken.push(format!("{kmh} km/h everywhere: the lowest limit of the file"));
+    report.defaulted.push(
+        "reverse_kmh of [speed]: the lowest speed; the file does not say how fast points are run over".to_owned(),
+    );
     station.speed.line_kmh = Some(At::derived(kmh));
     true
 }

@@ -180,6 +180,14 @@ fn names(line: &Line) -> Vec<Finding> {
             let file = line.places().at(&format!("station[{number}].file"));
             findings.push(finding(at(one.number, "segment"), file, what, "name a segment of its layout"));
         }
+        let mut before = line.borders().counted.iter().take_while(|other| other.number < one.number);
+        if let Some(other) = before.find(|other| other.blocks == one.blocks) {
+            let side = if one.blocks == End::Low { "low" } else { "high" };
+            let what = format!("{} and {} both begin at the {side} end of the blocks", other.station, one.station);
+            let right = "the blocks have one station at each end";
+            findings.push(finding(at(one.number, "blocks"), at(other.number, "blocks"), what, right));
+        }
+        findings.extend(two_borders(line, one, station));
         if line.detection().is_none() {
             let what = "the line has no counted blocks".to_owned();
             findings.push(finding(
@@ -191,6 +199,20 @@ fn names(line: &Line) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// A segment ends at one thing: at another station's view, or at counted blocks.
+fn two_borders(line: &Line, one: &Counted, station: &Station) -> Option<Finding> {
+    let also = line.borders().between.iter().find(|between| {
+        let segment = of_line(station, &between.line).map(|(_, segment)| segment.name.value.as_str());
+        between.stations.contains(&one.station) && segment == Some(one.segment.as_str())
+    })?;
+    let what = format!(
+        "segment {} of {} ends at counted blocks, and as line {} between two stations",
+        one.segment, one.station, also.line
+    );
+    let at = |number: usize, field: &str| line.places().at(&format!("border[{number}].{field}"));
+    Some(finding(at(one.number, "segment"), at(also.number, "line"), what, "a segment has one border: leave one out"))
 }
 
 /// Lines that two stations name, and that are no border.

@@ -86,7 +86,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
             with(&|| line.sound().iter().flat_map(|one| missing(line, *one)).collect()),
         ),
         judged(Rule::TelegramSection, scope(), described(&|| unknown(line, &sent, &sections))),
-        judged(Rule::SectionLonger, scope(), described(&|| longer(line, &sent, &sections))),
+        judged(Rule::SectionLength, scope(), described(&|| lengths(line, &sent, &sections))),
         judged(Rule::SectionGradient, scope(), described(&|| steeper(line, &sent, &sections))),
     ]
 }
@@ -246,9 +246,9 @@ fn described<'a>(
     })
 }
 
-fn longer(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Finding> {
+fn lengths(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Finding> {
     described(sent, sections)
-        .filter(|(one, _, section)| section.length_m > one.circuit.length_m.value)
+        .filter(|(one, _, section)| section.length_m != one.circuit.length_m.value)
         .map(|(one, place, section)| {
             let (length, circuit) = (&one.circuit.length_m, &one.circuit.name);
             let what = format!(
@@ -256,7 +256,7 @@ fn longer(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Findi
                 section.number, section.length_m
             );
             let at = line.places().at(&format!("section[{place}].length_m"));
-            finding(at, one.station.at(&length.span), what, format!("length_m must be at most {length}"))
+            finding(at, one.station.at(&length.span), what, format!("length_m is {length}, or the layout is wrong"))
         })
         .collect()
 }
@@ -264,15 +264,16 @@ fn longer(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Findi
 fn steeper(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Finding> {
     described(sent, sections)
         .filter_map(|(one, place, section)| {
-            let gradient = one.circuit.gradient.as_ref()?;
-            let least = -i16::from(gradient.value).abs();
+            let given = one.circuit.gradient.as_ref();
+            let least = given.map_or(0, |gradient| -i16::from(gradient.value).abs());
             (i16::from(section.gradient_permille) > least).then(|| {
                 let what = format!(
                     "section {} is said to have {} ‰, and circuit {} may fall by {} ‰",
                     section.number, section.gradient_permille, one.circuit.name, -least
                 );
                 let at = line.places().at(&format!("section[{place}].gradient_permille"));
-                finding(at, one.station.at(&gradient.span), what, format!("gradient_permille must be at most {least}"))
+                let against = given.map_or(&one.circuit.name.span, |gradient| &gradient.span);
+                finding(at, one.station.at(against), what, format!("gradient_permille must be at most {least}"))
             })
         })
         .collect()

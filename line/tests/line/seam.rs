@@ -144,6 +144,14 @@ fn what_two_parts_of_the_line_break_together() {
         line,
         line,
     );
+    // Two stations at one end of the blocks; and a segment with two borders.
+    let between = "[[border]]\nbetween = [\"Westham\", \"Eastham\"]";
+    for (station, segment, end) in [("Westham", "West", "low"), ("Eastham", "West", "high")] {
+        let also =
+            format!("[[border]]\nstation = \"{station}\"\nsegment = \"{segment}\"\nblocks = \"{end}\"\n\n{between}");
+        found("border-names", &[(line, between, &also)], line, line);
+    }
+    found("range", &[(line, "longest_m = 200 ", "longest_m = 0 ")], line, "");
     let names = "line = \"middle\"             # as both";
     let more = "[[border]]\nstation = \"Westham\"\nsegment = \"North\"\nblocks = \"low\"\n\n[[border]]\nbetween = [\"Westham\", \"Eastham\"]";
     found("border-names", &[(line, "[[border]]\nbetween = [\"Westham\", \"Eastham\"]", more)], line, line);
@@ -156,12 +164,9 @@ fn what_two_parts_of_the_line_break_together() {
 #[test]
 fn a_border_that_the_two_sides_see_otherwise() {
     let (line, west, east) = ("line.toml", "westham.toml", "eastham.toml");
-    let shorter = [15, 16]
-        .map(|number| (format!("number = {number}, length_m = 300"), format!("number = {number}, length_m = 299")));
-    let [one, other] = &shorter;
-    let lengths = [(line, one.0.as_str(), one.1.as_str()), (line, other.0.as_str(), other.1.as_str())];
-    let circuit = (east, "name = \"E2\"\nlength_m = 300", "name = \"E2\"\nlength_m = 299");
-    found("border-views", &[circuit, lengths[0], lengths[1]], west, east);
+    // Its section number has one length, and so is wrong for one of them.
+    let shorter = broken(&[(east, "name = \"E2\"\nlength_m = 300", "name = \"E2\"\nlength_m = 299")]).0;
+    assert_eq!(shorter, ["border-views", "section-length"].map(String::from).into());
     // What one station shares and the other does not are two circuits, which send the same numbers.
     let unshared = broken(&[(east, "shared = [\"E2\"]\n", "")]).0;
     assert_eq!(unshared, ["border-views", "telegram-twice"].map(String::from).into());
@@ -195,7 +200,10 @@ fn what_telegrams_say_of_a_circuit_and_it_is_not() {
         line,
         west,
     );
-    found("section-longer", &[(line, "number = 1, length_m = 300", "number = 1, length_m = 301")], line, west);
+    for length in ["299", "301", "30"] {
+        let wrong = format!("number = 1, length_m = {length}");
+        found("section-length", &[(line, "number = 1, length_m = 300", &wrong)], line, west);
+    }
     found(
         "section-gradient",
         &[(
@@ -206,6 +214,11 @@ fn what_telegrams_say_of_a_circuit_and_it_is_not() {
         line,
         west,
     );
+    // A circuit of which nobody says how steep it is is level, and not a rise.
+    let steeper = (west, "name = \"W1\"\nlength_m = 300", "name = \"W1\"\nlength_m = 300\ngradient = -10");
+    let level = (west, "name = \"W2\"\nlength_m = 300\ngradient = -10", "name = \"W2\"\nlength_m = 300");
+    let [steep, rise] = [-12, 1].map(|permille| format!("number = 1, length_m = 300, gradient_permille = {permille}"));
+    found("section-gradient", &[level, steeper, (line, &steep, &rise)], line, west);
 }
 
 #[test]

@@ -11,7 +11,7 @@ const PATH: usize = if cfg!(small) { 2 } else { 4 };
 pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 1 point, 1 segment of up to 4 circuits";
 
 harness! {
-    /// A circuit is blocked or restricted by command only, and always by command. No point in a blocked circuit is driven. A block is confirmed only
+    /// A circuit is blocked or restricted by command only, and always by command; a lower restriction is kept. No point in a blocked circuit is driven. A block is confirmed only
     /// where no route holds the circuit or needs a point in it and that is not occupied, and on plain line only while segment and throat are clear, no route out is held, and before this cycle the
     /// neighbour has not been permitted to send for the turn time; what makes it protection lasts.
     t_ilk_8(e)
@@ -23,7 +23,7 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Blocked: "a circuit is blocked exactly if that is commanded, or it was and the opposite is not commanded",
-        Restricted: "its restriction is the commanded one, and changes by command only; a command to restrict goes before one to lift",
+        Restricted: "it changes by command only: one to lift takes it away, one to restrict gives its code or a lower one that nobody lifts",
         Told: "the shared table has these blocks, and no limit above the restriction, whatever routes do",
         Confirmed: "only a blocked circuit that no route holds is confirmed, and no point in a blocked one is driven",
         Clear: "it becomes confirmed only while it is not occupied, and no held route needs a point in it",
@@ -37,6 +37,7 @@ harness! {
         Moving: "a blocked circuit of plain line is not confirmed because the neighbour was permitted to send",
         Both: "a circuit is to be blocked and unblocked",
         Lifts: "a restriction is lifted",
+        Lower: "a command to restrict finds a lower restriction, and that one stays",
         Needed: "a blocked circuit that no route holds is not confirmed because a route needs the point in it",
     }
     {
@@ -86,7 +87,8 @@ harness! {
         e.claim(Claim::Blocked as u32, is_blocked == expected);
         let (restrict, lift) = (has(orders.restrict.bits()), has(orders.lift.bits()));
         let commanded = if orders.speed.0 < 7 { orders.speed.0 } else { 7 };
-        let wanted = if restrict { commanded } else if lift { 7 } else { restriction.0 };
+        let left = if lift { 7 } else { restriction.0 };
+        let wanted = if restrict && commanded < left { commanded } else { left };
         let (_, _, contents) = output.table.parts();
         // The lowest code that the circuit is limited to.
         let lowest = |limits: SpeedLimits| {
@@ -137,5 +139,6 @@ harness! {
         let quiet_place = !on_line && !has(occupied) && !in_route;
         e.cover(Cover::Needed as u32, is_blocked && !confirmed && quiet_place && needed && !has(after.unswept.circuits.bits()));
         e.cover(Cover::Lifts as u32, lift && !restrict && restriction.0 < 7);
+        e.cover(Cover::Lower as u32, restrict && !lift && restriction.0 < commanded && found == restriction.0);
     }
 }

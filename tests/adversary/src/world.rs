@@ -135,7 +135,9 @@ impl<'a> World<'a> {
                 }
                 for circuit in members(commands.restrict.0) {
                     let speed = ground.codes[usize::from(commands.restrict.1)];
-                    self.truth.restricted[circuit] = (speed, self.truth.now);
+                    let (lower, since) = self.truth.restricted[circuit];
+                    self.truth.restricted[circuit] =
+                        if lower <= speed { (lower, since) } else { (speed, self.truth.now) };
                 }
                 self.read.commands = commands;
             }

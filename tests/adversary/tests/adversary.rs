@@ -52,7 +52,7 @@ fn altered_files_that_break_no_rule() {
         let attack = altered::attack(&stations::of(name), 12, 200, 4_000);
         let first = attack.finds.first().map(|(said, _, told)| format!("{said}\n{told}"));
         assert_eq!(first, None, "{name}");
-        assert!(attack.accepted > 20 && attack.rejected > 100, "{name}: {} accepted", attack.accepted);
+        assert!(attack.accepted > 15 && attack.rejected > 100, "{name}: {} accepted", attack.accepted);
         assert!(attack.tally.routes_set > 50 && attack.tally.trains > 20, "{name}: no traffic: {:?}", attack.tally);
     }
 }

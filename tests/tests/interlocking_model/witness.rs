@@ -162,10 +162,11 @@ impl Witness {
         }
         self.blocked.extend(&commands.block);
         for (circuit, limit) in self.limits.iter_mut().enumerate() {
-            if commands.restrict.contains(&circuit) {
-                *limit = commands.speed.min(7);
-            } else if commands.lift.contains(&circuit) {
+            if commands.lift.contains(&circuit) {
                 *limit = 7;
+            }
+            if commands.restrict.contains(&circuit) {
+                *limit = commands.speed.min(*limit);
             }
         }
     }

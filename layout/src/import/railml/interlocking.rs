@@ -223,7 +223,10 @@ impl<'a> Reader<'a, '_> {
             return Err(format!("its limit of {limit} km/h is below the lowest code"));
         }
         if speed_kmh.is_none() {
-            self.report.defaulted.push(format!("route {name}: speed of [speed]: the file limits none on it"));
+            let reverse =
+                way.iter().flat_map(|(_, way)| &way.passed).any(|passed| passed.position == Position::Reverse);
+            let what = if reverse { "the lowest speed, as it leads over a reverse point" } else { "speed of [speed]" };
+            self.report.defaulted.push(format!("route {name}: {what}: the file limits none on it"));
         }
         let release_ms = self.release(node, &way, &name)?;
         // No train runs faster than the highest code.

@@ -26,8 +26,29 @@ pub(super) struct Opened {
     pub(super) names: Names,
     pub(super) speeds_kmh: [u16; MAX_CODES],
     pub(super) cycle_ms: u32,
-    /// The age of telegrams that the layout counts on; a plan does not say.
-    pub(super) telegram_age_ms: Option<u32>,
+    pub(super) said: Option<Said>,
+}
+
+/// What a layout file says of trains and tracks, and a plan in the kernel's own terms does not.
+#[derive(Clone, Debug)]
+pub struct Said {
+    /// The age of telegrams that the layout counts on, in ms.
+    pub telegram_age_ms: u32,
+    /// The length of the longest train, in metres, if the file has one.
+    pub longest_train_m: Option<u16>,
+    /// The steepest gradient of each circuit in thousandths, whichever way it falls: 0 to 128; 0 where the file has none.
+    pub falls_permille: Vec<u8>,
+}
+
+impl Said {
+    fn of(station: &form::Station, telegram_age_ms: u32) -> Self {
+        let fall = |circuit: &form::Circuit| circuit.gradient.as_ref().map_or(0, |given| given.value.unsigned_abs());
+        Self {
+            telegram_age_ms,
+            longest_train_m: station.longest_train_m.as_ref().map(|length| length.value),
+            falls_permille: station.circuits.iter().map(fall).collect(),
+        }
+    }
 }
 
 impl Config {
@@ -41,12 +62,12 @@ impl Config {
                 let compiled = description.compile().map_err(|errors| sentences(&errors))?;
                 let values = &compiled.model.values;
                 let (speeds_kmh, cycle_ms) = (values.speeds_kmh, values.cycle_ms);
-                let telegram_age_ms = Some(values.telegram_age_ms);
-                Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms, telegram_age_ms })
+                let said = Some(Said::of(&description.station, values.telegram_age_ms));
+                Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms, said })
             }
             Self::Plan(plan) => {
                 let (layout, names, speeds_kmh) = plan.layout()?;
-                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms, telegram_age_ms: None })
+                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms, said: None })
             }
         }
     }

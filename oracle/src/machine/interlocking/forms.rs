@@ -138,7 +138,7 @@ pub struct Orders {
     pub unblock: Vec<String>,
     /// Circuits to restrict, each to a speed in km/h; all of one cycle to the same. The highest code that is not faster counts.
     pub restrict: ByName<u16>,
-    /// Circuits whose restriction is lifted; one that is to be restricted as well is restricted.
+    /// Circuits whose restriction is lifted; one that is to be restricted as well has the new restriction only.
     pub lift: Vec<String>,
 }
 

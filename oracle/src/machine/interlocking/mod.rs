@@ -18,7 +18,7 @@ use atc_layout::Names;
 
 use config::Opened;
 
-pub use config::Config;
+pub use config::{Config, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
 pub use words::{Heading, Phase, Reason, Side, Travel};
 
@@ -37,7 +37,7 @@ pub struct Interlocked {
     names: Names,
     speeds_kmh: [u16; kernel::MAX_CODES],
     cycle_ms: u32,
-    telegram_age_ms: Option<u32>,
+    said: Option<Said>,
     memory: Box<Memory<64, 8>>,
 }
 
@@ -104,9 +104,9 @@ impl Interlocked {
         self.cycle_ms
     }
 
-    /// The age of telegrams that the layout counts on, in ms; none of a plan, which does not say.
-    pub fn telegram_age_ms(&self) -> Option<u32> {
-        self.telegram_age_ms
+    /// What the layout file says of trains and tracks; none of a plan, which does not say.
+    pub fn said(&self) -> Option<&Said> {
+        self.said.as_ref()
     }
 
     fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
@@ -243,8 +243,8 @@ impl Machine for Interlocked {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        let Opened { layout, names, speeds_kmh, cycle_ms, telegram_age_ms } = config.opened()?;
-        Ok(Self { layout, names, speeds_kmh, cycle_ms, telegram_age_ms, memory: Box::new(Memory::INITIAL) })
+        let Opened { layout, names, speeds_kmh, cycle_ms, said } = config.opened()?;
+        Ok(Self { layout, names, speeds_kmh, cycle_ms, said, memory: Box::new(Memory::INITIAL) })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {

@@ -35,8 +35,7 @@ pub struct Config {
     /// For how long the neighbour's permission counts, from the own cycle that its message answers. Rounded down to cycles; less than
     /// the layout's turn time, and no more than its `telegram_age_ms`, if it has one.
     pub life_ms: u32,
-    /// The number of this start of the device, 0 to 65535, never the same twice.
-    #[serde(default)]
+    /// The number of this start of the device, 0 to 65535, never the same twice. It has no default: the neighbour tells starts apart by it.
     #[schemars(range(max = 65535))]
     pub session: u32,
 }
@@ -180,10 +179,21 @@ impl Config {
         let life = Clock::new(cycle).and_then(|cycle| cycle.at_most(Millis(self.life_ms)));
         let life = life.ok_or_else(|| format!("life_ms is {} ms; it must be at most 60000 cycles", self.life_ms))?;
         // `oracle layout border` holds that age against the neighbour's turn time, and sees no life.
-        if let Some(age) = station.telegram_age_ms().filter(|age| self.life_ms > *age) {
+        let said = station.said();
+        if let Some(age) = said.map(|said| said.telegram_age_ms).filter(|age| self.life_ms > *age) {
             return Err(format!(
                 "life_ms is {} ms; it must be at most the layout's telegram_age_ms, {age} ms, for which the neighbour's turn time is checked",
                 self.life_ms
+            ));
+        }
+        // Blocks that hold less report the end of the longest train free.
+        let longest = said.and_then(|said| said.longest_train_m);
+        if let (Some(line), Some(longest)) = (&self.counted, longest)
+            && line.train_m < longest.into()
+        {
+            return Err(format!(
+                "counted.train_m is {} m; it must be at least the layout's longest_train_m, {longest} m",
+                line.train_m
             ));
         }
         let signals = self.signals.plan(station)?;
@@ -336,6 +346,16 @@ impl Signals {
         for (name, its) in &self.circuits {
             let field = format!("signals.circuits.{name}");
             let number = usize::from(station.circuit(name, "signals.circuits")?.number());
+            let fall = station.said().and_then(|said| said.falls_permille.get(number).copied());
+            for (facing, side) in [(its.left, "left"), (its.right, "right")] {
+                // The layout does not say which way it falls.
+                if let Some(fall) = fall.map(i32::from).filter(|fall| facing.gradient_permille > -fall) {
+                    return Err(format!(
+                        "{field}.{side}.gradient_permille is {}; it must be at most {}: the circuit has {fall} ‰ in the layout, whichever way it falls",
+                        facing.gradient_permille, -fall
+                    ));
+                }
+            }
             let left = its.left.kernel(&format!("{field}.left"), &aspects)?;
             let right = its.right.kernel(&format!("{field}.right"), &aspects)?;
             if let Some(place) = circuits.get_mut(number) {

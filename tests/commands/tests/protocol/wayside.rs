@@ -393,3 +393,53 @@ fn a_permission_counts_for_no_longer_than_the_layout_says_of_telegrams() {
         assert!(said[0].starts_with("{\"rejected\"") && said[0].contains(reason), "{life}: {}", said[0]);
     }
 }
+
+/// What the device says is held against the layout's file: the twelfth attack gave it a shorter train and a rise, and both were taken.
+#[test]
+fn the_device_counts_on_what_the_layout_says() {
+    let mut config = config();
+    let layout = include_str!("../../../../line/examples/westham.toml");
+    let description = atc_layout::Description::from_toml("", layout).expect("a layout");
+    let station = &description.station;
+    let fall = |name: &str| {
+        let circuit = station.circuits.iter().find(|circuit| circuit.name.value == name).expect("a circuit");
+        circuit.gradient.as_ref().map_or(0, |given| i16::from(given.value).abs())
+    };
+    assert_eq!((fall("W2"), fall("1T")), (10, 0));
+    config["layout"] = serde_json::to_value(station).expect("JSON");
+    let blocks = json!([{"circuits": ["W2"], "max_trains": 1, "tail_hold_sections": 1}, {"circuits": ["W1"], "max_trains": 1, "tail_hold_sections": 1}]);
+    let reason = |train_m: i64, circuit: &str, gradient_permille: i16| {
+        let mut config = config.clone();
+        config["counted"] =
+            json!({"segment": "West", "travel": "toward", "direction": "up", "train_m": train_m, "blocks": blocks});
+        let facing =
+            |section: u16| json!({"section": section, "gradient_permille": gradient_permille, "curve_km_h": 75});
+        config["signals"]["circuits"] = json!({circuit: {"left": facing(1), "right": facing(2)}});
+        converse(&[&start("wayside", &config.to_string())])[0].clone()
+    };
+    let short = reason(199, "W2", -10);
+    assert!(
+        short.contains("counted.train_m is 199 m; it must be at least the layout's longest_train_m, 200 m"),
+        "{short}"
+    );
+    for (circuit, gradient, most) in [("W2", -9, "-10"), ("W2", 10, "-10"), ("1T", 1, "0")] {
+        let steep = reason(200, circuit, gradient);
+        let says =
+            format!("signals.circuits.{circuit}.left.gradient_permille is {gradient}; it must be at most {most}");
+        assert!(steep.contains(&says), "{steep}");
+    }
+    // What is looked at next: the station has routes out to that line.
+    for (circuit, gradient) in [("W2", -10), ("1T", 0)] {
+        let right = reason(200, circuit, gradient);
+        assert!(right.contains("route 1-W needs segment West against counted.travel"), "{right}");
+    }
+}
+
+/// Without a number each start would be the first: what the neighbour said to the one before would count.
+#[test]
+fn a_start_has_a_number() {
+    let mut config = config();
+    config.as_object_mut().expect("an object").remove("session");
+    let said = converse(&[&start("wayside", &config.to_string())]);
+    assert!(said[0].contains("missing field `session`"), "{}", said[0]);
+}
