@@ -12,8 +12,15 @@ use crate::names::Names;
 use crate::problem::Problem;
 use crate::rule::Rule;
 
+/// Circuits that are longer, in metres, are remarked.
+const LONG: u16 = 10_000;
+
 /// Fills in segments of plain line, missing flank protection and missing overlaps, and makes stay times longer that are too short.
 pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
+    for circuit in station.circuits.iter().filter(|circuit| circuit.length_m.value > LONG) {
+        let what = format!("circuit {}: it is {} m long, if the file has metres", circuit.name, circuit.length_m);
+        report.defaulted.push(what);
+    }
     derive::heading::align(station);
     segments(station, report);
     let model = derive::model(station, &mut Vec::new());

@@ -22,7 +22,9 @@ pub type EdgeEnd = (usize, Side);
 pub struct Edge {
     /// Its name in the file.
     pub name: String,
-    /// Its length in metres.
+    /// Where it begins, in metres: 0, or where a buffer stop stands on it.
+    pub begin: f64,
+    /// Where it ends, in metres: its length, or where a buffer stop stands on it.
     pub length: f64,
 }
 
@@ -36,6 +38,12 @@ pub struct Switch {
     /// The longest time of its stroke in ms, if the file gives it.
     pub throw_ms: Option<u32>,
 }
+
+/// A centimetre is lost in the digits of coordinates.
+pub const NEAR: f64 = 0.01;
+
+/// The longest edge, in metres: the longest circuit of a layout.
+pub const LONGEST: f64 = 65_534.0;
 
 /// A place where circuits meet.
 #[derive(Clone, Debug)]
@@ -108,13 +116,35 @@ impl Network {
         Some([normal, reverse])
     }
 
+    /// Has an edge end at a buffer stop: at its end that leads nowhere, with nothing of `others` beyond the stop. Which end that is, if
+    /// there is one; the nearer one of two.
+    pub fn stop(&mut self, edge: usize, at: f64, others: &[(usize, f64)]) -> Option<Side> {
+        let leads_on = |end: EdgeEnd| {
+            let linked = self.links.iter().any(|(one, other)| *one == end || *other == end);
+            linked || self.switches.iter().any(|switch| switch.ports.contains(&end))
+        };
+        let is_last = |side: Side| {
+            let within = |place: f64| if side == Side::Begin { place >= at - NEAR } else { place <= at + NEAR };
+            others.iter().all(|(on, place)| *on != edge || within(*place))
+        };
+        let nearer_begins = at * 2.0 < self.edges[edge].length;
+        let sides = if nearer_begins { [Side::Begin, Side::End] } else { [Side::End, Side::Begin] };
+        let side = sides.into_iter().find(|side| !leads_on((edge, *side)) && is_last(*side))?;
+        let given = &mut self.edges[edge];
+        match side {
+            Side::Begin => given.begin = given.begin.max(at),
+            Side::End => given.length = given.length.min(at),
+        }
+        Some(side)
+    }
+
     /// Divides the tracks at the cuts.
     pub fn divide(&self) -> Divided {
         let mut pieces = Vec::new();
         for (edge, given) in self.edges.iter().enumerate() {
             let mut cuts: Vec<usize> = (0..self.cuts.len()).filter(|cut| self.cuts[*cut].edge == edge).collect();
             cuts.sort_by(|a, b| self.cuts[*a].at.total_cmp(&self.cuts[*b].at));
-            let mut from = (0.0, None);
+            let mut from = (given.begin, None);
             for cut in cuts {
                 pieces.push(Piece { edge, from: from.0, to: self.cuts[cut].at, cuts: [from.1, Some(cut)] });
                 from = (self.cuts[cut].at, Some(cut));
@@ -352,7 +382,7 @@ fn shortest(chains: &[(Stop, Stop, f64)]) -> u16 {
         }
     }
     // Rounded down: a distance to a stop must not be longer than the track. A centimetre is lost in the digits of coordinates.
-    let metres = if best.is_finite() { (best + 0.01).floor().clamp(1.0, 65_534.0) } else { 1.0 };
+    let metres = if best.is_finite() { (best + 0.01).floor().clamp(1.0, LONGEST) } else { 1.0 };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the range of the type")]
     let metres = metres as u16;
     metres

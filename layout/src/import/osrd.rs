@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 
 use super::complete::{complete, steepest};
-use super::network::{Cut, Divided, Edge, EdgeEnd, Network, Side, Switch};
+use super::network::{Cut, Divided, Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
 use super::search::{Sought, search};
 use super::{Imported, Report};
 use crate::at::At;
@@ -186,11 +186,11 @@ fn network(infra: &Infra, report: &mut Report, problems: &mut Vec<Problem>) -> N
     let mut numbers = BTreeMap::new();
     for section in &infra.track_sections {
         numbers.insert(section.id.as_str(), network.edges.len());
-        if !section.length.is_finite() || section.length < 0.0 {
+        if !(0.0..=LONGEST).contains(&section.length) {
             let what = format!("track section {} is {} m long", section.id, section.length);
-            problems.push(Problem::new(Rule::Range, &(0..0), what, "give a length of 0 m or more"));
+            problems.push(Problem::new(Rule::Range, &(0..0), what, format!("give metres, 0 to {LONGEST}")));
         }
-        network.edges.push(Edge { name: section.id.clone(), length: section.length });
+        network.edges.push(Edge { name: section.id.clone(), begin: 0.0, length: section.length });
     }
     let mut edge = |track: &str, whose: &str| {
         let found = numbers.get(track).copied();
@@ -200,14 +200,19 @@ fn network(infra: &Infra, report: &mut Report, problems: &mut Vec<Problem>) -> N
         }
         found
     };
+    let mut stops = Vec::new();
     for buffer in &infra.buffer_stops {
-        let Some(number) = edge(&buffer.track, &format!("buffer stop {}", buffer.id)) else { continue };
-        let side = if buffer.position * 2.0 < network.edges[number].length { Side::Begin } else { Side::End };
-        network.buffers.push((buffer.id.clone(), (number, side)));
+        stops.extend(edge(&buffer.track, &format!("buffer stop {}", buffer.id)).map(|number| (buffer, number)));
     }
     for detector in &infra.detectors {
         let Some(number) = edge(&detector.track, &format!("detector {}", detector.id)) else { continue };
         let at = detector.position.clamp(0.0, network.edges[number].length);
+        if (at - detector.position).abs() > NEAR {
+            report.defaulted.push(format!(
+                "detector {}: at the end of its track section, and not at {} m of {} m",
+                detector.id, detector.position, network.edges[number].length
+            ));
+        }
         network.cuts.push(Cut { name: detector.id.clone(), edge: number, at });
     }
     for node in &infra.switches {
@@ -242,13 +247,30 @@ fn network(infra: &Infra, report: &mut Report, problems: &mut Vec<Problem>) -> N
                 } else {
                     // Two points, toe to toe over a track of no length.
                     let between = network.edges.len();
-                    network.edges.push(Edge { name: node.id.clone(), length: 0.0 });
+                    network.edges.push(Edge { name: node.id.clone(), begin: 0.0, length: 0.0 });
                     network.switches.push(switch(&format!("{}.A", node.id), [(between, Side::Begin), a1, a2]));
                     network.switches.push(switch(&format!("{}.B", node.id), [(between, Side::End), b1, b2]));
                 }
             }
             other => report.skipped.push(format!("switch {} of the type {other}: its tracks end there", node.id)),
         }
+    }
+    for (buffer, number) in stops {
+        let length = network.edges[number].length;
+        let place = format!("buffer stop {} at {} m of {length} m of {}", buffer.id, buffer.position, buffer.track);
+        let others: Vec<(usize, f64)> = network.cuts.iter().map(|cut| (cut.edge, cut.at)).collect();
+        let is_on = (0.0 - NEAR..=length + NEAR).contains(&buffer.position);
+        let Some(side) = is_on.then(|| network.stop(number, buffer.position, &others)).flatten() else {
+            let what = format!("{place}: the tracks do not end there");
+            let right = "have the track section end at its buffer stop";
+            problems.push(Problem::new(Rule::Range, &(0..0), what, right));
+            continue;
+        };
+        let is_at_end = if side == Side::Begin { buffer.position <= NEAR } else { buffer.position >= length - NEAR };
+        if !is_at_end {
+            report.defaulted.push(format!("the tracks end at the {place}"));
+        }
+        network.buffers.push((buffer.id.clone(), (number, side)));
     }
     network
 }

@@ -73,10 +73,25 @@ fn of_route<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a
         None => differing.extend(wrong.into_iter().min_by_key(Vec::len).unwrap_or_default()),
     }
     differing.extend(signal(file, route, node));
+    differing.extend(beyond(node));
     differing.extend(held(file, model, route, node));
     differing.extend(times(file, model, route, node));
     differing.extend(overlap(file, model, route, node));
     differing
+}
+
+/// What the file has of a route that this reading knows nothing of: it may be a condition.
+fn beyond(node: Node<'_, '_>) -> Option<String> {
+    const ELEMENTS: &str = " additionalRelation assetName designator facingSwitchInPosition handlesRouteType hasReleaseGroup \
+        hasTvdSection name objectName routeActivationSection routeEntry routeExit trailingSwitchInPosition ";
+    const ATTRIBUTES: &str = " approachReleaseDelay id locksAutomatically processingDelay residualRouteCancellationDelay \
+        residualRouteReleaseDelay signalClosureDelay ";
+    let elements = node.children().filter(Node::is_element).map(|child| child.tag_name().name());
+    let attributes = node.attributes().filter(|at| at.namespace().is_none()).map(|at| at.name());
+    let is_new = |known: &str, name: &str| !known.split_whitespace().any(|one| one == name);
+    let mut found =
+        elements.filter(|name| is_new(ELEMENTS, name)).chain(attributes.filter(|name| is_new(ATTRIBUTES, name)));
+    found.next().map(|name| format!("the file has {name} of it, which may be a condition"))
 }
 
 /// The signal of a route is the file's. One that has no name of its own in the layout is called as its route.
@@ -233,26 +248,23 @@ fn limit<'a>(file: &File<'a>, walk: &Walk<'a>, branches: &[Branch<'a>], from: f6
             .iter()
             .flat_map(Node::children)
             .filter(|child| child.attribute("netRelationRef") == Some(branch.relation));
-        limits.extend(own.flat_map(|child| [figure(child, "branchingSpeed"), figure(child, "joiningSpeed")]).flatten());
-    }
-    for section in file.every("speedSection") {
-        let Some(speed) = figure(section, "maxSpeed") else { continue };
-        for at in section.descendants().filter(|at| at.tag_name().name() == "associatedNetElement") {
-            let Some(length) = at.attribute("netElementRef").and_then(|id| file.lengths.get(id)) else { continue };
-            let place =
-                |share: &str, metres: &str| figure(at, share).map(|share| share * length).or(figure(at, metres));
-            let begin = place("intrinsicCoordBegin", "posBegin").unwrap_or(0.0);
-            let end = place("intrinsicCoordEnd", "posEnd").unwrap_or(*length);
-            let touches = walk.stretches.iter().any(|(element, low, high, run)| {
-                let inside = at.attribute("netElementRef") == Some(element);
-                // The part of the stretch between the joints of the route.
-                let overlaps = begin.min(end) < *high - 0.01 && *low + 0.01 < begin.max(end);
-                inside && overlaps && *run < to && run + (high - low) > from
-            });
-            limits.extend(touches.then_some(speed));
+        for (child, name) in own.flat_map(|child| [(child, "branchingSpeed"), (child, "joiningSpeed")]) {
+            // One that cannot be read may be any.
+            let speed = figure(child, name).filter(|speed| *speed >= 1.0).unwrap_or(0.0);
+            limits.extend(child.attribute(name).map(|_| speed));
         }
     }
-    limits.into_iter().filter(|limit| *limit >= 1.0).min_by(f64::total_cmp)
+    for limit in &file.limits {
+        let touches = limit.on.is_none_or(|(limited, begin, end)| {
+            walk.stretches.iter().any(|(element, low, high, run)| {
+                // The part of the stretch between the joints of the route.
+                let overlaps = begin < *high - 0.01 && *low + 0.01 < end;
+                limited == *element && overlaps && *run < to && run + (high - low) > from
+            })
+        });
+        limits.extend(touches.then_some(limit.kmh));
+    }
+    limits.into_iter().min_by(f64::total_cmp)
 }
 
 /// Which branches the file's positions for a route leave, by switch.
@@ -271,7 +283,13 @@ fn asked<'a>(file: &File<'a>, node: Node<'a, 'a>) -> Result<Asked<'a>, String> {
 fn positions<'a>(file: &File<'a>, node: Node<'a, 'a>, names: &[&str]) -> Result<Vec<(&'a str, Vec<&'a str>)>, String> {
     let mut found = Vec::new();
     let given = node.children().filter(|child| names.contains(&child.tag_name().name()));
-    for given in given.flat_map(|given| given.descendants()).filter(|at| at.attribute("inPosition").is_some()) {
+    let given: Vec<Node<'a, 'a>> = given.flat_map(|given| given.descendants()).collect();
+    // What is not left need not be right.
+    let says_not = |at: &Node<'a, 'a>| !matches!(at.attribute("isNegated").map(str::trim), None | Some("false" | "0"));
+    if given.iter().any(says_not) {
+        return Err("a position of it is negated".to_owned());
+    }
+    for given in given.into_iter().filter(|at| at.attribute("inPosition").is_some()) {
         let machine = refers(given, "refersToSwitch").or(refers(given, "refersTo"));
         let machine =
             machine.and_then(|id| file.by_id(id)).ok_or("a position of it is of a switch that is not there")?;
@@ -406,6 +424,9 @@ fn held<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a>) -
     differing
 }
 
+/// How long a cancelled route stays locked, by the names of railML 3.1 and 3.2.
+const RESIDUAL: [&str; 2] = ["residualRouteCancellationDelay", "residualRouteReleaseDelay"];
+
 fn times<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a>) -> Vec<String> {
     let mut differing = Vec::new();
     let mut least = |have: f64, node: Node<'a, 'a>, attribute: &str, what: &str| {
@@ -419,13 +440,17 @@ fn times<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a>) 
     let release = f64::from(model.values.ms(route.release));
     let clear = f64::from(u32::from(model.values.clear) * model.values.cycle_ms);
     least(release, node, "approachReleaseDelay", "its release time");
-    least(release, node, "residualRouteCancellationDelay", "its release time");
+    for attribute in RESIDUAL {
+        least(release, node, attribute, "its release time");
+    }
     let circuits: BTreeSet<&str> =
         route.circuits().filter_map(|circuit| Some(model.circuits.get(circuit)?.name.as_str())).collect();
     for section in file.every("tvdSection") {
         let Some(id) = section.attribute("id") else { continue };
         if circuits.iter().any(|name| file.means(name, id)) {
-            least(release, section, "residualRouteCancellationDelay", "its release time");
+            for attribute in RESIDUAL {
+                least(release, section, attribute, "its release time");
+            }
             least(clear, section, "partialRouteReleaseDelay", "the time after which a circuit counts as clear");
         }
     }
@@ -460,7 +485,11 @@ fn overlap<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a>
     };
     let mut differing = Vec::new();
     let mine: BTreeMap<usize, Position> = route.overlap_positions.iter().map(|(point, at)| (*point, *at)).collect();
-    for (switch, relations) in positions(file, *one, &["requiresSwitchInPosition"]).unwrap_or_default() {
+    let asks = positions(file, *one, &["requiresSwitchInPosition"]).unwrap_or_else(|why| {
+        differing.push(format!("its overlap: {why}"));
+        Vec::new()
+    });
+    for (switch, relations) in asks {
         let Some(branch) = relations.first().and_then(|relation| file.branches.get(relation)) else { continue };
         if !["leftBranch", "rightBranch"].contains(&branch.side) {
             continue;
@@ -503,15 +532,19 @@ fn conflicts(file: &File<'_>, model: &Model) -> Vec<Difference> {
 }
 
 impl<'a> File<'a> {
-    /// The ids of buffer stops at an end of the tracks.
+    /// The ids of buffer stops at an end of the tracks: those with nothing between them and that end that divides the tracks. Where the net
+    /// element has two such ends, those nearer to this one.
     pub fn stops_at(&self, (element, at_end): End<'a>) -> Vec<&'a str> {
-        let here = |node: &Node<'a, 'a>| {
-            self.spot(*node).is_some_and(|spot| {
-                let length = self.lengths.get(spot.element).copied().unwrap_or(0.0);
-                spot.element == element && (spot.at * 2.0 >= length) == at_end
-            })
+        let length = self.lengths.get(element).copied().unwrap_or(0.0);
+        let leads_on = |at_end: bool| self.onward.get(&(element, at_end)).is_some_and(|onward| !onward.is_empty());
+        let is_last = |at: f64, at_end: bool| {
+            let mut dividers = self.dividers.get(element).into_iter().flatten();
+            !leads_on(at_end)
+                && dividers.all(|divider| if at_end { divider.at <= at + 0.01 } else { divider.at >= at - 0.01 })
         };
-        self.every("bufferStop").filter(here).filter_map(|node| node.attribute("id")).collect()
+        let here = |at: f64| is_last(at, at_end) && (!is_last(at, !at_end) || (at * 2.0 >= length) == at_end);
+        let stops = self.stops.get(element).into_iter().flatten();
+        stops.filter(|(at, _)| here(*at)).map(|(_, id)| *id).collect()
     }
 
     /// What an element is called, as text of its own.

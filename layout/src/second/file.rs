@@ -53,6 +53,21 @@ pub struct File<'a> {
     pub dividers: BTreeMap<&'a str, Vec<Divider<'a>>>,
     /// The borders of tvdSections.
     pub sections: BTreeMap<&'a str, BTreeSet<&'a str>>,
+    /// Buffer stops on each net element, in metres from its begin, with their ids.
+    pub stops: BTreeMap<&'a str, Vec<(f64, &'a str)>>,
+    /// Sections of speed.
+    pub limits: Vec<Limit<'a>>,
+}
+
+/// A limit of speed on a stretch of track.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit<'a> {
+    /// Its section of speed.
+    pub id: &'a str,
+    /// In km/h; 0 if that cannot be read.
+    pub kmh: f64,
+    /// Net element and metres from its begin, low and high; none if it may be anywhere.
+    pub on: Option<(&'a str, f64, f64)>,
 }
 
 const SIDES: [&str; 4] = ["leftBranch", "rightBranch", "straightBranch", "turningBranch"];
@@ -75,9 +90,17 @@ impl<'a> File<'a> {
             branches: BTreeMap::new(),
             dividers: BTreeMap::new(),
             sections: BTreeMap::new(),
+            stops: BTreeMap::new(),
+            limits: Vec::new(),
         };
         file.read_tracks();
         file.read_sections();
+        for node in document.root().descendants().filter(|node| node.tag_name().name() == "bufferStop") {
+            if let (Some(id), Some(spot)) = (node.attribute("id"), file.spot(node)) {
+                file.stops.entry(spot.element).or_default().push((spot.at, id));
+            }
+        }
+        file.limits = file.every("speedSection").flat_map(|section| file.limits_of(section)).collect();
         file
     }
 
@@ -122,14 +145,67 @@ impl<'a> File<'a> {
         let at = node.children().find(|child| child.tag_name().name() == "spotLocation")?;
         let element = at.attribute("netElementRef")?;
         let length = *self.lengths.get(element)?;
-        let metres = figure(at, "intrinsicCoord").map(|share| share * length).or_else(|| figure(at, "pos"));
-        let metres = metres.or_else(|| self.by_chainage(element, at.children().find(is_linear)?))?;
+        let (by_share, by_metres) = (figure(at, "intrinsicCoord").map(|share| share * length), figure(at, "pos"));
+        if by_share.zip(by_metres).is_some_and(|(one, other)| contradict(one, other, length)) {
+            return None;
+        }
+        let metres = by_share.or(by_metres).or_else(|| self.by_chainage(element, at.children().find(is_linear)?))?;
         let toward_end = at.attribute("applicationDirection").and_then(|word| match word {
             "normal" => Some(true),
             "reverse" => Some(false),
             _ => None,
         });
         Some(Spot { element, at: metres.clamp(0.0, length), toward_end })
+    }
+
+    /// Where a section of speed holds: one limit for each net element that it names, and one for anywhere if it names none that is known.
+    fn limits_of(&self, section: Node<'a, 'a>) -> Vec<Limit<'a>> {
+        let id = section.attribute("id").unwrap_or_default();
+        let kmh = figure(section, "maxSpeed").filter(|kmh| *kmh >= 1.0).unwrap_or(0.0);
+        let elements = section.descendants().filter(|at| at.tag_name().name() == "associatedNetElement");
+        let on: Vec<_> = elements.map(|at| self.covered(at)).collect();
+        let on = if on.is_empty() { vec![None] } else { on };
+        on.into_iter().map(|on| Limit { id, kmh, on }).collect()
+    }
+
+    /// The part of a net element that a limit covers; nothing where its ends are not two places on it.
+    fn covered(&self, at: Node<'a, 'a>) -> Option<(&'a str, f64, f64)> {
+        let element = at.attribute("netElementRef")?;
+        let length = *self.lengths.get(element)?;
+        let mut ends = [0.0, length];
+        for (end, word) in ends.iter_mut().zip(["Begin", "End"]) {
+            let said = |name: &str| -> Option<Option<f64>> {
+                let name = format!("{name}{word}");
+                at.attribute(name.as_str()).map(|_| figure(at, &name))
+            };
+            let share = said("intrinsicCoord").map(|share| share.map(|share| share * length));
+            let coordinate = format!("linearCoordinate{word}");
+            let linear = at.children().find(|child| child.tag_name().name() == coordinate);
+            let found = match (share, said("pos")) {
+                (Some(share), Some(metres)) => {
+                    let (share, metres) = (share?, metres?);
+                    (!contradict(share, metres, length)).then_some(share)?
+                }
+                (Some(only), None) | (None, Some(only)) => only?,
+                (None, None) => match linear {
+                    Some(linear) => self.by_chainage(element, linear)?,
+                    None => continue,
+                },
+            };
+            if found < -1.0 || found > length + 1.0 {
+                return None;
+            }
+            *end = found.clamp(0.0, length);
+        }
+        let [one, other] = ends;
+        ((one - other).abs() >= length.min(1.0)).then_some((element, one.min(other), one.max(other)))
+    }
+
+    /// The first buffer stop ahead of a train that runs over a net element from `at`, and how far ahead of it; `least` or farther.
+    pub fn stop_ahead(&self, element: &str, at: f64, toward_end: bool, least: f64) -> Option<f64> {
+        let ahead = |place: f64| if toward_end { place - at } else { at - place };
+        let stops = self.stops.get(element).into_iter().flatten().map(|(place, _)| ahead(*place));
+        stops.filter(|distance| *distance >= least).min_by(f64::total_cmp)
     }
 
     /// Metres from the begin of a net element, for a chainage.
@@ -293,6 +369,11 @@ pub fn refers<'a>(node: Node<'a, 'a>, name: &str) -> Option<&'a str> {
 /// The ids that children of this name refer to.
 pub fn every_ref<'a>(node: Node<'a, 'a>, name: &str) -> impl Iterator<Item = &'a str> {
     node.children().filter(move |child| child.tag_name().name() == name).filter_map(|child| child.attribute("ref"))
+}
+
+/// Whether two places of one thing, in metres, cannot both be right.
+fn contradict(one: f64, other: f64, length: f64) -> bool {
+    (one - other).abs() > (0.1 * length).min(20.0).max(1.0)
 }
 
 /// A finite number.

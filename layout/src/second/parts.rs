@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use roxmltree::Node;
+
 use super::Difference;
 use super::compare::left_is_normal;
 use super::file::{Divider, End, File, figure, milliseconds, refers};
@@ -59,9 +61,16 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
         let needs = |route: &Route| route.positions().any(|(one, _)| one == number);
         let switches = file.every("switchIS").filter_map(|node| node.attribute("id"));
         let Some(id) = switches.into_iter().find(|id| file.means(&point.name, id)) else { continue };
-        let machines = file.every("switchIL").filter(|machine| refers(*machine, "refersTo") == Some(id));
-        let longest =
-            machines.filter_map(|machine| machine.attribute("maxThrowTime")).filter_map(milliseconds).reduce(f64::max);
+        let machines: Vec<Node<'_, '_>> =
+            file.every("switchIL").filter(|machine| refers(*machine, "refersTo") == Some(id)).collect();
+        for what in machines.iter().flat_map(|machine| asked(file, model, number, *machine)) {
+            differs(id, format!("point {}: {what}", point.name), &needs);
+        }
+        let longest = machines
+            .iter()
+            .filter_map(|machine| machine.attribute("maxThrowTime").or(machine.attribute("typicalThrowTime")))
+            .filter_map(milliseconds)
+            .reduce(f64::max);
         if longest.is_some_and(|longest| f64::from(point.throw_ms) + 0.5 < longest) {
             let longest = longest.unwrap_or_default();
             differs(
@@ -97,6 +106,47 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
         }
     }
     segments(file, model, &mut differs);
+    found
+}
+
+/// What a machine asks of a point that the layout does not have.
+fn asked(file: &File<'_>, model: &Model, point: usize, machine: Node<'_, '_>) -> Vec<String> {
+    let mut found = Vec::new();
+    let Some(point) = model.points.get(point) else { return found };
+    let is_false = |text: &str| matches!(text.trim(), "false" | "0");
+    if machine.attribute("isKeyLocked").is_some_and(|text| !is_false(text)) {
+        found.push("its machine is locked by a key".to_owned());
+    }
+    for child in machine.children() {
+        let name = child.tag_name().name();
+        match name {
+            "hasPositionRestriction" | "relatedMovableElement" => found.push(format!("its machine has a {name}")),
+            "hasFoulingTrainDetectors" => {
+                let id = child.attribute("ref").unwrap_or_default();
+                let id = file.meant(id).and_then(|node| node.attribute("id")).unwrap_or(id);
+                let joint = model.graph.joints.iter().position(|joint| file.means(&joint.name, id));
+                let at_joint = joint.into_iter().flat_map(|joint| model.graph.circuits_at(joint));
+                // A section, in words of its own; or what borders that, where another detector at the same place gave the joint its name.
+                let is_near = |name: &str| {
+                    let own = |(section, borders): (&&str, &BTreeSet<&str>)| {
+                        file.means(name, section) && (*section == id || borders.contains(id))
+                    };
+                    file.sections.iter().any(own)
+                };
+                let named = (0..model.circuits.len()).filter(|circuit| is_near(&model.circuits[*circuit].name));
+                let near: BTreeSet<usize> = at_joint.chain(named).collect();
+                let mut missing = near
+                    .iter()
+                    .filter(|circuit| point.circuit != Some(**circuit) && !point.fouled_in.contains(circuit));
+                if near.is_empty() {
+                    found.push(format!("it is fouled at {id}, which the layout does not have"));
+                } else if let Some(circuit) = missing.next() {
+                    found.push(format!("a train in {} fouls it in the file", model.circuits[*circuit].name));
+                }
+            }
+            _ => {}
+        }
+    }
     found
 }
 
@@ -164,9 +214,16 @@ fn reached<'b>(file: &'b File<'b>, element: &'b str, at: f64, toward_end: bool) 
         let length = file.lengths.get(element).copied().unwrap_or(0.0);
         let ahead = |place: f64| if toward_end { place - at } else { at - place };
         let least = if is_first { 0.005 } else { -0.005 };
-        let there = file.dividers.get(element).into_iter().flatten().filter(|divider| ahead(divider.at) >= least);
+        let buffer = file.stop_ahead(element, at, toward_end, least);
+        let room = buffer.unwrap_or(f64::MAX);
+        let is_ahead = |divider: &&Divider<'_>| (least..=room).contains(&ahead(divider.at));
+        let there = file.dividers.get(element).into_iter().flatten().filter(is_ahead);
         if let Some(divider) = there.min_by(|one, other| ahead(one.at).total_cmp(&ahead(other.at))) {
             found.push((run + ahead(divider.at), Reached::Divider(divider)));
+            continue;
+        }
+        if let Some(buffer) = buffer {
+            found.push((run + buffer, Reached::End((element, toward_end))));
             continue;
         }
         let run = run + ahead(if toward_end { length } else { 0.0 });
@@ -239,30 +296,19 @@ fn segments(file: &File<'_>, model: &Model, differs: &mut impl FnMut(&str, Strin
             .flat_map(|circuit| file.sections.iter().filter(|(id, _)| file.means(&circuit.name, id)))
             .flat_map(|(_, borders)| borders.iter().copied())
             .collect();
-        for section in file.every("speedSection") {
-            let slower = figure(section, "maxSpeed").filter(|speed| *speed >= 1.0 && f64::from(kmh) > *speed);
-            let Some(speed) = slower else { continue };
-            for at in section.descendants().filter(|at| at.tag_name().name() == "associatedNetElement") {
-                let Some(element) = at.attribute("netElementRef") else { continue };
-                let length = file.lengths.get(element).copied().unwrap_or(0.0);
-                let place =
-                    |share: &str, metres: &str| figure(at, share).map(|share| share * length).or(figure(at, metres));
-                let begin = place("intrinsicCoordBegin", "posBegin").unwrap_or(0.0);
-                let end = place("intrinsicCoordEnd", "posEnd").unwrap_or(length);
-                let there: Vec<&Divider<'_>> = file.dividers.get(element).into_iter().flatten().collect();
-                let own = |divider: &&&Divider<'_>| divider.ids.iter().any(|id| borders.contains(id));
-                let on: Vec<f64> = there.iter().filter(own).map(|divider| divider.at).collect();
-                // Between two borders of the segment on one net element, and strictly inside the limited stretch.
-                let covered =
-                    on.windows(2).any(|two| begin.min(end) < two[1] - SLACK && two[0] + SLACK < begin.max(end));
-                if covered {
-                    let id = section.attribute("id").unwrap_or_default();
-                    differs(
-                        id,
-                        format!("segment {} runs at {kmh} km/h, and the file allows {speed} km/h there", segment.name),
-                        &uses,
-                    );
-                }
+        for limit in file.limits.iter().filter(|limit| f64::from(kmh) > limit.kmh) {
+            // Between two borders of the segment on one net element, and strictly inside the limited stretch.
+            let covered = limit.on.is_none_or(|(element, low, high)| {
+                let there = file.dividers.get(element).into_iter().flatten();
+                let own = there.filter(|divider| divider.ids.iter().any(|id| borders.contains(id)));
+                let on: Vec<f64> = own.map(|divider| divider.at).collect();
+                on.windows(2).any(|two| low < two[1] - SLACK && two[0] + SLACK < high)
+            });
+            if covered {
+                let speed = limit.kmh;
+                let what =
+                    format!("segment {} runs at {kmh} km/h, and the file allows {speed} km/h there", segment.name);
+                differs(limit.id, what, &uses);
             }
         }
     }

@@ -79,9 +79,18 @@ impl<'a> Search<'a, '_> {
         seen.push((element, toward_end));
         let mut here = walk.clone();
         let ahead = |place: f64| if toward_end { place - at } else { at - place };
-        let to = if toward_end { length } else { 0.0 };
+        // At a buffer stop beyond its signal a train comes to an end, wherever that stands.
+        let buffer = self.file.stop_ahead(element, at, toward_end, (0.001 - run).max(-0.001));
+        let room = buffer.unwrap_or(f64::MAX) + 0.001;
+        let to = match buffer {
+            Some(buffer) if toward_end => at + buffer,
+            Some(buffer) => at - buffer,
+            None if toward_end => length,
+            None => 0.0,
+        };
         here.stretches.push((element, at.min(to), at.max(to), run));
-        if let Some(exit) = self.exit.filter(|exit| exit.element == element && ahead(exit.at) >= -0.001) {
+        let is_here = |exit: &Spot<'_>| exit.element == element && (-0.001..=room).contains(&ahead(exit.at));
+        if let Some(exit) = self.exit.filter(is_here) {
             // In rear of the signal there is no exit for it.
             if run + ahead(exit.at) > 0.0 {
                 here.exit = Some(run + ahead(exit.at));
@@ -89,7 +98,7 @@ impl<'a> Search<'a, '_> {
         }
         let mut dividers: Vec<(Divider<'a>, f64)> =
             self.file.dividers.get(element).into_iter().flatten().map(|one| (one.clone(), ahead(one.at))).collect();
-        dividers.retain(|(_, distance)| *distance >= -0.001);
+        dividers.retain(|(_, distance)| (-0.001..=room).contains(distance));
         dividers.sort_by(|one, other| one.1.total_cmp(&other.1));
         for (divider, distance) in dividers {
             here.dividers.push((divider, run + distance));
@@ -106,7 +115,7 @@ impl<'a> Search<'a, '_> {
         }
         let run = run + ahead(to);
         let onward = self.file.onward.get(&(element, toward_end)).cloned().unwrap_or_default();
-        if onward.is_empty() {
+        if onward.is_empty() || buffer.is_some() {
             here.end = Some((run, (element, toward_end)));
             if here.exit.is_some() || self.exit.is_none() {
                 self.found.push(here);

@@ -36,11 +36,15 @@ pub struct Placed<'a> {
     pub limits: Limits,
     /// The joints of detectors and buffer stops by id.
     pub borders: BTreeMap<&'a str, String>,
+    /// Buffer stops that are no end of the tracks: edge, metres from its begin, and where the file has it.
+    pub inside: Vec<(usize, f64, String)>,
+    /// Points whose machine asks for what no layout holds, and what that is.
+    pub barred: BTreeMap<usize, String>,
 }
 
 /// Writes circuits, points and ends into `station`.
 pub fn write<'a>(xml: &Xml<'a>, tracks: Tracks<'a>, station: &mut Station, report: &mut Report) -> Placed<'a> {
-    let Tracks { mut network, detectors, signals, buffers, switches, absent, limits } = tracks;
+    let Tracks { mut network, detectors, signals, buffers, switches, absent, limits, inside } = tracks;
     let demarcating: BTreeSet<&str> =
         xml.all("tvdSection").flat_map(|section| references(section, "hasDemarcatingTraindetector")).collect();
     let mut borders: BTreeMap<&str, String> = buffers;
@@ -85,7 +89,8 @@ pub fn write<'a>(xml: &Xml<'a>, tracks: Tracks<'a>, station: &mut Station, repor
     let mut ignored = Vec::new();
     let graph = Graph::of(station, &Names::of(station, &mut ignored), &mut ignored);
     let joints = graph.joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
-    Placed { graph, joints, network, divided, sections, signals, switches, absent, limits, borders }
+    let barred = BTreeMap::new();
+    Placed { graph, joints, network, divided, sections, signals, switches, absent, limits, borders, inside, barred }
 }
 
 /// Gives every area the name of the tvdSection with the same borders. A section whose borders are those of no area, or of two, has no place.

@@ -8,7 +8,7 @@ use super::limits::Limits;
 use super::xml::{Xml, child, children, duration, number, references};
 use crate::form::Position;
 use crate::import::Report;
-use crate::import::network::{Edge, EdgeEnd, Network, Side, Switch};
+use crate::import::network::{Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -39,6 +39,8 @@ pub struct Tracks<'a> {
     pub absent: Vec<[(usize, Position); 2]>,
     /// What the file says of speeds.
     pub limits: Limits,
+    /// Buffer stops that are no end of the tracks: edge, metres from its begin, and where the file has it.
+    pub inside: Vec<(usize, f64, String)>,
 }
 
 /// What a switch of the file is in the layout.
@@ -74,10 +76,10 @@ impl Places<'_> {
         self.lengths.iter().copied().enumerate()
     }
 
-    /// Metres from the begin of the net element that `at` names, by a linear coordinate.
+    /// Metres from the begin of the net element that `at` names, by a linear coordinate: less than 0 or more than its length beyond it.
     pub fn by_chainage(&self, at: Node<'_, '_>, linear: Node<'_, '_>, length: f64) -> Option<f64> {
         let measures = self.measures.get(at.attribute("netElementRef")?)?;
-        share_by(linear, measures).map(|share| (share * length).clamp(0.0, length))
+        share_by(linear, measures).map(|share| share * length)
     }
 }
 
@@ -102,12 +104,27 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
         if aggregated || !micro.is_empty() && !micro.contains(id) || edges.contains_key(id) {
             continue;
         }
-        let length = length(element).or_else(|| lengths.get(id).copied()).unwrap_or_else(|| {
+        let by_track = lengths.get(id).copied();
+        let length = length(element).or(by_track).unwrap_or_else(|| {
             unknown.push(id);
             DEFAULT_LENGTH
         });
+        for (other, whose) in [(chainage(element), "chainage"), (by_track, "track")] {
+            if let Some(other) = other.filter(|other| apart(*other, length, length)) {
+                let at = Xml::at(element);
+                report
+                    .defaulted
+                    .push(format!("length of the {at}: {length:.0} m; by its {whose} it would be {other:.0} m"));
+            }
+        }
+        if length > LONGEST {
+            let what = format!("the {} is {length} m long", Xml::at(element));
+            let range = element.range().start..element.range().start + 1;
+            let right = format!("lengths are in metres, up to {LONGEST} m");
+            problems.push(Problem::new(Rule::Range, &range, what, right));
+        }
         edges.insert(id, network.edges.len());
-        network.edges.push(Edge { name: id.to_owned(), length });
+        network.edges.push(Edge { name: id.to_owned(), begin: 0.0, length });
     }
     if network.edges.is_empty() {
         let what = "the file has no netElements, and without topology there are no tracks";
@@ -130,6 +147,7 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
         switches: BTreeMap::new(),
         absent: Vec::new(),
         limits: Limits::default(),
+        inside: Vec::new(),
     };
     let measures: BTreeMap<&str, Measures<'_>> =
         xml.all("netElement").filter_map(|element| Some((element.attribute("id")?, measures(element)))).collect();
@@ -160,16 +178,20 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
             }
         }
     }
+    let mut stops = Vec::new();
     for node in xml.all("bufferStop") {
         let Some(id) = node.attribute("id") else { continue };
-        let Some(spot) = spot(node, id, &tracks.network) else {
-            lost.push(id);
-            continue;
-        };
-        let side = if spot.at * 2.0 < tracks.network.edges[spot.edge].length { Side::Begin } else { Side::End };
-        let name = xml.name(node).value;
-        tracks.network.buffers.push((name.clone(), (spot.edge, side)));
-        tracks.buffers.insert(id, name);
+        match spot(node, id, &tracks.network) {
+            Some(spot) => stops.push((node, id, spot)),
+            None => lost.push(id),
+        }
+    }
+    // Beyond a buffer stop there is nothing: neither what stands on tracks nor where a line goes on.
+    let open = xml.all("border").filter_map(|node| spot(node, node.attribute("id")?, &tracks.network));
+    let others = tracks.detectors.values().chain(tracks.signals.values()).copied().chain(open);
+    let others: Vec<(usize, f64)> = others.map(|spot| (spot.edge, spot.at)).collect();
+    for (node, id, spot) in stops {
+        end_of_tracks(xml, node, id, spot, &others, &mut tracks, report);
     }
     if !lost.is_empty() {
         report.lacking.push(format!("a place on a net element of: {}", lost.join(", ")));
@@ -182,23 +204,62 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     tracks
 }
 
+/// Has the tracks end at a buffer stop, or keeps it as one that is no end of them.
+fn end_of_tracks<'a>(
+    xml: &Xml<'a>,
+    node: Node<'a, 'a>,
+    id: &'a str,
+    spot: Spot,
+    others: &[(usize, f64)],
+    tracks: &mut Tracks<'a>,
+    report: &mut Report,
+) {
+    let length = tracks.network.edges[spot.edge].length;
+    let place =
+        format!("{} at {:.0} m of {length:.0} m of {}", Xml::at(node), spot.at, tracks.network.edges[spot.edge].name);
+    let Some(side) = tracks.network.stop(spot.edge, spot.at, others) else {
+        report
+            .lacking
+            .push(format!("an end of the tracks at the {place}: there is something beyond it on either side"));
+        tracks.inside.push((spot.edge, spot.at, place));
+        return;
+    };
+    let is_at_end = if side == Side::Begin { spot.at <= NEAR } else { spot.at >= length - NEAR };
+    if !is_at_end {
+        report.defaulted.push(format!("the tracks end at the {place}"));
+    }
+    let name = xml.name(node).value;
+    tracks.network.buffers.push((name.clone(), (spot.edge, side)));
+    tracks.buffers.insert(id, name);
+}
+
 /// The length of a net element by its own words, in metres.
 fn length(element: Node<'_, '_>) -> Option<f64> {
     if let Some(length) = number(element, "length").filter(|length| *length > 0.0) {
         return Some(length);
     }
-    let given = measures(element);
-    if let Some((system, ..)) = given.first() {
-        let mut same = given.iter().filter(|(name, ..)| name == system).map(|(_, _, measure)| *measure);
-        if let (Some(first), Some(last)) = (same.next(), same.next_back()) {
-            return Some((last - first).abs()).filter(|length| *length > 0.0);
-        }
+    if let Some(length) = chainage(element) {
+        return Some(length).filter(|length| *length > 0.0);
     }
     let coordinates = element.descendants().filter(|node| node.tag_name().name() == "intrinsicCoordinate");
     let geometric = coordinates.filter_map(|node| child(node, "geometricCoordinate"));
     let corners: Vec<(f64, f64)> = geometric.filter_map(|at| number(at, "x").zip(number(at, "y"))).collect();
     let run: f64 = corners.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
     (run > 0.0).then_some(run)
+}
+
+/// The length of a net element by its linear coordinates.
+fn chainage(element: Node<'_, '_>) -> Option<f64> {
+    let given = measures(element);
+    let (system, ..) = given.first()?;
+    let mut same = given.iter().filter(|(name, ..)| name == system).map(|(_, _, measure)| *measure);
+    let (first, last) = (same.next()?, same.next_back()?);
+    Some((last - first).abs())
+}
+
+/// Whether two words for one place or length, in metres, contradict each other: by more than a tenth of the net element, or than 20 m.
+pub fn apart(one: f64, other: f64, length: f64) -> bool {
+    (one - other).abs() > (length / 10.0).clamp(1.0, 20.0)
 }
 
 /// Lengths that tracks give for the one net element that they lie on.
@@ -246,6 +307,8 @@ fn spot(
     let edge = *edges.get(element)?;
     let length = network.edges[edge].length;
     let at = match (number(location, "intrinsicCoord"), number(location, "pos")) {
+        // Which of the two is right nobody knows.
+        (Some(share), Some(metres)) if apart(share * length, metres, length) => return None,
         (Some(share), _) => share * length,
         (None, Some(metres)) => metres,
         (None, None) => share_of(location, measures.get(element)?)? * length,
@@ -311,6 +374,11 @@ fn switches<'a>(xml: &Xml<'a>, relations: &Relations<'a>, tracks: &mut Tracks<'a
     let throw = |id: &str, report: &mut Report| {
         let il = xml.all("switchIL").find(|il| super::xml::reference(*il, "refersTo") == Some(id));
         let throw = il.and_then(|il| il.attribute("maxThrowTime").or(il.attribute("typicalThrowTime")));
+        if let Some(il) = il.filter(|il| il.attribute("maxThrowTime").is_none() && throw.is_some()) {
+            report
+                .defaulted
+                .push(format!("longest throw time of switch {id}: the typicalThrowTime of the {}", Xml::at(il)));
+        }
         let read = throw.and_then(duration);
         if let (Some(text), None) = (throw, read) {
             report.lacking.push(format!("switch {id}: its throw time {text:?} is no time that can be read"));
@@ -416,7 +484,7 @@ fn crossing<'a>(
     };
     let name = xml.name(switch);
     let between = network.edges.len();
-    network.edges.push(Edge { name: id.to_owned(), length: 0.0 });
+    network.edges.push(Edge { name: id.to_owned(), begin: 0.0, length: 0.0 });
     let first = network.switches.len();
     for (letter, side, legs) in [("A", Side::Begin, [a1, a2]), ("B", Side::End, [b1, b2])] {
         let mut name = name.clone();

@@ -6,7 +6,8 @@ use roxmltree::Node;
 
 use super::circuits::Placed;
 use super::infrastructure::{Spot, Switched};
-use super::xml::{Xml, child, children, duration, reference, references};
+use super::unread;
+use super::xml::{Xml, child, children, duration, is_set, reference, references};
 use crate::at::At;
 use crate::form::{Element, Position, Route, Station};
 use crate::graph::Way;
@@ -123,6 +124,10 @@ impl<'a> Reader<'a, '_> {
         let mut found = BTreeMap::new();
         for node in given {
             let wrapped: Vec<Node<'a, 'a>> = children(node, "relatedSwitchAndPosition").collect();
+            // Not left need not be right: what else there is, and whether all of it is negated, is not said.
+            if let Some(negated) = node.descendants().find(|at| is_set(*at, "isNegated")) {
+                return Err(format!("a position of it is negated ({}, of the {})", Xml::at(negated), Xml::at(node)));
+            }
             for node in if wrapped.is_empty() { vec![node] } else { wrapped } {
                 let (point, position) = self.position(node)?;
                 if found.insert(point, position).is_some_and(|before| before != position) {
@@ -196,6 +201,9 @@ impl<'a> Reader<'a, '_> {
         let entry =
             child(node, "routeEntry").and_then(|entry| reference(entry, "refersTo")).ok_or("it has no routeEntry")?;
         let signal = self.xml.referred(entry).ok_or_else(|| format!("its routeEntry {entry} does not exist"))?;
+        if let Some(what) = unread::asks(node) {
+            return Err(format!("it has {what}, which no layout holds"));
+        }
         let sections = self.sections(node)?;
         let mut positions = self.positions(node, &["facingSwitchInPosition", "trailingSwitchInPosition"])?;
         let exit = child(node, "routeExit").and_then(|exit| reference(exit, "refersTo"));
@@ -217,6 +225,7 @@ impl<'a> Reader<'a, '_> {
         }
         let mut path = self.path(&way);
         positions.extend(self.flank(node)?);
+        self.passable(&way, Some(rear), &positions)?;
         self.hold(&mut path, &way, &positions);
         let speed_kmh = self.placed.limits.on_way(&way, &self.placed.divided);
         if let Some(limit) = speed_kmh.filter(|limit| self.station.braking.speeds_kmh.iter().all(|code| code > limit)) {
@@ -242,14 +251,34 @@ impl<'a> Reader<'a, '_> {
         })
     }
 
+    /// That no buffer stop stands on a way, and no machine of its points asks for what no layout holds.
+    fn passable(
+        &self,
+        way: &[(usize, Way)],
+        rear: Option<usize>,
+        held: &BTreeMap<usize, Position>,
+    ) -> Result<(), String> {
+        let circuits: BTreeSet<usize> = way.iter().map(|(circuit, _)| *circuit).chain(rear).collect();
+        let there =
+            |edge: usize, at: f64| !self.placed.divided.along(edge, at - NEAR, at + NEAR).is_disjoint(&circuits);
+        if let Some((.., stop)) = self.placed.inside.iter().find(|(edge, at, _)| there(*edge, *at)) {
+            return Err(format!("the {stop} stands in its way"));
+        }
+        let passed = way.iter().flat_map(|(_, way)| &way.passed).map(|passed| passed.point);
+        match passed.chain(held.keys().copied()).find_map(|point| self.placed.barred.get(&point)) {
+            Some(why) => Err(why.clone()),
+            None => Ok(()),
+        }
+    }
+
     /// The longest of the times that a route stays locked for: its own, and what its sections ask.
     fn release(&mut self, node: Node<'a, 'a>, way: &[(usize, Way)], name: &str) -> Result<Option<At<u32>>, String> {
         let own = time(node, "approachReleaseDelay")?;
-        let mut residual = time(node, "residualRouteCancellationDelay")?;
+        let mut residual = residual_time(node)?;
         for (circuit, _) in way {
             let sections = self.placed.sections.iter().filter(|(_, area)| *area == circuit);
             for node in sections.filter_map(|(id, _)| self.xml.id(id)) {
-                residual = residual.max(time(node, "residualRouteCancellationDelay")?);
+                residual = residual.max(residual_time(node)?);
             }
         }
         if own.is_none() {
@@ -458,7 +487,7 @@ impl<'a> Reader<'a, '_> {
             }
             let side = if toward_end { Side::End } else { Side::Begin };
             let length = placed.network.edges[edge].length;
-            run += if toward_end { length - at } else { at };
+            run += if toward_end { length - at } else { at - placed.network.edges[edge].begin };
             let Some((next, side)) = placed.divided.linked((edge, side)) else {
                 // An end of the tracks is one for a route, too.
                 let end = placed.divided.end_at((edge, side));
@@ -583,6 +612,7 @@ impl<'a> Reader<'a, '_> {
             return Err(if ways.is_empty() { none } else { "the file leaves more than one way for it" }.to_owned());
         };
         let mut path = self.path(way);
+        self.passable(way, None, &positions)?;
         self.hold(&mut path, way, &positions);
         let timer = node.descendants().find(|timer| timer.attribute("timerValue").is_some());
         Ok((path, timer.map(|timer| time(timer, "timerValue")).transpose()?.flatten()))
@@ -631,6 +661,11 @@ impl<'a> Reader<'a, '_> {
             }
         }
     }
+}
+
+/// The time that a route or a section stays locked for when a route is cancelled, in ms: railML 3.1 and 3.2 have a name for it each.
+fn residual_time(node: Node<'_, '_>) -> Result<Option<u32>, String> {
+    Ok(time(node, "residualRouteCancellationDelay")?.max(time(node, "residualRouteReleaseDelay")?))
 }
 
 /// A time that an attribute gives, in ms.

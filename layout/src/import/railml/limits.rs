@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::infrastructure::Places;
+use roxmltree::Node;
+
+use super::infrastructure::{Places, apart};
 use super::xml::{Xml, child, children, number};
 use crate::form::Position;
 use crate::graph::Way;
@@ -40,19 +42,10 @@ impl Limits {
                 stretches.extend(anywhere("it names no net element"));
             }
             for at in on {
-                let Some((edge, length)) = at.attribute("netElementRef").and_then(|id| places.edge(id)) else {
-                    stretches.extend(anywhere("its net element is not known"));
-                    continue;
-                };
-                let place = |share: &str, metres: &str, linear: &str| {
-                    let by_share = number(at, share).map(|share| share * length);
-                    let by_metres = number(at, metres);
-                    by_share.or(by_metres).or_else(|| places.by_chainage(at, child(at, linear)?, length))
-                };
-                // Where it does not say, the whole element has the limit.
-                let from = place("intrinsicCoordBegin", "posBegin", "linearCoordinateBegin").unwrap_or(0.0);
-                let to = place("intrinsicCoordEnd", "posEnd", "linearCoordinateEnd").unwrap_or(length);
-                stretches.push((edge, from.min(to), from.max(to), limit));
+                match stretch(at, places) {
+                    Ok((edge, from, to)) => stretches.push((edge, from, to, limit)),
+                    Err(why) => stretches.extend(anywhere(&why)),
+                }
             }
         }
         Self { branches: BTreeMap::new(), stretches }
@@ -86,6 +79,57 @@ impl Limits {
         };
         self.stretches.iter().filter(touched).map(|(.., limit)| *limit).min()
     }
+}
+
+/// A place may be so many metres beyond the end of its net element: lengths are rounded.
+const BEYOND: f64 = 1.0;
+
+/// What is shorter, in metres, is a place and no stretch.
+const SHORTEST: f64 = 1.0;
+
+/// The stretch of a net element that has a limit: its edge, and metres from its begin. Where it does not say, it is the whole element.
+fn stretch(at: Node<'_, '_>, places: &Places<'_>) -> Result<(usize, f64, f64), String> {
+    let edge = at.attribute("netElementRef").and_then(|id| places.edge(id));
+    let (edge, length) = edge.ok_or("its net element is not known")?;
+    let begin = place(at, places, length, ["intrinsicCoordBegin", "posBegin", "linearCoordinateBegin"])?;
+    let end = place(at, places, length, ["intrinsicCoordEnd", "posEnd", "linearCoordinateEnd"])?;
+    let (begin, end) = (begin.unwrap_or(0.0), end.unwrap_or(length));
+    if (end - begin).abs() < SHORTEST.min(length) {
+        return Err(format!("it begins at {begin:.0} m of its net element, and ends there"));
+    }
+    Ok((edge, begin.min(end), begin.max(end)))
+}
+
+/// Metres from the begin of a net element, by a share of its length, by metres or by chainage; nothing where it says none.
+///
+/// # Errors
+/// It cannot be read, the first two contradict each other, or it is not on the element: in another measure than it should be.
+fn place(
+    at: Node<'_, '_>,
+    places: &Places<'_>,
+    length: f64,
+    [share, metres, linear]: [&str; 3],
+) -> Result<Option<f64>, String> {
+    let figure = |name: &str| {
+        let none = || format!("its {name} {:?} is no number", at.attribute(name).unwrap_or_default());
+        at.attribute(name).map(|_| number(at, name).ok_or_else(none)).transpose()
+    };
+    let by_share = figure(share)?.map(|share| share * length);
+    let by_metres = figure(metres)?;
+    if by_share.zip(by_metres).is_some_and(|(one, other)| apart(one, other, length)) {
+        return Err(format!("its {share} and its {metres} are two places"));
+    }
+    let by_chainage = || {
+        let none = || format!("its {linear} is none of its net element");
+        child(at, linear).map(|node| places.by_chainage(at, node, length).ok_or_else(none)).transpose()
+    };
+    let Some(found) = by_share.or(by_metres).map_or_else(by_chainage, |found| Ok(Some(found)))? else {
+        return Ok(None);
+    };
+    if !(-BEYOND..=length + BEYOND).contains(&found) {
+        return Err(format!("{found:.0} m is not on its net element of {length:.0} m"));
+    }
+    Ok(Some(found.clamp(0.0, length)))
 }
 
 /// Whole km/h, rounded down; nothing if it is no speed.

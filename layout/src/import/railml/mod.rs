@@ -4,6 +4,8 @@ mod circuits;
 mod infrastructure;
 mod interlocking;
 mod limits;
+mod machines;
+mod unread;
 mod xml;
 
 use std::collections::BTreeSet;
@@ -60,7 +62,8 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
         return Err(Errors::new(source, problems));
     }
     let mut station = Station { name: xml.title().unwrap_or_else(|| "railML".to_owned()), ..Station::default() };
-    let placed = circuits::write(&xml, tracks, &mut station, &mut report);
+    let mut placed = circuits::write(&xml, tracks, &mut station, &mut report);
+    machines::write(&xml, &mut placed, &mut station, &mut report);
     clear_time(&xml, &mut station, &mut report);
     let gradients = document.descendants().filter_map(|node| Some((node, node.attribute("gradient")?)));
     // One that cannot be read may be any.
@@ -73,6 +76,7 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     let (branches, stretches) = placed.limits.count();
     report.taken.push(format!("speeds of {branches} branches and {stretches} stretches of track"));
     xml.unused(&mut report);
+    unread::tell(&xml, &mut report);
     read_again(&source.text, &mut station, &mut report);
     complete(&mut station, "railML", &mut report);
     line_speeds(&placed, &mut station, &mut report);

@@ -139,7 +139,9 @@ impl<'a> Xml<'a> {
             }
         }
         for (name, count) in counts {
-            report.skipped.push(format!("{name} with {count} elements"));
+            // `steepest` has looked at them.
+            let but = if name == "geometryCurves" { ", but for the steepest gradient" } else { "" };
+            report.skipped.push(format!("{name} with {count} elements{but}"));
         }
     }
 }
@@ -180,6 +182,11 @@ pub fn references<'a>(node: Node<'a, 'a>, name: &'a str) -> impl Iterator<Item =
 /// A number that an attribute gives, if it is finite.
 pub fn number(node: Node<'_, '_>, name: &str) -> Option<f64> {
     node.attribute(name)?.trim().parse::<f64>().ok().filter(|number| number.is_finite())
+}
+
+/// Whether an attribute is there and says neither `false` nor `0`: one that cannot be read may be true.
+pub fn is_set(node: Node<'_, '_>, name: &str) -> bool {
+    node.attribute(name).is_some_and(|text| !["false", "0"].contains(&text.trim()))
 }
 
 /// A time like `PT4S`, `P1D`, `PT1M30S` or `P0Y0M0DT0H2M0.5S` in ms, rounded up. Years and months, which have no length of their own,
