@@ -298,6 +298,240 @@ fn the_steepest_gradient_of_a_file_holds_everywhere() {
     }
 }
 
+/// The file with one thing in a route, a machine, or wherever else it stands before this.
+fn with(before: &str, what: &str) -> String {
+    changed(HEAD_ON, before, &format!("{what}{before}"))
+}
+
+/// The thirteenth attack: a limit outside its net element, or of no length, was taken and held nowhere.
+#[test]
+fn a_limit_that_cannot_be_placed_holds_everywhere() {
+    let limit = |place: &str| {
+        let on = format!("<linearLocation><associatedNetElement netElementRef=\"ne1\" {place}</linearLocation>");
+        with("<bufferStops>", &format!("<speeds><speedSection id=\"v\" maxSpeed=\"25\">{on}</speedSection></speeds>"))
+    };
+    let kmh = |text: &str, name: &str| {
+        let model = model(&imported(text));
+        model.values.speeds_kmh[usize::from(route(&model, name).speed.0)]
+    };
+    // Between the two joints of 1Tb alone.
+    assert_eq!(kmh(&limit("posBegin=\"260\" posEnd=\"400\"/>"), "1-W"), 90);
+    for place in [
+        "posBegin=\"1600\" posEnd=\"1900\"/>",
+        "posBegin=\"300\" posEnd=\"1900\"/>",
+        "posBegin=\"600\"/>",
+        "intrinsicCoordBegin=\"60\" intrinsicCoordEnd=\"80\"/>",
+        "intrinsicCoordBegin=\"0\" intrinsicCoordEnd=\"0\"/>",
+        "intrinsicCoordBegin=\"1\" intrinsicCoordEnd=\"1\"/>",
+        "intrinsicCoordBegin=\"1\"/>",
+        "posBegin=\"-300\" posEnd=\"-100\"/>",
+        "posBegin=\"260\" posEnd=\"400 m\"/>",
+        "posBegin=\"260\" intrinsicCoordBegin=\"0.9\" posEnd=\"400\"/>",
+        "><linearCoordinateBegin measure=\"2.1\"/><linearCoordinateEnd measure=\"2.3\"/></associatedNetElement>",
+    ] {
+        let text = limit(place);
+        assert_eq!((kmh(&text, "1-W"), kmh(&text, "1-E")), (25, 25), "{place}");
+        let report = imported(&text).report;
+        let told = |line: &String| {
+            line.starts_with("a place for the speedSection v, line ") && line.ends_with("25 km/h hold everywhere")
+        };
+        assert!(report.lacking.iter().any(told), "{place}: {report}");
+    }
+}
+
+/// The same: detectors that foul a switch were passed over.
+#[test]
+fn a_switch_is_fouled_where_the_file_says_or_not_run_over() {
+    let fouled = |by: &str| {
+        changed(
+            HEAD_ON,
+            "preferredPosition=\"left\"><refersTo ref=\"sw0\"/>",
+            &format!("preferredPosition=\"left\"><refersTo ref=\"sw0\"/>{by}"),
+        )
+    };
+    let circuits = |text: &str| -> Vec<String> {
+        let points = &imported(text).description.station.points;
+        points[0].fouled_in.iter().map(|name| name.value.clone()).collect()
+    };
+    assert_eq!(circuits(&fouled("<hasFoulingTrainDetectors ref=\"tde3\"/>")), ["1Ta"]);
+    assert_eq!(circuits(&fouled("<hasFoulingTrainDetectors ref=\"tvd4\"/>")), ["2T"]);
+    let what = [
+        ("<hasFoulingTrainDetectors ref=\"none\"/>", "no circuit is at the none, which does not exist"),
+        ("<hasFoulingTrainDetectors/>", "refers to nothing"),
+        ("<relatedMovableElement ref=\"swil1\"/>", "has relatedMovableElement, which no layout holds"),
+        ("<hasPositionRestriction/>", "has hasPositionRestriction, which no layout holds"),
+    ];
+    for (by, why) in what {
+        let text = fouled(by);
+        for route in ["rt0", "rt1", "rt6", "rt7"] {
+            left_out(&text, route, why);
+        }
+        assert_eq!(imported(&text).description.station.routes.len(), 4, "{by}");
+    }
+    let locked = HEAD_ON.replacen("<switchIL id=\"swil0\"", "<switchIL isKeyLocked=\"true\" id=\"swil0\"", 1);
+    left_out(&locked, "rt0", "has isKeyLocked, which no layout holds");
+    assert_eq!(imported(&locked.replace("\"true\"", "\"false\"")).description.station.routes.len(), 8);
+}
+
+/// The same: what must not stand right was held right.
+#[test]
+fn a_negated_position_leaves_the_route_out() {
+    let relation = |not: &str| {
+        let asked = format!(
+            "<requiredSwitchPosition><relatedSwitchAndPosition inPosition=\"right\"{not}><refersToSwitch ref=\"swil1\"/></relatedSwitchAndPosition></requiredSwitchPosition>"
+        );
+        let relation = format!("<routeRelations><routeRelation id=\"rr\">{asked}</routeRelation></routeRelations>");
+        let text = with("<conflictingRoutes>", &relation);
+        changed(&text, "<routeEntry id=\"rt0e\">", "<additionalRelation ref=\"rr\"/><routeEntry id=\"rt0e\">")
+    };
+    assert_eq!(imported(&relation(" isNegated=\"false\"")).description.station.routes.len(), 8);
+    left_out(
+        &relation(" isNegated=\"true\""),
+        "rt0",
+        "a position of it is negated (relatedSwitchAndPosition without an id, line ",
+    );
+    let own = changed(HEAD_ON, "id=\"rt0p0\" ", "id=\"rt0p0\" isNegated=\"1\" ");
+    left_out(&own, "rt0", "a position of it is negated (facingSwitchInPosition rt0p0, line ");
+}
+
+/// The same: beyond a buffer stop inside its net element there was a hundred metres of track.
+#[test]
+fn the_tracks_end_at_a_buffer_stop() {
+    const TERMINUS: &str = include_str!("../../layouts/terminus.railml.xml");
+    let length = |text: &str| {
+        let model = model(&imported(text));
+        model.circuits.iter().find(|circuit| circuit.name == "1T").map(|circuit| circuit.length.0)
+    };
+    let from = "netElementRef=\"ne8\" intrinsicCoord=\"1\"";
+    let inside = changed(TERMINUS, from, "netElementRef=\"ne8\" pos=\"150\"");
+    assert_eq!((length(TERMINUS), length(&inside)), (Some(220), Some(120)));
+    let report = imported(&inside).report;
+    let told = |line: &String| {
+        line.starts_with("the tracks end at the bufferStop bs7, line ") && line.ends_with("at 150 m of 250 m of ne8")
+    };
+    assert!(report.defaulted.iter().any(told), "{report}");
+    // Measured from the other end: the begin of the net element is cut off.
+    let turned = inside.replace("netElementRef=\"ne8\" pos=\"150\"", "netElementRef=\"ne8\" pos=\"100\"").replace(
+        "netElementRef=\"ne8\" intrinsicCoord=\"0.120000000\"",
+        "netElementRef=\"ne8\" intrinsicCoord=\"0.88\"",
+    );
+    let turned = turned
+        .lines()
+        .map(|line| {
+            let of = |side: &str| line.contains(&format!("element{side} ref=\"ne8\""));
+            let line = if of("A") { line.replace("OnA=\"0\"", "OnA=\"1\"") } else { line.to_owned() };
+            if of("B") { line.replace("OnB=\"0\"", "OnB=\"1\"") } else { line }
+        })
+        .collect::<Vec<_>>()
+        .join("\n");
+    assert_eq!(
+        imported(&turned)
+            .description
+            .station
+            .circuits
+            .iter()
+            .find(|one| one.name.value == "1T")
+            .map(|one| one.length_m.value),
+        Some(120)
+    );
+    // With a joint and a signal on either side it is no end; nothing runs over it.
+    let stop = "<bufferStop id=\"bs1\"><spotLocation netElementRef=\"ne1\" pos=\"100\"/></bufferStop></bufferStops>";
+    let text = changed(HEAD_ON, "</bufferStops>", stop);
+    for route in ["rt0", "rt2", "rt6"] {
+        left_out(&text, route, "the bufferStop bs1, line 23 at 100 m of 460 m of ne1 stands in its way");
+    }
+    assert_eq!(model(&imported(&text)).routes.len(), 5);
+    // Between the home signal and the joint at the station, of the line's net element.
+    let stop = "<bufferStop id=\"bs1\"><spotLocation netElementRef=\"ne0\" pos=\"20\"/></bufferStop></bufferStops>";
+    let imported = imported(&changed(HEAD_ON, "</bufferStops>", stop));
+    let ends = &imported.description.station.ends;
+    assert!(ends.iter().all(|end| end.kind == atc_layout::form::EndKind::Line), "{ends:?}");
+    assert_eq!(imported.description.station.segments.len(), 2, "{}", imported.report);
+}
+
+/// The same: railML 3.2 has another name for it.
+#[test]
+fn the_release_time_of_railml_3_2_is_kept() {
+    for (before, name) in [("<route id=\"rt0\" ", "W-1"), ("<tvdSection id=\"tvd2\" ", "W-1")] {
+        let text = changed(HEAD_ON, before, &format!("{before}residualRouteReleaseDelay=\"PT180S\" "));
+        let model = model(&imported(&text));
+        assert_eq!(model.values.ms(route(&model, name).release), 180_000, "{before}");
+    }
+}
+
+/// The same: what the import does not read was not told.
+#[test]
+fn what_is_not_read_is_told_and_may_leave_the_route_out() {
+    let told = |text: &str, what: &str| {
+        let report = imported(text).report;
+        assert!(report.skipped.iter().any(|line| line.starts_with(what)), "{what} is not told:\n{report}");
+    };
+    for (element, what) in [
+        (
+            "switchPositionInDepartureTrack",
+            "<switchPositionInDepartureTrack inPosition=\"left\"><refersToSwitch ref=\"swil1\"/></switchPositionInDepartureTrack>",
+        ),
+        ("derailerInPosition", "<derailerInPosition/>"),
+    ] {
+        let text = with("<routeEntry id=\"rt0e\">", what);
+        left_out(&text, "rt0", &format!("it has the element {element}, which no layout holds"));
+        told(&text, &format!("the element {element} of route, which 1 have; the first is route rt0, line "));
+        assert_eq!(model(&imported(&text)).routes.len(), 7);
+    }
+    let late = changed(HEAD_ON, "<route id=\"rt0\" ", "<route proceedAspectDelay=\"PT40S\" id=\"rt0\" ");
+    left_out(&late, "rt0", "it has the attribute proceedAspectDelay");
+    let all = HEAD_ON
+        .replace("<tvdSection ", "<tvdSection isBerthingTrack=\"true\" ")
+        .replace("<route ", "<route processingDelay=\"PT5S\" ");
+    told(&all, "the attribute isBerthingTrack of tvdSection, which 7 have; the first is tvdSection tvd1, line ");
+    told(&all, "the attribute processingDelay of route, which 8 have");
+    assert_eq!(model(&imported(&all)).routes.len(), 8);
+    assert!(!imported(HEAD_ON).report.skipped.iter().any(|line| line.contains("the first is")));
+}
+
+/// The same: circuits of 60 km, and two words for one length or place.
+#[test]
+fn a_length_in_another_unit_or_said_twice_is_refused_or_told() {
+    let millimetres = changed(HEAD_ON, "id=\"ne1\" length=\"460\"", "id=\"ne1\" length=\"460000\"");
+    let errors = railml("station.railml", &millimetres).expect_err("it is longer than any circuit");
+    assert!(errors.to_string().contains("the netElement ne1, line 8 is 460000 m long"), "{errors}");
+    let told = |text: &str, start: &str| {
+        let report = imported(text).report;
+        assert!(report.defaulted.iter().any(|line| line.starts_with(start)), "{start} is not told:\n{report}");
+    };
+    let centimetres = changed(HEAD_ON, "id=\"ne1\" length=\"460\"", "id=\"ne1\" length=\"46000\"");
+    told(&centimetres, "circuit 1Ta: it is 20000 m long");
+    let marks = |from: u32, to: u32| {
+        let mark = |share: u32, at: u32| {
+            format!(
+                "<intrinsicCoordinate intrinsicCoord=\"{share}\"><linearCoordinate measure=\"{at}\"/></intrinsicCoordinate>"
+            )
+        };
+        let both =
+            format!("<associatedPositioningSystem>{}{}</associatedPositioningSystem>", mark(0, from), mark(1, to));
+        changed(HEAD_ON, "id=\"ne1\" length=\"460\"/>", &format!("id=\"ne1\" length=\"460\">{both}</netElement>"))
+    };
+    told(&marks(1000, 1400), "length of the netElement ne1, line 8: 460 m; by its chainage it would be 400 m");
+    assert!(!imported(&marks(1000, 1455)).report.to_string().contains("by its chainage"));
+    let twice = changed(
+        HEAD_ON,
+        "netElementRef=\"ne1\" intrinsicCoord=\"0.5\"",
+        "netElementRef=\"ne1\" intrinsicCoord=\"0.5\" pos=\"300\"",
+    );
+    let report = imported(&twice).report;
+    assert!(report.lacking.iter().any(|line| line == "a place on a net element of: tde9"), "{report}");
+    left_out(&twice, "rt0", "its section has no place");
+}
+
+/// The same: what is usual is not the longest.
+#[test]
+fn a_typical_throw_time_is_told_as_assumed() {
+    let text = changed(HEAD_ON, "id=\"swil0\" maxThrowTime", "id=\"swil0\" typicalThrowTime");
+    let report = imported(&text).report;
+    let told = "longest throw time of switch sw0: the typicalThrowTime of the switchIL swil0, line ";
+    assert!(report.defaulted.iter().any(|line| line.starts_with(told)), "{report}");
+}
+
 #[test]
 fn nothing_imported_is_a_broken_rule() {
     let none = HEAD_ON.replace("<routeEntry", "<routeStart").replace("</routeEntry>", "</routeStart>");

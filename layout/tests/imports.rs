@@ -308,6 +308,29 @@ fn an_osrd_infrastructure_becomes_a_layout() {
     );
 }
 
+/// The thirteenth attack: beyond a buffer stop the track went on to the end of its section.
+#[test]
+fn the_tracks_of_an_osrd_infrastructure_end_at_a_buffer_stop() {
+    let at = |place: &str| OSRD.replacen("\"track\": \"d\", \"position\": 900.0", place, 1);
+    let inside =
+        osrd("loop.json", &at("\"track\": \"d\", \"position\": 500.0")).unwrap_or_else(|errors| panic!("{errors}"));
+    let told = "the tracks end at the buffer stop bd at 500 m of 900 m of d";
+    assert!(inside.report.defaulted.iter().any(|line| line == told), "{}", inside.report);
+    let last = |imported: &Imported| {
+        let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+        compiled.model.circuits.iter().find(|circuit| circuit.name == "bd+dd").map(|circuit| circuit.length.0)
+    };
+    assert_eq!(last(&inside), Some(450));
+    for place in ["\"track\": \"b\", \"position\": 200.0", "\"track\": \"d\", \"position\": 2000.0"] {
+        let errors = osrd("loop.json", &at(place)).expect_err("the tracks do not end there");
+        assert!(errors.to_string().contains("the tracks do not end there"), "{errors}");
+    }
+    let long = OSRD.replace("\"length\": 400.0", "\"length\": 400000.0");
+    assert!(
+        osrd("loop.json", &long).expect_err("it is too long").to_string().contains("track section b is 400000 m long")
+    );
+}
+
 /// The third attack: both were passed over, and the report said that the file says nothing of them.
 #[test]
 fn limits_and_gradients_of_an_osrd_infrastructure_hold_everywhere() {

@@ -373,7 +373,7 @@ pub fn every_ref<'a>(node: Node<'a, 'a>, name: &str) -> impl Iterator<Item = &'a
 
 /// Whether two places of one thing, in metres, cannot both be right.
 fn contradict(one: f64, other: f64, length: f64) -> bool {
-    (one - other).abs() > (0.1 * length).min(20.0).max(1.0)
+    (one - other).abs() > (0.1 * length).clamp(1.0, 20.0)
 }
 
 /// A finite number.

@@ -63,7 +63,8 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
         let Some(id) = switches.into_iter().find(|id| file.means(&point.name, id)) else { continue };
         let machines: Vec<Node<'_, '_>> =
             file.every("switchIL").filter(|machine| refers(*machine, "refersTo") == Some(id)).collect();
-        for what in machines.iter().flat_map(|machine| asked(file, model, number, *machine)) {
+        let asks = machines.iter().flat_map(|machine| asked(file, model, number, *machine));
+        for what in asks.filter(|_| model.routes.iter().any(needs)) {
             differs(id, format!("point {}: {what}", point.name), &needs);
         }
         let longest = machines

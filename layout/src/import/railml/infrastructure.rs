@@ -157,11 +157,17 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     switches(xml, &relations, &mut tracks, report);
     crossings(xml, &relations, &mut tracks, problems);
     links(&relations, &mut tracks, report);
+    on_tracks(xml, &places, &mut tracks, report);
+    tracks
+}
+
+/// Reads what stands on the tracks: detectors, signals, buffer stops.
+fn on_tracks<'a>(xml: &Xml<'a>, places: &Places<'a>, tracks: &mut Tracks<'a>, report: &mut Report) {
     let Places { edges, measures, .. } = places;
     let mut lost = Vec::new();
     let mut beyond = Vec::new();
     let mut spot = |node: Node<'a, 'a>, id: &'a str, network: &Network| {
-        let (spot, given) = spot(node, &edges, network, &measures)?;
+        let (spot, given) = spot(node, edges, network, measures)?;
         // A centimetre is lost in the digits of coordinates.
         if (given - spot.at).abs() > 0.01 {
             beyond.push(format!("{id} at {given:.0} m of {:.0} m", network.edges[spot.edge].length));
@@ -191,7 +197,7 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
     let others = tracks.detectors.values().chain(tracks.signals.values()).copied().chain(open);
     let others: Vec<(usize, f64)> = others.map(|spot| (spot.edge, spot.at)).collect();
     for (node, id, spot) in stops {
-        end_of_tracks(xml, node, id, spot, &others, &mut tracks, report);
+        end_of_tracks(xml, node, id, spot, &others, tracks, report);
     }
     if !lost.is_empty() {
         report.lacking.push(format!("a place on a net element of: {}", lost.join(", ")));
@@ -201,7 +207,6 @@ pub fn read<'a>(xml: &Xml<'a>, report: &mut Report, problems: &mut Vec<Problem>)
             .defaulted
             .push(format!("places beyond their net element are taken to be at its end: {}", beyond.join(", ")));
     }
-    tracks
 }
 
 /// Has the tracks end at a buffer stop, or keeps it as one that is no end of them.

@@ -126,7 +126,7 @@ impl<'a> Reader<'a, '_> {
             let wrapped: Vec<Node<'a, 'a>> = children(node, "relatedSwitchAndPosition").collect();
             // Not left need not be right: what else there is, and whether all of it is negated, is not said.
             if let Some(negated) = node.descendants().find(|at| is_set(*at, "isNegated")) {
-                return Err(format!("a position of it is negated ({}, of the {})", Xml::at(negated), Xml::at(node)));
+                return Err(format!("a position of it is negated ({})", Xml::at(negated)));
             }
             for node in if wrapped.is_empty() { vec![node] } else { wrapped } {
                 let (point, position) = self.position(node)?;

@@ -26,7 +26,7 @@ pub fn write(xml: &Xml<'_>, placed: &mut Placed<'_>, station: &mut Station, repo
         let depends = DEPENDS.into_iter().find(|name| children(machine, name).next().is_some());
         let locked = is_set(machine, "isKeyLocked").then_some("isKeyLocked");
         if let Some(what) = depends.or(locked) {
-            let why = format!("the {} of a switch has {what}, which no layout holds", Xml::at(machine));
+            let why = format!("the {} has {what}, which no layout holds", Xml::at(machine));
             placed.barred.extend(points.iter().map(|point| (*point, why.clone())));
         }
         for detector in children(machine, "hasFoulingTrainDetectors") {
@@ -34,7 +34,7 @@ pub fn write(xml: &Xml<'_>, placed: &mut Placed<'_>, station: &mut Station, repo
                 let own = station.points[*point].circuit.value.clone();
                 match fouled(xml, placed, station, detector, &own) {
                     Ok(circuits) => {
-                        let told = circuits.iter().map(|name| name.as_str()).collect::<Vec<_>>().join(", ");
+                        let told = circuits.iter().cloned().collect::<Vec<_>>().join(", ");
                         report.taken.push(format!("point {}: fouled in {told}", station.points[*point].name));
                         let given = &mut station.points[*point].fouled_in;
                         given.extend(

@@ -32,7 +32,7 @@ const FILES: [(&str, &str); 9] = [
 type Changed = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// Changes that give a file what it has not.
-const CHANGED: [Changed; 7] = [
+const CHANGED: [Changed; 16] = [
     // Files that are wrong: the right importer leaves a route out.
     (
         "a section too many",
@@ -42,7 +42,63 @@ const CHANGED: [Changed; 7] = [
     ("a section too few", "head-on", &[("<hasTvdSection ref=\"tvd9\"/>", "")]),
     ("against a position", "head-on", &[("inPosition=\"left\"", "inPosition=\"right\"")]),
     ("a signal turned", "head-on", &[("applicationDirection=\"reverse\"", "applicationDirection=\"normal\"")]),
+    (
+        "not right",
+        "head-on",
+        &[
+            ("<routeEntry id=\"rt0e\">", "<additionalRelation ref=\"rr\"/><routeEntry id=\"rt0e\">"),
+            (
+                "<conflictingRoutes>",
+                "<routeRelations><routeRelation id=\"rr\"><requiredSwitchPosition inPosition=\"right\" isNegated=\"true\"><refersToSwitch ref=\"swil1\"/></requiredSwitchPosition></routeRelation></routeRelations><conflictingRoutes>",
+            ),
+        ],
+    ),
+    (
+        "a buffer stop on the way",
+        "head-on",
+        &[(
+            "</bufferStops>",
+            "<bufferStop id=\"bs1\"><spotLocation netElementRef=\"ne1\" pos=\"100\"/></bufferStop></bufferStops>",
+        )],
+    ),
+    (
+        "another switch",
+        "head-on",
+        &[("<refersTo ref=\"sw0\"/>", "<refersTo ref=\"sw0\"/><relatedMovableElement ref=\"swil1\"/>")],
+    ),
+    ("late", "head-on", &[("<route id=\"rt0\"", "<route proceedAspectDelay=\"PT40S\" id=\"rt0\"")]),
     // And some that are right.
+    (
+        "a limit beyond its element",
+        "head-on",
+        &[(
+            "<bufferStops>",
+            "<speeds><speedSection id=\"v1\" maxSpeed=\"30\"><linearLocation><associatedNetElement netElementRef=\"ne1\" posBegin=\"260\" posEnd=\"1900\"/></linearLocation></speedSection></speeds><bufferStops>",
+        )],
+    ),
+    (
+        "a limit at a place",
+        "head-on",
+        &[(
+            "<bufferStops>",
+            "<speeds><speedSection id=\"v1\" maxSpeed=\"30\"><linearLocation><associatedNetElement netElementRef=\"ne1\" intrinsicCoordBegin=\"1\"/></linearLocation></speedSection></speeds><bufferStops>",
+        )],
+    ),
+    (
+        "fouled",
+        "head-on",
+        &[("<refersTo ref=\"sw0\"/>", "<refersTo ref=\"sw0\"/><hasFoulingTrainDetectors ref=\"tde3\"/>")],
+    ),
+    (
+        "railML 3.2's release time",
+        "head-on",
+        &[("<tvdSection id=\"tvd2\"", "<tvdSection residualRouteReleaseDelay=\"PT90S\" id=\"tvd2\"")],
+    ),
+    (
+        "a short stub",
+        "terminus",
+        &[("netElementRef=\"ne8\" intrinsicCoord=\"1\"", "netElementRef=\"ne8\" intrinsicCoord=\"0.6\"")],
+    ),
     ("single-slip", "slip", &[("<turningBranch netRelationRef=\"nbd\"/>", "")]),
     (
         "limits",
