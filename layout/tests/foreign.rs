@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use atc_layout::Description;
-use atc_layout::form::Position;
+use atc_layout::form::{EndKind, Position};
 use atc_layout::import::{Imported, railml};
 use atc_layout::model::{Guard, Model, Route};
 
@@ -441,12 +441,18 @@ fn the_tracks_end_at_a_buffer_stop() {
         left_out(&text, route, "the bufferStop bs1, line 23 at 100 m of 460 m of ne1 stands in its way");
     }
     assert_eq!(model(&imported(&text)).routes.len(), 5);
-    // Between the home signal and the joint at the station, of the line's net element.
-    let stop = "<bufferStop id=\"bs1\"><spotLocation netElementRef=\"ne0\" pos=\"20\"/></bufferStop></bufferStops>";
-    let imported = imported(&changed(HEAD_ON, "</bufferStops>", stop));
-    let ends = &imported.description.station.ends;
-    assert!(ends.iter().all(|end| end.kind == atc_layout::form::EndKind::Line), "{ends:?}");
-    assert_eq!(imported.description.station.segments.len(), 2, "{}", imported.report);
+    // On the net element of the line: between the joint and the points, and where the line goes on.
+    for place in [20, 400] {
+        let stop = format!(
+            "<bufferStop id=\"bs1\"><spotLocation netElementRef=\"ne0\" pos=\"{place}\"/></bufferStop></bufferStops>"
+        );
+        let imported = imported(&changed(HEAD_ON, "</bufferStops>", &stop));
+        let ends = &imported.description.station.ends;
+        assert!(ends.iter().all(|end| end.kind == EndKind::Line), "{ends:?}");
+        assert_eq!(imported.description.station.segments.len(), 2, "{}", imported.report);
+        let told = |line: &String| line.starts_with("an end of the tracks at the bufferStop bs1, line 23 at ");
+        assert!(imported.report.lacking.iter().any(told), "{}", imported.report);
+    }
 }
 
 /// The same: railML 3.2 has another name for it.

@@ -209,6 +209,9 @@ fn on_tracks<'a>(xml: &Xml<'a>, places: &Places<'a>, tracks: &mut Tracks<'a>, re
     }
 }
 
+/// A buffer stop so many metres from the end of its net element is the end of the tracks, even if no section is said to end there.
+const NEAR_END: f64 = 20.0;
+
 /// Has the tracks end at a buffer stop, or keeps it as one that is no end of them.
 fn end_of_tracks<'a>(
     xml: &Xml<'a>,
@@ -222,10 +225,14 @@ fn end_of_tracks<'a>(
     let length = tracks.network.edges[spot.edge].length;
     let place =
         format!("{} at {:.0} m of {length:.0} m of {}", Xml::at(node), spot.at, tracks.network.edges[spot.edge].name);
-    let Some(side) = tracks.network.stop(spot.edge, spot.at, others) else {
-        report
-            .lacking
-            .push(format!("an end of the tracks at the {place}: there is something beyond it on either side"));
+    // Far from its end it may as well be a slip of the file: the line may go on there, and a train come in.
+    let is_near = spot.at.min(length - spot.at) <= NEAR_END;
+    let is_border = is_near
+        || xml.all("tvdSection").any(|section| references(section, "hasDemarcatingBufferstop").any(|one| one == id));
+    let side = is_border.then(|| tracks.network.stop(spot.edge, spot.at, others)).flatten();
+    let Some(side) = side else {
+        let why = if is_border { "there is something beyond it on either side" } else { "no section ends there" };
+        report.lacking.push(format!("an end of the tracks at the {place}: {why}"));
         tracks.inside.push((spot.edge, spot.at, place));
         return;
     };
