@@ -77,6 +77,7 @@ fn rich() -> String {
         "<tvdSection id=\"tvd2\"",
         "<tvdSection residualRouteCancellationDelay=\"PT80S\" partialRouteReleaseDelay=\"PT3S\" id=\"tvd2\"",
     );
+    let text = edit(text, "<refersTo ref=\"sw0\"/>", "<refersTo ref=\"sw0\"/><hasFoulingTrainDetectors ref=\"tvd6\"/>");
     let text = edit(text, "<routeEntry id=\"rt0e\">", "<additionalRelation ref=\"rr\"/><routeEntry id=\"rt0e\">");
     edit(
         text,
@@ -156,6 +157,7 @@ const FALSIFICATIONS: &[Falsification] = &[
     ("a circuit is longer", |station| station.circuits[2].length_m.value += 10),
     ("a circuit of the line is longer", |station| station.circuits[0].length_m.value += 10),
     ("a point moves faster", |station| station.points[0].throw_ms = Some(At::derived(3000))),
+    ("a circuit in which a train fouls a point is dropped", |station| station.points[0].fouled_in.clear()),
     ("a route is released earlier", |station| route(station, "1-E").release_ms = Some(At::derived(20_000))),
     ("a route is released before its sections say", |station| {
         route(station, "W-1").release_ms = Some(At::derived(60_000));

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::Difference;
-use super::file::{Branch, End, File, every_ref, figure, milliseconds, refers};
+use super::file::{Branch, File, every_ref, figure, milliseconds, refers};
 use super::walk::{Asked, NEAR, OFFSET, Walk, walks};
 use crate::form::Position;
 use crate::model::{Model, Route};
@@ -532,19 +532,10 @@ fn conflicts(file: &File<'_>, model: &Model) -> Vec<Difference> {
 }
 
 impl<'a> File<'a> {
-    /// The ids of buffer stops at an end of the tracks: those with nothing between them and that end that divides the tracks. Where the net
-    /// element has two such ends, those nearer to this one.
-    pub fn stops_at(&self, (element, at_end): End<'a>) -> Vec<&'a str> {
-        let length = self.lengths.get(element).copied().unwrap_or(0.0);
-        let leads_on = |at_end: bool| self.onward.get(&(element, at_end)).is_some_and(|onward| !onward.is_empty());
-        let is_last = |at: f64, at_end: bool| {
-            let mut dividers = self.dividers.get(element).into_iter().flatten();
-            !leads_on(at_end)
-                && dividers.all(|divider| if at_end { divider.at <= at + 0.01 } else { divider.at >= at - 0.01 })
-        };
-        let here = |at: f64| is_last(at, at_end) && (!is_last(at, !at_end) || (at * 2.0 >= length) == at_end);
+    /// The ids of buffer stops at a place on a net element.
+    pub fn stops_at(&self, (element, at): (&str, f64)) -> Vec<&'a str> {
         let stops = self.stops.get(element).into_iter().flatten();
-        stops.filter(|(at, _)| here(*at)).map(|(_, id)| *id).collect()
+        stops.filter(|(place, _)| (place - at).abs() < 0.01).map(|(_, id)| *id).collect()
     }
 
     /// What an element is called, as text of its own.

@@ -63,9 +63,15 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
         let Some(id) = switches.into_iter().find(|id| file.means(&point.name, id)) else { continue };
         let machines: Vec<Node<'_, '_>> =
             file.every("switchIL").filter(|machine| refers(*machine, "refersTo") == Some(id)).collect();
-        let asks = machines.iter().flat_map(|machine| asked(file, model, number, *machine));
-        for what in asks.filter(|_| model.routes.iter().any(needs)) {
-            differs(id, format!("point {}: {what}", point.name), &needs);
+        for (what, circuit) in machines.iter().flat_map(|machine| asked(file, model, number, *machine)) {
+            // A route over a circuit in which a train fouls a point has it held, too.
+            let over = |route: &Route| {
+                let runs = |one: usize| route.entry == one || route.circuits().any(|other| other == one);
+                needs(route) || circuit.is_some_and(|one| runs(one) || route.overlap.contains(&one))
+            };
+            if model.routes.iter().any(over) {
+                differs(id, format!("point {}: {what}", point.name), &over);
+            }
         }
         let longest = machines
             .iter()
@@ -110,18 +116,20 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
     found
 }
 
-/// What a machine asks of a point that the layout does not have.
-fn asked(file: &File<'_>, model: &Model, point: usize, machine: Node<'_, '_>) -> Vec<String> {
+/// What a machine asks of a point that the layout does not have, and the circuit that it is about.
+fn asked(file: &File<'_>, model: &Model, point: usize, machine: Node<'_, '_>) -> Vec<(String, Option<usize>)> {
     let mut found = Vec::new();
     let Some(point) = model.points.get(point) else { return found };
     let is_false = |text: &str| matches!(text.trim(), "false" | "0");
     if machine.attribute("isKeyLocked").is_some_and(|text| !is_false(text)) {
-        found.push("its machine is locked by a key".to_owned());
+        found.push(("its machine is locked by a key".to_owned(), None));
     }
     for child in machine.children() {
         let name = child.tag_name().name();
         match name {
-            "hasPositionRestriction" | "relatedMovableElement" => found.push(format!("its machine has a {name}")),
+            "hasPositionRestriction" | "relatedMovableElement" => {
+                found.push((format!("its machine has a {name}"), None));
+            }
             "hasFoulingTrainDetectors" => {
                 let id = child.attribute("ref").unwrap_or_default();
                 let id = file.meant(id).and_then(|node| node.attribute("id")).unwrap_or(id);
@@ -136,13 +144,17 @@ fn asked(file: &File<'_>, model: &Model, point: usize, machine: Node<'_, '_>) ->
                 };
                 let named = (0..model.circuits.len()).filter(|circuit| is_near(&model.circuits[*circuit].name));
                 let near: BTreeSet<usize> = at_joint.chain(named).collect();
-                let mut missing = near
+                let missing = near
                     .iter()
                     .filter(|circuit| point.circuit != Some(**circuit) && !point.fouled_in.contains(circuit));
                 if near.is_empty() {
-                    found.push(format!("it is fouled at {id}, which the layout does not have"));
-                } else if let Some(circuit) = missing.next() {
-                    found.push(format!("a train in {} fouls it in the file", model.circuits[*circuit].name));
+                    found.push((format!("it is fouled at {id}, which the layout does not have"), None));
+                }
+                for circuit in missing {
+                    found.push((
+                        format!("a train in {} fouls it in the file", model.circuits[*circuit].name),
+                        Some(*circuit),
+                    ));
                 }
             }
             _ => {}
@@ -183,9 +195,13 @@ fn shortest(file: &File<'_>, borders: &BTreeSet<&str>) -> Option<f64> {
 
 /// Whether the ground between a border and what was reached is this section's: no other section lies between the two.
 fn belongs(file: &File<'_>, borders: &BTreeSet<&str>, from: &Divider<'_>, to: Reached<'_>) -> bool {
-    let Reached::Divider(to) = to else {
+    let to = match to {
+        Reached::Divider(to) => to,
         // To the end of the tracks: the section has no other border beside it there, or names the end.
-        return file.beside(from).len() < 2 || borders.len() == from.ids.len();
+        Reached::End(end) => {
+            let is_named = file.stops_at(end).iter().any(|id| borders.contains(id));
+            return is_named || file.beside(from).len() < 2 || borders.len() == from.ids.len();
+        }
     };
     let both = file
         .sections
@@ -198,7 +214,8 @@ fn belongs(file: &File<'_>, borders: &BTreeSet<&str>, from: &Divider<'_>, to: Re
 #[derive(Clone, Copy)]
 enum Reached<'b> {
     Divider(&'b Divider<'b>),
-    End(End<'b>),
+    /// The end of the tracks, or a buffer stop: net element, and metres from its begin.
+    End((&'b str, f64)),
 }
 
 fn reached<'b>(file: &'b File<'b>, element: &'b str, at: f64, toward_end: bool) -> Vec<(f64, Reached<'b>)> {
@@ -224,13 +241,14 @@ fn reached<'b>(file: &'b File<'b>, element: &'b str, at: f64, toward_end: bool) 
             continue;
         }
         if let Some(buffer) = buffer {
-            found.push((run + buffer, Reached::End((element, toward_end))));
+            let place = if toward_end { at + buffer } else { at - buffer };
+            found.push((run + buffer, Reached::End((element, place))));
             continue;
         }
         let run = run + ahead(if toward_end { length } else { 0.0 });
         let onward = file.onward.get(&(element, toward_end));
         if onward.is_none_or(Vec::is_empty) {
-            found.push((run, Reached::End((element, toward_end))));
+            found.push((run, Reached::End((element, if toward_end { length } else { 0.0 }))));
         }
         for ((next, at_its_end), _) in onward.into_iter().flatten() {
             let begin = if *at_its_end { file.lengths.get(next).copied().unwrap_or(0.0) } else { 0.0 };

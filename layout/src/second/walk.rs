@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::file::{Branch, Divider, End, File, Spot};
+use super::file::{Branch, Divider, File, Spot};
 
 /// How many ways are followed before a file is said to be unclear.
 const MOST: usize = 256;
@@ -23,8 +23,8 @@ pub struct Walk<'a> {
     pub stretches: Vec<(&'a str, f64, f64, f64)>,
     /// Metres from the signal to its exit.
     pub exit: Option<f64>,
-    /// Metres to the end of the tracks, if it comes there, and the end.
-    pub end: Option<(f64, End<'a>)>,
+    /// Metres to the end of the tracks or to a buffer stop, if it comes there, and its net element and place.
+    pub end: Option<(f64, (&'a str, f64))>,
 }
 
 /// Which branch a file asks of a switch: by relation, if several may be meant.
@@ -116,7 +116,7 @@ impl<'a> Search<'a, '_> {
         let run = run + ahead(to);
         let onward = self.file.onward.get(&(element, toward_end)).cloned().unwrap_or_default();
         if onward.is_empty() || buffer.is_some() {
-            here.end = Some((run, (element, toward_end)));
+            here.end = Some((run, (element, to)));
             if here.exit.is_some() || self.exit.is_none() {
                 self.found.push(here);
             }
