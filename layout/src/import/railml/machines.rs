@@ -37,13 +37,11 @@ pub fn write(xml: &Xml<'_>, placed: &mut Placed<'_>, station: &mut Station, repo
                         let told = circuits.iter().cloned().collect::<Vec<_>>().join(", ");
                         report.taken.push(format!("point {}: fouled in {told}", station.points[*point].name));
                         let given = &mut station.points[*point].fouled_in;
-                        given.extend(
-                            circuits
-                                .into_iter()
-                                .map(At::derived)
-                                .filter(|name| !given.contains(name))
-                                .collect::<Vec<_>>(),
-                        );
+                        for name in circuits {
+                            if given.iter().all(|other| other.value != name) {
+                                given.push(At::derived(name));
+                            }
+                        }
                     }
                     Err(why) => {
                         let at = Xml::at(machine);

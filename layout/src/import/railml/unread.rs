@@ -7,12 +7,12 @@ use roxmltree::Node;
 use super::xml::Xml;
 use crate::import::Report;
 
-/// What is read of an element, and of what else it is known that a layout may do without.
+/// What is read of an element.
 struct Read {
     element: &'static str,
     attributes: &'static [&'static str],
     children: &'static [&'static str],
-    /// Of a route, these two do not matter: it is called less often, or its signal shows proceed for a shorter time.
+    /// What a layout may do without: when a route is called, and how long its signal goes on to show proceed.
     harmless: &'static [&'static str],
 }
 
