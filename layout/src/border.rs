@@ -3,6 +3,7 @@
 //! A stretch that neither sees may have a train on it that both think is not there: both send. A stretch that both see is a circuit of the
 //! same name in both files.
 
+use std::collections::BTreeMap;
 use std::fmt::{Display, Formatter, Result as Written};
 
 use atc_kernel::distance::Metres;
@@ -295,7 +296,7 @@ fn heard(
         );
         wrong(what, format!("telegram_age_ms of {station} must be at least {lives}"));
     }
-    let (ours, stronger) = (strongest(description), strongest(its));
+    let (ours, stronger) = (model.values.strongest_mm_s2, its_model.values.strongest_mm_s2);
     if comes && ours < stronger {
         let what = format!(
             "trains of {neighbour} may come from telegrams with a pattern of {stronger} mm/s², and {station} counts on at most {ours} for the distances \
@@ -311,12 +312,38 @@ fn heard(
         );
         wrong(what, format!("heard_beyond_m of {station} must be at least {theirs}"));
     }
+    if comes {
+        trains((description, neighbour), its, wrong);
+    }
 }
 
-/// The strongest brake on the level for which the distances of the codes hold.
-fn strongest(description: &Description) -> u16 {
-    let braking = &description.station.braking;
-    braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2).value
+/// How long the neighbour's trains are, and for how long they may be lost: approaches, releases, overlaps and the least length of a circuit follow from it.
+fn trains((description, neighbour): (&Description, &str), its: &Description, wrong: &mut impl FnMut(String, String)) {
+    let station = &description.station.name;
+    let (loss, theirs) = (description.station.times.shunt_loss_ms.value, its.station.times.shunt_loss_ms.value);
+    if loss < theirs {
+        let what = format!("trains of {neighbour} may be lost for {theirs} ms, and {station} counts on {loss} ms");
+        wrong(what, format!("shunt_loss_ms of {station} must be at least {theirs}"));
+    }
+    let lengths = |given: &Description| {
+        let length = |length: &Option<crate::At<u16>>| length.as_ref().map(|length| length.value);
+        (length(&given.station.longest_train_m), length(&given.station.shortest_train_m))
+    };
+    let ((longest, shortest), (its_longest, its_shortest)) = (lengths(description), lengths(its));
+    if let (Some(longest), Some(theirs)) = (longest, its_longest)
+        && longest < theirs
+    {
+        let what = format!("trains of {neighbour} are up to {theirs} m long, and {station} counts on {longest} m");
+        wrong(what, format!("longest_train_m of {station} must be at least {theirs}"));
+    }
+    if let Some(shortest) = shortest.filter(|shortest| its_shortest.unwrap_or(0) < *shortest) {
+        let theirs = its_shortest.map_or_else(
+            || "does not say how short its trains are".to_owned(),
+            |theirs| format!("has trains of {theirs} m"),
+        );
+        let what = format!("{station} counts on trains of at least {shortest} m, and {neighbour} {theirs}");
+        wrong(what, format!("give {neighbour} shortest_train_m = {shortest} if it is so, or {station} less"));
+    }
 }
 
 /// The length of the longest train of two stations; none if a file does not say.
@@ -343,8 +370,37 @@ fn tails(
     let kmh = |code: SpeedCode| model.values.speeds_kmh[usize::from(code.0)];
     let line = kmh(segment.speed);
     let uses = |route: &&Route| route.is_sound() && (route.from == Some(number) || route.to == Some(number));
-    let slowest = model.routes.iter().filter(uses).min_by_key(|route| kmh(route.speed));
-    let Some(slow) = slowest.filter(|route| kmh(route.speed) < line) else { return };
+    // How far behind a nose that has just come into what both see each route ends: those that go out to the line, and what leads up to them.
+    let mut behind: BTreeMap<usize, u32> = BTreeMap::new();
+    let mut open: Vec<(usize, u32)> =
+        model.routes.iter().enumerate().filter(|(_, route)| uses(route)).map(|(route, _)| (route, unshared)).collect();
+    while let Some((route, metres)) = open.pop() {
+        let covered = longest.is_some_and(|longest| u32::from(longest.0) <= metres);
+        if covered || behind.get(&route).is_some_and(|known| *known <= metres) {
+            continue;
+        }
+        behind.insert(route, metres);
+        let ahead = &model.routes[route];
+        let length: u32 = ahead.circuits().map(|circuit| u32::from(model.circuits[circuit].length.0)).sum();
+        let leads = |other: &Route| other.is_sound() && other.exit == ahead.start && other.last() == Some(ahead.entry);
+        let before = model.routes.iter().enumerate().filter(|(_, other)| leads(other));
+        open.extend(before.map(|(other, _)| (other, metres.saturating_add(length))));
+    }
+    // A station may be shorter than a train: behind it is another line.
+    let mut slow: Vec<(u16, String)> = Vec::new();
+    for (route, metres) in &behind {
+        let route = &model.routes[*route];
+        slow.push((kmh(route.speed), format!("route {}", route.name)));
+        let length: u32 = route.circuits().map(|circuit| u32::from(model.circuits[circuit].length.0)).sum();
+        let reached = longest.is_none_or(|longest| u32::from(longest.0) > metres.saturating_add(length));
+        if let Some(other) = route.from.filter(|other| *other != number && reached) {
+            let other = &model.segments[other];
+            slow.push((kmh(other.speed), format!("segment {}", other.name)));
+        }
+    }
+    let Some((slow, place)) = slow.into_iter().min_by_key(|(slow, _)| *slow).filter(|(slow, _)| *slow < line) else {
+        return;
+    };
     let (train, right) = match longest {
         Some(Metres(longest)) => (
             format!("trains are up to {longest} m long"),
@@ -353,10 +409,8 @@ fn tails(
         None => ("not both files say how long trains are".to_owned(), "give longest_train_m in both files".to_owned()),
     };
     let what = format!(
-        "{station} alone sees {unshared} m of the line, and {train}: the neighbour lets one run at {line} km/h whose tail is still in route {}, \
-         which is for {}",
-        slow.name,
-        kmh(slow.speed)
+        "{station} alone sees {unshared} m of the line, and {train}: the neighbour lets one run at {line} km/h whose tail is still in {place}, \
+         which is for {slow}"
     );
-    wrong(what, format!("{right}, or give the line a speed_kmh of {} in both files", kmh(slow.speed)));
+    wrong(what, format!("{right}, or give the line a speed_kmh of {slow} in both files"));
 }

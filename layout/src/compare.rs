@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use atc_kernel::distance::Metres;
+
 use crate::graph::Kind;
 use crate::model::{Model, Values};
 use crate::table;
@@ -106,7 +108,8 @@ fn cells(model: &Model) -> Cells {
     all
 }
 
-fn station(values: &Values) -> [(&'static str, String); 12] {
+fn station(values: &Values) -> [(&'static str, String); 17] {
+    let metres = |length: Option<Metres>| length.map_or_else(String::new, |length| length.0.to_string());
     [
         ("cycle ms", values.cycle_ms.to_string()),
         ("clear ms", (u32::from(values.clear) * values.cycle_ms).to_string()),
@@ -119,6 +122,11 @@ fn station(values: &Values) -> [(&'static str, String); 12] {
         ("telegram age ms", values.telegram_age_ms.to_string()),
         ("cab signalled", values.cab_signalled.to_string()),
         ("speeds km/h", format!("{:?}", values.speeds_kmh)),
+        ("longest train m", metres(values.longest_train)),
+        ("shortest train m", metres(values.shortest_train)),
+        ("least overlap m", values.least_overlap.0.to_string()),
+        ("heard beyond m", values.heard_beyond.0.to_string()),
+        ("strongest brake mm/s²", values.strongest_mm_s2.to_string()),
         ("braking distances m", format!("{:?}", values.braking.map(|distance| distance.0))),
     ]
 }

@@ -12,6 +12,7 @@ use crate::form::{self, Position};
 use crate::model::{self, Model, Note};
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
+use crate::witness;
 
 /// A layout for the kernel, with the names of its numbers.
 #[derive(Clone, Debug)]
@@ -118,6 +119,9 @@ pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
     let names = Names::of(station, &model);
     plan.check(&mut |broken| problems.push(of_plan(broken, &plan, &names, &model)));
     check::lines(station, &model, &mut problems);
+    if problems.is_empty() {
+        problems = witness::differences(station, &plan);
+    }
     if !problems.is_empty() {
         return Err(Errors::new(source, problems));
     }

@@ -30,6 +30,7 @@ mod rule;
 pub mod second;
 pub mod table;
 mod values;
+pub mod witness;
 
 pub use at::At;
 pub use compile::{Compiled, Names};

@@ -59,6 +59,35 @@ impl Model {
         u32::try_from((way * 1000).div_ceil(speed) + (speed * 1000).div_ceil(2 * brake)).ok()
     }
 
+    /// The circuit, and those that a train in it, travelling so, may be granted: of the routes over it and of those that go on, and of plain line.
+    pub fn ahead(&self, circuit: usize, heading: Heading) -> Circuits {
+        let mut found = Circuits::from([circuit]);
+        let line = self.segments.iter().filter(|segment| segment.circuits.contains(&circuit));
+        found.extend(line.flat_map(|segment| segment.circuits.iter().copied()));
+        let mut routes: Vec<usize> = Vec::new();
+        loop {
+            let next = self.routes.iter().enumerate().position(|(number, route)| {
+                let goes_on = routes.iter().any(|before| self.routes[*before].continuing.contains(&number));
+                let here = found.contains(&route.entry) || route.circuits().any(|at| at == circuit);
+                route.is_sound() && route.heading == heading && (goes_on || here) && !routes.contains(&number)
+            });
+            let Some(number) = next else { return found };
+            let route = &self.routes[number];
+            found.extend(route.circuits());
+            found.extend(route.to.iter().flat_map(|segment| self.segments[*segment].circuits.iter().copied()));
+            routes.push(number);
+        }
+    }
+
+    /// The highest speed at which a train may run in a circuit, travelling so, in km/h: of the routes over it and of plain line; 0 where none does.
+    pub fn fastest_kmh(&self, circuit: usize, heading: Heading) -> u16 {
+        let routes = self.routes.iter().filter(|route| route.is_sound() && route.heading == heading);
+        let over = routes.filter(|route| route.circuits().any(|at| at == circuit)).map(|route| route.speed);
+        let line = self.segments.iter().filter(|segment| segment.circuits.contains(&circuit));
+        let codes = over.chain(line.map(|segment| segment.speed));
+        codes.map(|code| self.values.speeds_kmh[usize::from(code.0)]).max().unwrap_or(0)
+    }
+
     /// The longest of these times.
     pub fn longest_standstill_ms(&self) -> u32 {
         self.routes.iter().filter_map(|route| self.least_standstill_ms(route)).max().unwrap_or(0)
@@ -123,8 +152,10 @@ pub enum Guard {
     Point(usize, Position),
     /// The signal of a route, at stop.
     Signal(String),
-    /// A buffer stop: no track goes on.
+    /// A buffer stop, and no circuit of its own before it: no vehicle can stand there.
     Buffer,
+    /// Nothing: in this circuit, between the leg and a buffer stop or the path itself, a vehicle may stand that faces no signal.
+    Standing(usize),
     /// The route itself holds what is there.
     Own,
     /// Nothing: the line goes on.
@@ -322,6 +353,10 @@ pub struct Values {
     pub least_overlap: Metres,
     /// The length of the longest train, if the file gives it.
     pub longest_train: Option<Metres>,
+    /// That of the shortest one.
+    pub shortest_train: Option<Metres>,
+    /// The strongest brake on the level by which trains come from telegrams, in mm/s².
+    pub strongest_mm_s2: u16,
 }
 
 impl Values {
@@ -357,6 +392,8 @@ impl Default for Values {
             braking: [Metres(u16::MAX); MAX_CODES],
             least_overlap: Metres(0),
             longest_train: None,
+            shortest_train: None,
+            strongest_mm_s2: 0,
         }
     }
 }

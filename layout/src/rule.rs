@@ -81,6 +81,8 @@ pub enum Rule {
     NoRoute,
     /// The layout fits the interlocking.
     TooMany,
+    /// The plan is what vehicles meet on the tracks of the file: read a second time, by other code.
+    PlanAgainstTracks,
     /// A rule of the kernel's plan.
     Plan(Kernel),
 }
@@ -151,6 +153,7 @@ impl Rule {
             Self::RouteTwice => "no two routes lead from one signal over one path",
             Self::NoRoute => "there is a route",
             Self::TooMany => "the layout fits the interlocking",
+            Self::PlanAgainstTracks => "the plan is what vehicles meet on the tracks of the file",
             Self::Plan(kernel) => of_plan(kernel),
         }
     }

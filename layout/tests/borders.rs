@@ -152,6 +152,86 @@ fn a_line_under_two_names() {
     refused(&sharing, &also, "One has a line north, and Two a line nort: both see W2");
 }
 
+/// The thirteenth attack: a tail may be two routes behind a nose that the neighbour speaks to, or on another line beyond a short station.
+#[test]
+fn tails_behind_an_advanced_starter_and_beyond_a_short_station() {
+    let read = |text: &str| Description::from_toml("station.toml", text).expect("a layout");
+    let (west, east) =
+        (include_str!("../../line/examples/westham.toml"), include_str!("../../line/examples/eastham.toml"));
+    let east = read(east);
+    assert!(held(&read(west), &east).is_ok());
+    let head = &west[..west.find("[[route]]").expect("routes")];
+    let starter = head
+        .replace("name = \"E1\"\nlength_m = 300\nleft = \"h\"\nright = \"i\"", "name = \"X1\"\nlength_m = 100\nleft = \"h\"\nright = \"x\"\n\n[[circuit]]\nname = \"X2\"\nlength_m = 50\nleft = \"x\"\nright = \"i\"")
+        .replace("circuits = [\"E1\", \"E2\"]", "circuits = [\"E2\"]");
+    let route = |name: &str, entry: &str, path: &str| {
+        format!(
+            "[[route]]\nname = \"{name}\"\nentry = \"{entry}\"\npath = [{path}]\nshort_overlap = \"advanced starter\"\n"
+        )
+    };
+    let station = |slow: u16| {
+        let routes = [route("2-X", "2T", "\"P2T\", \"X1\""), route("X-E", "X1", "\"X2\"")].concat();
+        read(&format!("{starter}{routes}").replace("reverse_kmh = 45", &format!("reverse_kmh = {slow}")))
+    };
+    refused(
+        &station(45),
+        &east,
+        "the neighbour lets one run at 75 km/h whose tail is still in route 2-X, which is for 45",
+    );
+    held(&station(75), &east).expect("as fast as the line");
+    let values = &west[west.find("longest_train_m").expect("values")..west.find("[speed]").expect("speeds")];
+    let post = |kmh: u16, metres: u16| {
+        let circuit = |name: &str, length: u16, left: &str, right: &str| {
+            format!(
+                "[[circuit]]\nname = \"{name}\"\nlength_m = {length}\ngradient = -10\nleft = \"{left}\"\nright = \"{right}\"\n"
+            )
+        };
+        let circuits =
+            [circuit("W1", 900, "a", "b"), circuit("M", metres, "b", "i"), circuit("E2", 300, "i", "j")].concat();
+        let ends = ["a", "j"].map(|joint| format!("[[end]]\njoint = \"{joint}\"\nkind = \"line\"\n")).concat();
+        let lines = format!(
+            "[[segment]]\nname = \"West\"\ncircuits = [\"W1\"]\nspeed_kmh = {kmh}\n[[segment]]\nname = \"East\"\nline = \"middle\"\nshared = [\"E2\"]\ncircuits = [\"E2\"]\n"
+        );
+        read(&format!(
+            "name = \"Post\"\n{values}[speed]\nline_kmh = 75\n{circuits}{ends}{lines}{}",
+            route("W-E", "W1", "\"M\"")
+        ))
+    };
+    refused(
+        &post(45, 100),
+        &east,
+        "the neighbour lets one run at 75 km/h whose tail is still in segment West, which is for 45",
+    );
+    held(&post(75, 100), &east).expect("as fast as the line");
+    held(&post(45, 200), &east).expect("as long as a train");
+}
+
+/// Approaches, releases and circuits are as long as the trains ask for that come in.
+#[test]
+fn trains_of_the_neighbour_are_longer_shorter_or_lost_for_longer() {
+    let one = station("One", "", "line = \"b\"");
+    let other = renamed(&neighbour("line = \"b\""), &[("a", "j")]);
+    let changed = |change: fn(&mut atc_layout::form::Station)| {
+        let mut it = other.clone();
+        change(&mut it.station);
+        it
+    };
+    let lost = changed(|it| (it.times.shunt_loss_ms.value, it.times.clear_ms.value) = (2000, 4000));
+    refused(&one, &lost, "trains of Neighbour may be lost for 2000 ms, and One counts on 1000 ms");
+    let long = changed(|it| it.longest_train_m = Some(At::derived(201)));
+    refused(&one, &long, "trains of Neighbour are up to 201 m long, and One counts on 200 m");
+    let mut short = one.clone();
+    short.station.shortest_train_m = Some(At::derived(40));
+    refused(
+        &short,
+        &other,
+        "One counts on trains of at least 40 m, and Neighbour does not say how short its trains are",
+    );
+    let shorter = changed(|it| it.shortest_train_m = Some(At::derived(39)));
+    refused(&short, &shorter, "and Neighbour has trains of 39 m");
+    held(&short, &changed(|it| it.shortest_train_m = Some(At::derived(40)))).expect("as long");
+}
+
 /// The neighbour's trains may run on for longer, and be lost for longer, than the station's own.
 #[test]
 fn times_of_the_neighbours_trains() {
@@ -280,7 +360,9 @@ fn tails_that_the_neighbour_does_not_see() {
         segments.for_each(|segment| segment.speed_kmh = Some(At::derived(45)));
         slow
     };
-    assert!(held(&slow(&one), &slow(&long)).is_ok() && held(&slow(&all), &slow(&three)).is_ok());
+    let mut both = one.clone();
+    both.station.longest_train_m = Some(At::derived(301));
+    assert!(held(&slow(&both), &slow(&long)).is_ok() && held(&slow(&all), &slow(&three)).is_ok());
 }
 
 /// A tail that still lies on this side of the border is not seen on the other: the line has one speed.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use atc_layout::Description;
 use atc_layout::form::{EndKind, Position};
 use atc_layout::import::{Imported, railml};
 use atc_layout::model::{Guard, Model, Route};
+use atc_layout::{Description, Rule};
 
 const HEAD_ON: &str = include_str!("files/head-on.railml");
 const SHORT: &str = include_str!("files/short2.railml");
@@ -171,7 +171,10 @@ fn times_of_sections_are_kept() {
 #[test]
 fn over_a_scissors_crossover_no_point_is_a_guard_that_leads_under_the_train() {
     let description = Description::from_toml("scissors.toml", SCISSORS).unwrap_or_else(|errors| panic!("{errors}"));
-    let model = description.model().unwrap_or_else(|errors| panic!("{errors}"));
+    // What may stand in the dead ends faces no signal: a layout must say why that is enough.
+    let errors = description.model().expect_err("no reason is given");
+    assert!(errors.problems.iter().all(|problem| problem.rule == Rule::NoFlank), "{errors}");
+    let model = description.tracks().unwrap_or_else(|errors| panic!("{errors}"));
     let route = &model.routes[0];
     let held = |name: &str| {
         let point = model.points.iter().position(|point| point.name == name).expect("it is there");
@@ -180,7 +183,8 @@ fn over_a_scissors_crossover_no_point_is_a_guard_that_leads_under_the_train() {
     assert_eq!(["1a", "1b"].map(held), [Some(Position::Reverse); 2]);
     assert_eq!(["2a", "2b"].map(held), [Some(Position::Normal); 2], "as the table of such a station has them");
     let guards: Vec<&Guard> = route.flanks.iter().flat_map(|flank| &flank.guards).collect();
-    assert_eq!(guards, [&Guard::Buffer, &Guard::Buffer]);
+    let circuit = |name: &str| model.circuits.iter().position(|circuit| circuit.name == name).expect("it is there");
+    assert_eq!(guards, [&Guard::Standing(circuit("AR")), &Guard::Standing(circuit("BL"))]);
 }
 
 #[test]

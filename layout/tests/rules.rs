@@ -317,6 +317,30 @@ fn no_flank() {
     );
 }
 
+/// The thirteenth attack: a loop between two points of one path, which the route does not hold. A train that has come into it and changes ends
+/// faces no signal.
+#[test]
+fn no_flank_for_a_loop_beside_the_path() {
+    let through = format!(
+        "{LOOP}\n[[route]]\nname = \"W-E\"\nsignal = \"W\"\nentry = \"W1\"\npath = [\"P1T\", \"1T\", \"P2T\"]\nshort_overlap = \"plain line\"\n"
+    );
+    let no_way_back = |text: &str| {
+        let (from, to) = (text.find("name = \"2-W\"").expect("there"), text.len());
+        let start = text[..from].rfind("[[route]]").expect("its table");
+        let end = text[from..to].find("[[route]]").map_or(to, |at| from + at);
+        format!("{}{}", &text[..start], &text[end..])
+    };
+    let reason =
+        "reverse_unprotected = \"trains in 2T obey its signal and are braked by ATC; no vehicle is parked there\"\n";
+    let silent = change(&no_way_back(&through), "name = \"P1\"", reason, "");
+    breaks(&silent, Rule::NoFlank, "and a vehicle may stand in 2T that faces no signal there");
+    breaks(
+        &change(&through, "name = \"P1\"", reason, ""),
+        Rule::NoFlank,
+        "only signal 2W at stop keeps vehicles off it",
+    );
+}
+
 #[test]
 fn overlap_too_short() {
     breaks(

@@ -66,6 +66,7 @@ rules! {
     TurnPromised, "turn-promised", Engineering, "Plain line turns after no less than the line promises its trains.";
     Brake, "brake", Engineering, "The ground counts on no harder braking than trains do.";
     FromTelegrams, "from-telegrams", Engineering, "A train that comes from telegrams to codes has the room that the distances of the codes hold.";
+    HeardBeyond, "heard-beyond", Engineering, "The distances of codes hold for how far beyond its circuit a code is heard.";
     ShuntLoss, "shunt-loss", Engineering, "A train's shunt is lost for no longer than the ground counts on.";
     LossWithinClear, "loss-within-clear", Engineering, "T_clear is at least twice the longest loss of a train's shunt, and exceeds it by two cycles.";
     Gradient, "gradient", Engineering, "No circuit is steeper than what trains assume.";
@@ -79,7 +80,8 @@ rules! {
     TelegramMissing, "telegram-missing", Engineering, "A circuit in which trains run has a section number for their direction of travel.";
     TelegramSection, "telegram-section", Engineering, "A section number is that of a described section.";
     SectionLength, "section-length", Engineering, "Sub telegrams give each circuit the length that its layout gives it.";
-    SectionGradient, "section-gradient", Engineering, "Sub telegrams call no circuit less steep than it is.";
+    SectionGradient, "section-gradient", Engineering, "Sub telegrams call no circuit, and none ahead that it may be granted, less steep than it is.";
+    SectionLimit, "section-limit", Engineering, "The layout lets no train run faster than the sub telegrams of a circuit: codes do not have their limit.";
     BorderNames, "border-names", Form, "A border names stations, a line and a segment that there are.";
     BorderMissing, "border-missing", Engineering, "A line that two stations name is a border of the line.";
     BorderViews, "border-views", Engineering, "Two stations see the line between them so that no stretch of it is seen by neither.";

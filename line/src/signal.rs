@@ -297,6 +297,11 @@ impl Signal {
         self.sections.clone()
     }
 
+    /// How far beyond the end of its circuit a train hears, in metres.
+    pub const fn heard_beyond(&self) -> Metres {
+        self.heard_beyond
+    }
+
     /// The length of its longest section.
     pub fn longest(&self) -> Option<u16> {
         self.sections.iter().map(|section| section.length_m).max()

@@ -88,6 +88,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     LineWithoutSegment => (Asked::Engineering, Stage::Plan, Scope::File);
     NoRoute => (Asked::Form, Stage::Room, Scope::File);
     TooMany => (Asked::Form, Stage::Room, Scope::File);
+    PlanAgainstTracks => (Asked::Engineering, Stage::Plan, Scope::Routes);
 }
 
 rules! { PLAN, plan_is_complete, Kernel, (Asked, Scope), [];

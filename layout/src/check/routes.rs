@@ -64,6 +64,10 @@ fn flanks(model: &Model, route: &Route, problems: &mut Vec<Problem>) {
                     (format!("only signal {signal} at stop keeps vehicles off it"), "if that is enough,".to_owned())
                 }
                 Guard::Line => ("nothing keeps vehicles off it".to_owned(), "mend the tracks, or".to_owned()),
+                Guard::Standing(circuit) => {
+                    let circuit = &model.circuits[*circuit].name;
+                    (format!("a vehicle may stand in {circuit} that faces no signal there"), "if none can,".to_owned())
+                }
             };
             let leg = word(flank.leg);
             let what = format!("route {} runs past the {leg} leg of point {point}, and {found}", route.name);

@@ -43,7 +43,9 @@ impl Walk<'_> {
         }
         let at = &self.graph.joints[joint];
         let Some(next) = at.tracks.iter().copied().find(|next| *next != track) else {
-            self.guards.push(if at.end == Some(EndKind::Buffer) { Guard::Buffer } else { Guard::Line });
+            let guard =
+                if at.end == Some(EndKind::Buffer) { self.or_standing(track, Guard::Buffer) } else { Guard::Line };
+            self.guards.push(guard);
             return;
         };
         let circuit = self.graph.tracks[next].circuit;
@@ -66,13 +68,20 @@ impl Walk<'_> {
         let (away, leg) = if joint == normal { (Position::Reverse, reverse) } else { (Position::Normal, normal) };
         if self.path.points.contains_key(&point) {
             // The path runs over it: either it leads away from here, or the path itself comes from here.
-            self.guards.push(Guard::Own);
+            let guard = self.or_standing(track, Guard::Own);
+            self.guards.push(guard);
         } else if self.leads_onto_the_path(next, leg, &mut BTreeSet::new()) {
             // Over a scissors crossover both positions lead under the train: what keeps vehicles off is farther away.
             self.on(next, joint);
         } else {
             self.guards.push(Guard::Point(point, away));
         }
+    }
+
+    /// What keeps off where the way outward ends behind `track`: no signal was met, so whatever stands there may come.
+    fn or_standing(&self, track: usize, guard: Guard) -> Guard {
+        let circuit = self.graph.tracks[track].circuit;
+        if self.path.circuits.contains(&circuit) { guard } else { Guard::Standing(circuit) }
     }
 
     /// Whether a vehicle that leaves `track` over `joint` comes onto a circuit of the path, over a crossing, before a signal stops it.

@@ -123,6 +123,11 @@ pub fn values(station: &Station, problems: &mut Vec<Problem>) -> (Values, Cycle)
         braking,
         least_overlap: Metres(station.overlaps.least_m.value),
         longest_train: station.longest_train_m.as_ref().map(|length| Metres(length.value)),
+        shortest_train: station.shortest_train_m.as_ref().map(|length| Metres(length.value)),
+        strongest_mm_s2: {
+            let braking = &station.braking;
+            braking.strongest_mm_s2.as_ref().unwrap_or(&braking.deceleration_mm_s2).value
+        },
     };
     (values, cycle)
 }

@@ -31,7 +31,7 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
                 Guard::Point(point, position) => {
                     route.path.iter().any(|place| place.positions.get(point) == Some(position))
                 }
-                Guard::Signal(_) | Guard::Line => false,
+                Guard::Signal(_) | Guard::Line | Guard::Standing(_) => false,
                 Guard::Own | Guard::Buffer | Guard::Declared(_) => true,
             };
             if !flank.guards.iter().all(kept) {

@@ -9,9 +9,12 @@ mod ranks;
 mod telegrams;
 mod trains;
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
+use atc_kernel::interlocking::Heading;
+use atc_layout::form::Circuit;
 use atc_layout::import::read_any;
 use atc_layout::model::Model;
 use atc_layout::{Description, Errors};
@@ -53,6 +56,19 @@ impl Station {
         let problems = description.compile().err().map(|errors| errors.problems).unwrap_or_default();
         let model = if problems.is_empty() { description.model().ok() } else { None };
         Ok(Self { description, model, problems, code_speeds })
+    }
+
+    /// The circuits that a train in `circuit` may be granted, its own among them; the own one alone of a layout that breaks a rule.
+    fn ahead(&self, circuit: &Circuit, heading: Heading) -> BTreeSet<usize> {
+        let number = self.description.station.circuits.iter().position(|other| other.name == circuit.name);
+        let Some(number) = number else { return BTreeSet::new() };
+        self.model.as_ref().map_or_else(|| [number].into(), |model| model.ahead(number, heading))
+    }
+
+    /// The highest speed of a train in `circuit`, in km/h; 0 of a layout that breaks a rule.
+    fn fastest_kmh(&self, circuit: &Circuit, heading: Heading) -> u16 {
+        let number = self.description.station.circuits.iter().position(|other| other.name == circuit.name);
+        self.model.as_ref().zip(number).map_or(0, |(model, number)| model.fastest_kmh(number, heading))
     }
 
     /// What it is called.

@@ -88,6 +88,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
         judged(Rule::TelegramSection, scope(), described(&|| unknown(line, &sent, &sections))),
         judged(Rule::SectionLength, scope(), described(&|| lengths(line, &sent, &sections))),
         judged(Rule::SectionGradient, scope(), described(&|| steeper(line, &sent, &sections))),
+        judged(Rule::SectionLimit, scope(), described(&|| faster(line, &sent, &sections))),
     ]
 }
 
@@ -261,19 +262,43 @@ fn lengths(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Find
         .collect()
 }
 
+/// The worst of the circuit and of those ahead: the pattern has the gradient of the train's own section down to the point at which it stops.
 fn steeper(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Finding> {
     described(sent, sections)
         .filter_map(|(one, place, section)| {
-            let given = one.circuit.gradient.as_ref();
-            let least = given.map_or(0, |gradient| -i16::from(gradient.value).abs());
+            let circuits = &one.station.description().station.circuits;
+            let ahead = one.station.ahead(one.circuit, one.heading);
+            let fall = |circuit: &&Circuit| circuit.gradient.as_ref().map_or(0, |given| i16::from(given.value).abs());
+            let steepest = ahead.iter().filter_map(|circuit| circuits.get(*circuit)).max_by_key(fall)?;
+            let least = -fall(&steepest);
             (i16::from(section.gradient_permille) > least).then(|| {
+                let where_to =
+                    if steepest == one.circuit { String::new() } else { format!(", ahead of {}", one.circuit.name) };
                 let what = format!(
-                    "section {} is said to have {} ‰, and circuit {} may fall by {} ‰",
-                    section.number, section.gradient_permille, one.circuit.name, -least
+                    "section {} is said to have {} ‰, and circuit {} may fall by {} ‰{where_to}",
+                    section.number, section.gradient_permille, steepest.name, -least
                 );
                 let at = line.places().at(&format!("section[{place}].gradient_permille"));
-                let against = given.map_or(&one.circuit.name.span, |gradient| &gradient.span);
+                let against = steepest.gradient.as_ref().map_or(&steepest.name.span, |gradient| &gradient.span);
                 finding(at, one.station.at(against), what, format!("gradient_permille must be at most {least}"))
+            })
+        })
+        .collect()
+}
+
+/// A train by codes hears no limit of a section: what the layout lets it run must be enough.
+fn faster(line: &Line, sent: &[Sent<'_>], sections: &[LineSection]) -> Vec<Finding> {
+    described(sent, sections)
+        .filter_map(|(one, place, section)| {
+            let kmh = one.station.fastest_kmh(one.circuit, one.heading);
+            (f64::from(kmh) > section.limit_km_h).then(|| {
+                let what = format!(
+                    "section {} is for {} km/h, and the layout lets trains run through {} at {kmh} km/h: a train by codes hears nothing of the limit",
+                    section.number, section.limit_km_h, one.circuit.name
+                );
+                let right = format!("give the routes or the line over it a speed_kmh of at most {}", section.limit_km_h);
+                let at = line.places().at(&format!("section[{place}].limit_km_h"));
+                finding(at, one.station.at(&one.circuit.name.span), what, right)
             })
         })
         .collect()

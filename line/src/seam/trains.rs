@@ -49,6 +49,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
         ),
         judged(Rule::Brake, scope(), each(&|station| brake(line, station))),
         judged(Rule::FromTelegrams, scope(), with_signal(&|station, signal| from_telegrams(line, station, signal))),
+        judged(Rule::HeardBeyond, scope(), with_signal(&|station, signal| heard_beyond(line, station, signal))),
         judged(Rule::ShuntLoss, scope(), with_loss(&|station, loss| shunt_loss(line, station, loss))),
         judged(Rule::LossWithinClear, scope(), with_loss(&|station, loss| clear(line, station, loss))),
         judged(
@@ -180,6 +181,20 @@ fn from_telegrams(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> 
     );
     let right = format!("strongest_mm_s2 of [braking] must be at least {pattern}");
     vec![finding(one.station.at(&at.span), line.places().at("signal.brake_mm_s2"), what, right)]
+}
+
+/// Codes are on the carriers of the telegrams, and are heard as far beyond a joint.
+fn heard_beyond(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {
+    let counted = &one.station.description().station.braking.heard_beyond_m;
+    let heard = signal.heard_beyond().0;
+    if heard <= counted.value {
+        return Vec::new();
+    }
+    let what =
+        format!("{} counts on codes that are heard {counted} m beyond their circuits, and it is {heard} m", one.name());
+    let right =
+        format!("heard_beyond_m of [braking] must be at least {heard}, and the metres from antenna to nose more");
+    vec![finding(one.station.at(&counted.span), line.places().at("signal.heard_beyond_exit_m"), what, right)]
 }
 
 fn shunt_loss(line: &Line, one: Sound<'_>, loss: u32) -> Vec<Finding> {

@@ -214,6 +214,13 @@ fn what_telegrams_say_of_a_circuit_and_it_is_not() {
         line,
         west,
     );
+    // A train in W1 that goes out may be granted W2, which falls.
+    let [flat, fall] = [-12, -9].map(|permille| format!("number = 3, length_m = 300, gradient_permille = {permille}"));
+    found("section-gradient", &[(line, &flat, &fall)], line, west);
+    // A train by codes hears nothing of a section's limit: 1T is run through at 75 km/h.
+    let [fast, slow] =
+        [75, 55].map(|kmh| format!("number = 8, length_m = 400, gradient_permille = -12, limit_km_h = {kmh}"));
+    found("section-limit", &[(line, &fast, &slow)], line, west);
     // A circuit of which nobody says how steep it is is level, and not a rise.
     let steeper = (west, "name = \"W1\"\nlength_m = 300", "name = \"W1\"\nlength_m = 300\ngradient = -10");
     let level = (west, "name = \"W2\"\nlength_m = 300\ngradient = -10", "name = \"W2\"\nlength_m = 300");
@@ -257,7 +264,6 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
             west,
             line,
         ),
-        ("train-length", &[(east, "longest_train_m = 200", "longest_train_m = 199")], east, line),
         (
             "shunt-loss",
             &[
@@ -265,6 +271,12 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
                 (west, "clear_ms = 2000", "clear_ms = 2100"),
                 (east, "clear_ms = 2000", "clear_ms = 2100"),
             ],
+            west,
+            line,
+        ),
+        (
+            "heard-beyond",
+            &[(west, "heard_beyond_m = 10", "heard_beyond_m = 9"), (east, "heard_beyond_m = 10", "heard_beyond_m = 9")],
             west,
             line,
         ),
@@ -297,6 +309,9 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
         assert!(findings.iter().any(|one| two(&one)), "{rule}: {findings:?}");
         assert!(findings.iter().all(|one| one.against.is_some()), "{rule}: {findings:?}");
     }
+    // Its neighbour's trains are longer, too.
+    let shorter = broken(&[(east, "longest_train_m = 200", "longest_train_m = 199")]).0;
+    assert_eq!(shorter, ["border-views", "train-length"].map(String::from).into());
 }
 
 /// A mapping of codes that is never faster is as good as the same table.

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use atc_kernel::interlocking::{MAX_CODES, Station};
+use atc_kernel::interlocking::{Heading, MAX_CODES, Station};
+use atc_layout::model::Model;
 use atc_layout::{Description, Errors, Names, form};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
@@ -36,17 +37,36 @@ pub struct Said {
     pub telegram_age_ms: u32,
     /// The length of the longest train, in metres, if the file has one.
     pub longest_train_m: Option<u16>,
-    /// The steepest gradient of each circuit in thousandths, whichever way it falls: 0 to 128; 0 where the file has none.
-    pub falls_permille: Vec<u8>,
+    /// What trains find in each circuit, and ahead of it: of those that travel to the left, and of those that travel to the right.
+    pub facing: [Vec<Found>; 2],
+}
+
+/// What a train finds that stands in a circuit and travels one way.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    /// The steepest gradient of the circuit and of all that the train may be granted, in thousandths, whichever way it falls: 0 to 128. A circuit
+    /// of which the file has none counts as level.
+    pub fall_permille: u8,
+    /// The highest speed at which it may run there, in km/h; 0 where no train runs.
+    pub fastest_kmh: u16,
 }
 
 impl Said {
-    fn of(station: &form::Station, telegram_age_ms: u32) -> Self {
-        let fall = |circuit: &form::Circuit| circuit.gradient.as_ref().map_or(0, |given| given.value.unsigned_abs());
+    fn of(station: &form::Station, model: &Model) -> Self {
+        let fall = |circuit: usize| {
+            let gradient = station.circuits.get(circuit).and_then(|given| given.gradient.as_ref());
+            gradient.map_or(0, |given| given.value.unsigned_abs())
+        };
+        let found = |circuit: usize, heading: Heading| Found {
+            fall_permille: model.ahead(circuit, heading).into_iter().map(fall).max().unwrap_or(0),
+            fastest_kmh: model.fastest_kmh(circuit, heading),
+        };
+        let facing = [Heading::Left, Heading::Right]
+            .map(|heading| (0..station.circuits.len()).map(|circuit| found(circuit, heading)).collect());
         Self {
-            telegram_age_ms,
+            telegram_age_ms: model.values.telegram_age_ms,
             longest_train_m: station.longest_train_m.as_ref().map(|length| length.value),
-            falls_permille: station.circuits.iter().map(fall).collect(),
+            facing,
         }
     }
 }
@@ -62,7 +82,7 @@ impl Config {
                 let compiled = description.compile().map_err(|errors| sentences(&errors))?;
                 let values = &compiled.model.values;
                 let (speeds_kmh, cycle_ms) = (values.speeds_kmh, values.cycle_ms);
-                let said = Some(Said::of(&description.station, values.telegram_age_ms));
+                let said = Some(Said::of(&description.station, &compiled.model));
                 Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms, said })
             }
             Self::Plan(plan) => {

@@ -18,7 +18,7 @@ use atc_layout::Names;
 
 use config::Opened;
 
-pub use config::{Config, Said};
+pub use config::{Config, Found, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
 pub use words::{Heading, Phase, Reason, Side, Travel};
 

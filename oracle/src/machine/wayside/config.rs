@@ -16,7 +16,7 @@ use atc_line::refusal::{Refusal, fit, gradient, metres, tenths};
 
 use crate::kmh::Kmh;
 use crate::machine::block;
-use crate::machine::interlocking::{self, Interlocked, Travel};
+use crate::machine::interlocking::{self, Found, Interlocked, Travel};
 use crate::machine::train::Codes;
 use crate::names::{self, Named};
 
@@ -346,14 +346,10 @@ impl Signals {
         for (name, its) in &self.circuits {
             let field = format!("signals.circuits.{name}");
             let number = usize::from(station.circuit(name, "signals.circuits")?.number());
-            let fall = station.said().and_then(|said| said.falls_permille.get(number).copied());
-            for (facing, side) in [(its.left, "left"), (its.right, "right")] {
-                // The layout does not say which way it falls.
-                if let Some(fall) = fall.map(i32::from).filter(|fall| facing.gradient_permille > -fall) {
-                    return Err(format!(
-                        "{field}.{side}.gradient_permille is {}; it must be at most {}: the circuit has {fall} ‰ in the layout, whichever way it falls",
-                        facing.gradient_permille, -fall
-                    ));
+            let found = |side: usize| station.said().and_then(|said| said.facing[side].get(number));
+            for (facing, side, found) in [(its.left, "left", found(0)), (its.right, "right", found(1))] {
+                if let Some(wrong) = found.and_then(|found| facing.wrong(found)) {
+                    return Err(format!("{field}.{side}.{wrong}"));
                 }
             }
             let left = its.left.kernel(&format!("{field}.left"), &aspects)?;
@@ -373,6 +369,25 @@ impl Signals {
 }
 
 impl FacingSignals {
+    /// What trains would be told wrongly, against the layout's file.
+    fn wrong(&self, found: &Found) -> Option<String> {
+        let (fall, fastest) = (i32::from(found.fall_permille), found.fastest_kmh);
+        if self.gradient_permille > -fall {
+            // The layout does not say which way it falls.
+            return Some(format!(
+                "gradient_permille is {}; it must be at most {}: the layout has {fall} ‰ in the circuit or ahead of it, whichever way that falls",
+                self.gradient_permille, -fall
+            ));
+        }
+        // A train by codes hears nothing of this limit.
+        (self.curve_km_h < Kmh::from(KmhTenths(fastest.saturating_mul(10)))).then(|| {
+            format!(
+                "curve_km_h is {}; it must be at least {fastest} km/h, at which the layout lets trains run there, by codes too",
+                self.curve_km_h
+            )
+        })
+    }
+
     fn kernel(&self, field: &str, aspects: &AspectTable) -> Result<atc_kernel::wayside::Facing, String> {
         let speed = tenths(&format!("{field}.curve_km_h"), self.curve_km_h)?;
         let curve: Option<AspectId> = aspects.aspect(speed);

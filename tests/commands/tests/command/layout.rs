@@ -242,6 +242,18 @@ fn two_descriptions_of_one_station_are_compared_cell_by_cell() {
     let output = layout(folder.path(), &["compare", "passing-loop.toml", "other.toml"]);
     assert_eq!(output.status.code(), Some(1), "they differ");
     assert_eq!(text(&output.stdout), "circuit W2: length m: 300 | 310\n");
+    // What no cell of the table shows.
+    let (train, _) = changed(
+        "longest_train_m = 200\n",
+        "longest_train_m = 190\nshortest_train_m = 20\n\n[overlaps]\nleast_m = 40\n\n[braking]\nstrongest_mm_s2 = 800\n",
+    );
+    fs::write(folder.path().join("other.toml"), train).expect("written");
+    let output = layout(folder.path(), &["compare", "passing-loop.toml", "other.toml"]);
+    let said = text(&output.stdout);
+    for differs in ["longest train m: 200 | 190", "shortest train m: nothing | 20", "least overlap m: 50 | 40"] {
+        assert!(said.contains(&format!("station: {differs}\n")), "{said}");
+    }
+    assert!(!said.contains("strongest"), "as strong as all are: {said}");
     let missing = layout(folder.path(), &["compare", "passing-loop.toml", "terminus.toml"]);
     assert_eq!(missing.status.code(), Some(1));
     assert!(

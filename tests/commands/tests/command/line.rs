@@ -37,7 +37,7 @@ fn changed(from: &str, to: &str) -> tempfile::TempDir {
 fn the_example_breaks_no_rule() {
     let output = check(&root(), &["line/examples/line.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert_eq!(text(&output.stdout), "line/examples/line.toml: no broken rule; 45 checks met\n");
+    assert_eq!(text(&output.stdout), "line/examples/line.toml: no broken rule; 47 checks met\n");
     assert!(output.stderr.is_empty());
     let readme = fs::read_to_string(root().join("line/README.md")).expect("there");
     assert!(readme.contains(text(&output.stdout)));
@@ -58,7 +58,7 @@ fn a_rule_between_line_and_station_is_told_with_both_places() {
     let folder = changed("life_ms = 2500", "life_ms = 2850");
     let output = check(folder.path(), &["line.toml"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(text(&output.stdout).starts_with("line.toml: 1 broken rule; 44 checks met\n"), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).starts_with("line.toml: 1 broken rule; 46 checks met\n"), "{}", text(&output.stdout));
     let lines: Vec<_> = text(&output.stderr).lines().collect();
     assert_eq!(lines.len(), 2, "{lines:?}");
     assert!(

@@ -408,28 +408,31 @@ fn the_device_counts_on_what_the_layout_says() {
     assert_eq!((fall("W2"), fall("1T")), (10, 0));
     config["layout"] = serde_json::to_value(station).expect("JSON");
     let blocks = json!([{"circuits": ["W2"], "max_trains": 1, "tail_hold_sections": 1}, {"circuits": ["W1"], "max_trains": 1, "tail_hold_sections": 1}]);
-    let reason = |train_m: i64, circuit: &str, gradient_permille: i16| {
+    let told = |train_m: i64, circuit: &str, gradient_permille: i16, curve_km_h: i16| {
         let mut config = config.clone();
         config["counted"] =
             json!({"segment": "West", "travel": "toward", "direction": "up", "train_m": train_m, "blocks": blocks});
-        let facing =
-            |section: u16| json!({"section": section, "gradient_permille": gradient_permille, "curve_km_h": 75});
+        let facing = |section: u16| json!({"section": section, "gradient_permille": gradient_permille, "curve_km_h": curve_km_h});
         config["signals"]["circuits"] = json!({circuit: {"left": facing(1), "right": facing(2)}});
         converse(&[&start("wayside", &config.to_string())])[0].clone()
     };
+    let reason = |train_m: i64, circuit: &str, gradient_permille: i16| told(train_m, circuit, gradient_permille, 75);
     let short = reason(199, "W2", -10);
     assert!(
         short.contains("counted.train_m is 199 m; it must be at least the layout's longest_train_m, 200 m"),
         "{short}"
     );
-    for (circuit, gradient, most) in [("W2", -9, "-10"), ("W2", 10, "-10"), ("1T", 1, "0")] {
+    for (circuit, gradient, most) in [("W2", -9, "-10"), ("W2", 10, "-10"), ("1T", -9, "-10")] {
         let steep = reason(200, circuit, gradient);
         let says =
             format!("signals.circuits.{circuit}.left.gradient_permille is {gradient}; it must be at most {most}");
         assert!(steep.contains(&says), "{steep}");
     }
+    // Trains run there at 75 km/h, and those by codes hear nothing of a lower limit in the sub telegrams.
+    let slow = told(200, "1T", -10, 45);
+    assert!(slow.contains("signals.circuits.1T.left.curve_km_h is 45; it must be at least 75 km/h"), "{slow}");
     // What is looked at next: the station has routes out to that line.
-    for (circuit, gradient) in [("W2", -10), ("1T", 0)] {
+    for (circuit, gradient) in [("W2", -10), ("1T", -10)] {
         let right = reason(200, circuit, gradient);
         assert!(right.contains("route 1-W needs segment West against counted.travel"), "{right}");
     }

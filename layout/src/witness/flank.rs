@@ -1,0 +1,108 @@
+//! Vehicles that come onto a path from aside, or against it.
+
+use std::collections::BTreeSet;
+
+use super::Sides;
+use super::routes::Way;
+use super::tracks::{Stand, Vehicle};
+use crate::form::Position;
+use crate::problem::Problem;
+
+/// What a search for vehicles looks at.
+struct Path<'a> {
+    way: &'a Way,
+    circuits: BTreeSet<usize>,
+    stand: Stand,
+    /// Where signals stand: the joint, and the circuit in rear of it.
+    signals: &'a BTreeSet<(usize, usize)>,
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+    pub(super) fn flanks(&self, ways: &[Option<Way>], found: &mut Vec<Problem>) {
+        let signals: BTreeSet<(usize, usize)> = ways
+            .iter()
+            .enumerate()
+            .filter_map(|(route, way)| {
+                Some((way.as_ref()?.start, super::members(self.plan.routes[route].entry).next()?))
+            })
+            .collect();
+        for (number, way) in ways.iter().enumerate() {
+            let (Some(way), Some(circuits)) = (way, self.path(number)) else { continue };
+            let path =
+                Path { way, circuits: circuits.into_iter().collect(), stand: self.held(number), signals: &signals };
+            // Onto plain line goes whoever has its direction: that is no matter of signals.
+            let out = self.plan.routes[number].to != atc_kernel::interlocking::SegmentSet::EMPTY;
+            for vehicle in self.intruders(&path, out) {
+                if let Some(joint) = self.comes_from(&path, vehicle, &mut BTreeSet::new()) {
+                    let (onto, from) =
+                        (self.tracks.joints[self.tracks.ahead(vehicle)].as_str(), &self.tracks.joints[joint]);
+                    let what = format!(
+                        "a vehicle that comes in at {from} runs onto its path at {onto}, and nothing keeps it off"
+                    );
+                    found.push(self.differs(number, &what));
+                }
+            }
+        }
+    }
+
+    /// The vehicles outside the path that run onto it with their next step, but for those that the file gives a reason for.
+    fn intruders(&self, path: &Path<'_>, out: bool) -> Vec<Vehicle> {
+        let mut all = Vec::new();
+        for piece in 0..self.tracks.pieces.len() {
+            for toward in [0, 1] {
+                let vehicle = Vehicle { piece, toward };
+                let outside = !path.circuits.contains(&self.tracks.piece(vehicle).circuit);
+                let at_end = out && self.tracks.ahead(vehicle) == path.way.exit;
+                let onto = self
+                    .tracks
+                    .onward(vehicle)
+                    .filter(|next| path.circuits.contains(&self.tracks.piece(*next).circuit));
+                let dangerous = onto.into_iter().any(|next| !self.is_declared(path, next, &mut BTreeSet::new()));
+                if outside && !at_end && dangerous {
+                    all.push(vehicle);
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether all that a vehicle in a circuit of the path can do is to come to the way over a leg that the file gives a reason for.
+    fn is_declared(&self, path: &Path<'_>, vehicle: Vehicle, seen: &mut BTreeSet<Vehicle>) -> bool {
+        let piece = self.tracks.piece(vehicle);
+        let passed = |point: usize| {
+            path.way.run.iter().filter_map(|train| self.tracks.piece(*train).over).find(|(other, _)| *other == point)
+        };
+        if let Some((point, position)) = piece.over
+            && let Some((_, needs)) = passed(point)
+        {
+            let given = &self.station.points[point];
+            let reason =
+                if position == Position::Normal { &given.normal_unprotected } else { &given.reverse_unprotected };
+            return vehicle.toward == 0 && needs != position && reason.is_some();
+        }
+        if !path.circuits.contains(&piece.circuit) || !seen.insert(vehicle) {
+            return false;
+        }
+        let mut onward = self.tracks.onward(vehicle).peekable();
+        onward.peek().is_some() && onward.all(|next| self.is_declared(path, next, seen))
+    }
+
+    /// The joint at which a vehicle comes in that can get to here, past no signal and over no point that keeps it off.
+    fn comes_from(&self, path: &Path<'_>, vehicle: Vehicle, seen: &mut BTreeSet<Vehicle>) -> Option<usize> {
+        let circuit = self.tracks.piece(vehicle).circuit;
+        let stopped = path.signals.contains(&(self.tracks.ahead(vehicle), circuit));
+        // What runs on the path is the train itself.
+        if stopped
+            || path.circuits.contains(&circuit)
+            || self.tracks.diverts(vehicle, &path.stand)
+            || !seen.insert(vehicle)
+        {
+            return None;
+        }
+        let behind = self.tracks.behind(vehicle);
+        if self.tracks.is_line(behind) {
+            return Some(behind);
+        }
+        self.tracks.before(vehicle).find_map(|before| self.comes_from(path, before, seen))
+    }
+}

@@ -1,0 +1,364 @@
+//! A finished plan against the tracks of its file: the right one agrees, and each of these wrong ones does not.
+
+use atc_kernel::distance::Metres;
+use atc_kernel::interlocking::{
+    CircuitSet, Heading, PointSet, Positions, RouteSet, SegmentSet, SpeedCode, SpeedLimits,
+};
+use atc_kernel::time::Ticks;
+use atc_layout::witness::{Plan, differences};
+use atc_layout::{Compiled, Description};
+
+const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
+const JUNCTION: &str = include_str!("../../layouts/junction.toml");
+const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
+const STATION: &str = include_str!("../../layouts/station-30.toml");
+
+/// Two tracks and a crossover. Trains come in from the east on track B, and no signal stands there.
+const CROSSOVER: &str = r#"name = "Crossover"
+longest_train_m = 200
+[speed]
+line_kmh = 45
+[[circuit]]
+name = "A1"
+length_m = 600
+left = "a"
+right = "b"
+[[circuit]]
+name = "P1T"
+length_m = 60
+[[circuit]]
+name = "A2"
+length_m = 300
+left = "c"
+right = "d"
+[[circuit]]
+name = "B1"
+length_m = 300
+left = "e"
+right = "f"
+[[circuit]]
+name = "P2T"
+length_m = 60
+[[circuit]]
+name = "B2"
+length_m = 600
+left = "g"
+right = "h"
+[[point]]
+name = "P1"
+circuit = "P1T"
+toe = "b"
+normal = "c"
+reverse = "x"
+[[point]]
+name = "P2"
+circuit = "P2T"
+toe = "g"
+normal = "f"
+reverse = "x"
+[[end]]
+joint = "a"
+kind = "line"
+[[end]]
+joint = "d"
+kind = "buffer"
+[[end]]
+joint = "e"
+kind = "buffer"
+[[end]]
+joint = "h"
+kind = "line"
+[[segment]]
+name = "West"
+circuits = ["A1"]
+[[segment]]
+name = "East"
+circuits = ["B2"]
+[[route]]
+name = "W-A"
+entry = "A1"
+path = ["P1T", "A2"]
+short_overlap = "a buffer stop"
+[[route]]
+name = "A-W"
+entry = "A2"
+path = ["P1T"]
+short_overlap = "plain line begins there"
+[[route]]
+name = "B-E"
+entry = "B1"
+path = ["P2T"]
+short_overlap = "plain line begins there"
+"#;
+
+type Size = Plan<64, 16, 32, 8>;
+
+/// A wrong derivation: its name, the file, what it does to the plan, and what is told.
+type Wrong = (&'static str, &'static str, fn(&mut Size, &Numbers), &'static str);
+
+/// The places of names.
+struct Numbers(Compiled);
+
+impl Numbers {
+    fn of(text: &str) -> (Description, Self) {
+        let description = Description::from_toml("station.toml", text).unwrap_or_else(|errors| panic!("{errors}"));
+        let compiled = description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+        (description, Self(compiled))
+    }
+
+    fn at(names: &[String], name: &str) -> usize {
+        names.iter().position(|other| other == name).unwrap_or_else(|| panic!("no {name}"))
+    }
+
+    fn circuit(&self, name: &str) -> CircuitSet {
+        CircuitSet::nth(Self::at(&self.0.names.circuits, name))
+    }
+
+    fn route(&self, name: &str) -> usize {
+        Self::at(&self.0.names.routes, name)
+    }
+
+    fn point(&self, name: &str) -> PointSet {
+        PointSet::nth(Self::at(&self.0.names.points, name))
+    }
+}
+
+fn turned(positions: Positions) -> Positions {
+    Positions { normal: positions.reverse, reverse: positions.normal }
+}
+
+const WRONG: &[Wrong] = &[
+    (
+        "a point that is run over is not held",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].path[0].positions = Positions::NONE,
+        "no train runs over its path",
+    ),
+    (
+        "a point stands the other way",
+        LOOP,
+        |plan, it| {
+            let path = &mut plan.routes[it.route("W-2")].path[0];
+            path.positions = turned(path.positions);
+        },
+        "no train runs over its path",
+    ),
+    (
+        "two places of a path change places",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].path.swap(0, 1),
+        "no train runs over its path",
+    ),
+    (
+        "a path is one circuit short",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].length -= 1,
+        "its train comes to 1T, which is not beyond its end",
+    ),
+    (
+        "the entry is another one",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].entry = it.circuit("W2"),
+        "no train runs over its path",
+    ),
+    (
+        "the other direction of travel",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].heading = Heading::Left,
+        "to the other side than Left",
+    ),
+    (
+        "nothing beyond the end",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].beyond = CircuitSet::EMPTY,
+        "which is not beyond its end",
+    ),
+    (
+        "an overlap elsewhere",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].overlap.circuits = it.circuit("W2"),
+        "does not run over its overlap",
+    ),
+    (
+        "a point of an overlap stands the other way",
+        LOOP,
+        |plan, it| {
+            let overlap = &mut plan.routes[it.route("W-1")].overlap;
+            overlap.positions = turned(overlap.positions);
+        },
+        "does not run over its overlap",
+    ),
+    (
+        "it comes from nowhere",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].from = SegmentSet::EMPTY,
+        "that it comes from segment West is said",
+    ),
+    (
+        "it goes out to the other side",
+        LOOP,
+        |plan, it| plan.routes[it.route("1-E")].to = SegmentSet::nth(0),
+        "that it goes out to segment",
+    ),
+    (
+        "it goes out to nowhere",
+        LOOP,
+        |plan, it| plan.routes[it.route("1-E")].to = SegmentSet::EMPTY,
+        "that it goes out to segment East is said",
+    ),
+    (
+        "it goes on by a route elsewhere",
+        LOOP,
+        |plan, it| {
+            let other = RouteSet::nth(it.route("2-W"));
+            plan.routes[it.route("W-1")].continuing = other;
+        },
+        "route 2-W goes on elsewhere than it ends",
+    ),
+    (
+        "a flank point is not held",
+        CROSSOVER,
+        |plan, it| {
+            let place = &mut plan.routes[it.route("W-A")].path[0];
+            place.positions.normal = place.positions.normal.without(it.point("P2"));
+        },
+        "a vehicle that comes in at h runs onto its path at x, and nothing keeps it off",
+    ),
+    (
+        "a flank point stands the other way",
+        CROSSOVER,
+        |plan, it| {
+            let place = &mut plan.routes[it.route("W-A")].path[0];
+            place.positions.normal = place.positions.normal.without(it.point("P2"));
+            place.positions.reverse = place.positions.reverse.or(it.point("P2"));
+        },
+        "a vehicle that comes in at h runs onto its path at x, and nothing keeps it off",
+    ),
+    (
+        "no signal at the end of a track",
+        LOOP,
+        |plan, it| {
+            // The routes out of track 2 begin elsewhere: what stands there faces no signal.
+            for name in ["2-W", "2-E"] {
+                plan.routes[it.route(name)].entry = it.circuit("W2");
+            }
+        },
+        "no train runs over its path",
+    ),
+    (
+        "a point has no detector",
+        LOOP,
+        |plan, _| plan.points[0].detectors = CircuitSet::EMPTY,
+        "stands on it or fouls it, and is not detected there",
+    ),
+    (
+        "a point is held by no place",
+        TERMINUS,
+        |plan, _| {
+            for route in &mut plan.routes {
+                for place in &mut route.path {
+                    let first = PointSet::nth(0);
+                    place.positions = Positions {
+                        normal: place.positions.normal.without(first),
+                        reverse: place.positions.reverse.without(first),
+                    };
+                }
+            }
+        },
+        "may move under its train",
+    ),
+    (
+        "two circuits of a segment change places",
+        LOOP,
+        |plan, _| plan.segments[0].circuits.swap(0, 1),
+        "the file has other circuits than",
+    ),
+    (
+        "a segment to the other side",
+        LOOP,
+        |plan, _| plan.segments[0].outward = plan.segments[0].outward.opposite(),
+        "no train runs out of it",
+    ),
+    (
+        "the throat of a segment is elsewhere",
+        LOOP,
+        |plan, it| plan.segments[0].throat = it.circuit("2T"),
+        "no train runs out of it",
+    ),
+    ("a segment is shared", LOOP, |plan, _| plan.segments[0].shared = 1, "1 circuits are shared, and the file has 0"),
+    (
+        "an approach is the entry alone",
+        LOOP,
+        |plan, it| {
+            let route = &mut plan.routes[it.route("W-1")];
+            route.approach = route.entry;
+        },
+        "from the signal, and not in its approach",
+    ),
+    (
+        "a circuit has another length",
+        JUNCTION,
+        |plan, _| plan.lengths[1] = Metres(plan.lengths[1].0 + 1),
+        "m long, and the plan has",
+    ),
+    (
+        "a distance is too short",
+        JUNCTION,
+        |plan, _| plan.braking[3] = Metres(plan.braking[3].0 - 30),
+        "m, and the plan has",
+    ),
+    (
+        "a route is faster over reverse points",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-2")].speed = SpeedCode(6),
+        "its trains run at 75 km/h, and the file allows 45",
+    ),
+    ("a line has no limit", LOOP, |plan, _| plan.line = SpeedLimits::NONE, "90 km/h is its limit, and the file has 75"),
+    ("a circuit counts as clear at once", LOOP, |plan, _| plan.clear = 1, "clear_ms of the plan is 100 ms"),
+    ("a loss is shorter", LOOP, |plan, _| plan.loss = 1, "shunt_loss_ms of the plan is 100 ms"),
+    ("points settle at once", LOOP, |plan, _| plan.settle = 0, "settle_ms of the plan is 0 ms"),
+    (
+        "a route is released at once",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].release = Ticks(1),
+        "release_ms of the plan lets more happen",
+    ),
+    (
+        "points may take for ever",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].drive = Ticks(u16::MAX),
+        "drive_ms of the plan lets more happen",
+    ),
+    (
+        "every train is cab-signalled",
+        LOOP,
+        |plan, it| plan.routes[it.route("W-1")].cab_signalled = true,
+        "cab_signalled of the plan lets more happen",
+    ),
+];
+
+#[test]
+fn every_wrong_plan_is_found() {
+    let mut missed = Vec::new();
+    for (name, text, falsify, says) in WRONG {
+        let (description, numbers) = Numbers::of(text);
+        let mut plan = *numbers.0.plan;
+        falsify(&mut plan, &numbers);
+        assert_ne!(plan, *numbers.0.plan, "{name}");
+        let told: Vec<String> =
+            differences(&description.station, &plan).iter().map(|problem| problem.what.clone()).collect();
+        if !told.iter().any(|what| what.contains(says)) {
+            missed.push(format!("{name}: {told:?}"));
+        }
+    }
+    assert!(missed.is_empty(), "not found:\n{}", missed.join("\n"));
+}
+
+/// Compiling asks: a layout whose plan differs is refused. Here the right ones are not.
+#[test]
+fn right_plans_agree() {
+    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER] {
+        let (description, numbers) = Numbers::of(text);
+        assert_eq!(differences(&description.station, &numbers.0.plan), []);
+    }
+}
