@@ -55,7 +55,8 @@ pub fn join(mut runs: Vec<(String, Results)>) -> Result<Results, Vec<Fault>> {
         phases: Vec::new(),
     };
     let mut from: BTreeMap<String, usize> = BTreeMap::new();
-    for (place, run) in all.into_iter().enumerate() {
+    for (place, mut run) in all.into_iter().enumerate() {
+        run.provenance.tools = compared(&run);
         let mut seen = Seen { from: &mut from, names: &names, place, open: &mut open };
         campaigns(&mut joined.campaigns, run.campaigns, &mut seen);
         mutants(&mut joined.mutants, run.mutants, &mut seen);
@@ -110,6 +111,8 @@ fn check(runs: &[(String, Results)]) -> Result<(), Vec<Fault>> {
     };
     let mut faults = Vec::new();
     let of = |run: &Results| run.scope.shard().map_or(1, |shard: Shard| shard.of);
+    // Each tool, as the first shard that has it says.
+    let mut said: BTreeMap<String, (String, &String)> = BTreeMap::new();
     for (name, run) in runs {
         let mut fault = |text: String| faults.push(Fault::new(name, text));
         if let Scope::Part(part) = &run.scope {
@@ -143,13 +146,27 @@ fn check(runs: &[(String, Results)]) -> Result<(), Vec<Fault>> {
                 format!("{} is not what it is in {first}; run all shards on the same sources", differ.join(", "));
             fault(text);
         }
-        for tool in
-            mine.tools.iter().filter(|(tool, version)| theirs.tools.get(*tool).is_some_and(|other| other != *version))
-        {
-            fault(format!("{} is {}, and another version in {first}; use the same tools", tool.0, tool.1));
+        for (tool, version) in compared(run) {
+            match said.get(&tool) {
+                None => drop(said.insert(tool, (version, name))),
+                Some((other, _)) if *other == version => {}
+                Some((_, first)) => {
+                    fault(format!("{tool} is {version}, and another version in {first}; use the same tools"));
+                }
+            }
         }
     }
     if faults.is_empty() { Ok(()) } else { Err(faults) }
+}
+
+/// The tools of a run. One that has proved nothing, as where the tests alone are as much as a shard, has no compiler of provers under `rustc`.
+fn compared(run: &Results) -> BTreeMap<String, String> {
+    let proves = run.mutants.is_some() || run.campaigns.iter().any(|one| !one.campaign.harnesses.is_empty());
+    let mut tools = run.provenance.tools.clone();
+    if !proves {
+        tools.remove("rustc");
+    }
+    tools
 }
 
 /// Where two shards have the same thing and say different things of it.

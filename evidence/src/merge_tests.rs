@@ -137,6 +137,24 @@ fn a_missing_shard_is_named() {
     assert!(joined.open[0].text.contains("not run"));
 }
 
+/// Where the tests alone are as much as a shard, it has the machine's compiler, and no provers' one.
+#[test]
+fn a_shard_that_proves_nothing_has_no_compiler_of_provers() {
+    let with = |number: usize, rustc: &str| {
+        let mut one = shard(number, 3, &[("t_acc_1", Verdict::Proved)], &[]);
+        one.1.provenance.tools.insert("rustc".to_owned(), rustc.to_owned());
+        one
+    };
+    let mut tests = with(1, "1.95");
+    (tests.1.campaigns, tests.1.mutants) = (vec![], None);
+    let joined = join(vec![tests.clone(), with(2, "1.85"), with(3, "1.85")]).expect("they belong together");
+    assert_eq!(joined.provenance.tools["rustc"], "1.85");
+    // Of those that prove each is held against the others.
+    let faults = join(vec![tests, with(2, "1.85"), with(3, "1.86")]).expect_err("two compilers");
+    assert_eq!(faults.len(), 1);
+    assert!(faults[0].to_string().contains("rustc is 1.86, and another version in shard-2"), "{}", faults[0]);
+}
+
 #[test]
 fn what_does_not_belong_together_is_refused() {
     let refused = |change: &dyn Fn(&mut Results), words: &[&str]| {

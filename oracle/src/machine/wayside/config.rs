@@ -346,7 +346,7 @@ impl Signals {
         for (name, its) in &self.circuits {
             let field = format!("signals.circuits.{name}");
             let number = usize::from(station.circuit(name, "signals.circuits")?.number());
-            let found = |side: usize| station.said().and_then(|said| said.facing[side].get(number));
+            let found = |side: usize| station.said().and_then(|said| said.facing[side].get(number).copied());
             for (facing, side, found) in [(its.left, "left", found(0)), (its.right, "right", found(1))] {
                 if let Some(wrong) = found.and_then(|found| facing.wrong(found)) {
                     return Err(format!("{field}.{side}.{wrong}"));
@@ -370,7 +370,7 @@ impl Signals {
 
 impl FacingSignals {
     /// What trains would be told wrongly, against the layout's file.
-    fn wrong(&self, found: &Found) -> Option<String> {
+    fn wrong(&self, found: Found) -> Option<String> {
         let (fall, fastest) = (i32::from(found.fall_permille), found.fastest_kmh);
         if self.gradient_permille > -fall {
             // The layout does not say which way it falls.
