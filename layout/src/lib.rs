@@ -5,6 +5,8 @@
 //!   kernel's plan comes out ([`Compiled`]).
 //! * [`compare`]: two layouts of one station, cell by cell.
 //! * [`border`]: what two stations see of the line between them, held against each other.
+//! * [`witness`]: the plan held against the tracks of its file a second time, by other code.
+//! * [`second`]: a layout held against a railML file, by other code than the import's.
 //! * [`lives`]: what the ground counts on telegrams to live, held against what trains do.
 //! * [`Errors`]: every broken rule with its place in the file and what would be right.
 
