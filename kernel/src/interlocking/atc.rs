@@ -1,6 +1,7 @@
 //! ATC: from the shared table to the stop circuit, the speed code and the telegram of each circuit.
 
-use super::layout::{Heading, Layout, SpeedCode};
+use super::code::SpeedCode;
+use super::layout::{Heading, Layout};
 use super::set::{CircuitId, CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::table::Contents;

@@ -1,6 +1,6 @@
 //! Speed limits of circuits.
 
-use super::layout::{MAX_CODES, SpeedCode};
+use super::code::{MAX_CODES, SpeedCode};
 use super::set::{CircuitId, CircuitSet};
 
 /// The highest speed code on each circuit: for each code the circuits where none above it may be told.

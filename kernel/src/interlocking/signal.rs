@@ -1,6 +1,7 @@
 //! Signals and grants: which routes show proceed, and which circuits each route grants to which train.
 
-use super::layout::{Heading, Layout, Route, SpeedCode};
+use super::code::SpeedCode;
+use super::layout::{Heading, Layout, Route};
 use super::route::{Phase, RouteState};
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
 

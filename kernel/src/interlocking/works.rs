@@ -1,6 +1,6 @@
 //! Maintenance: blocks of circuits and temporary speed restrictions. Only commands change them.
 
-use super::layout::SpeedCode;
+use super::code::SpeedCode;
 use super::limits::SpeedLimits;
 use super::set::CircuitSet;
 
