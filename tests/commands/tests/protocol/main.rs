@@ -1,5 +1,6 @@
 //! The oracle's protocol: what every machine answers to good and to bad lines.
 
+mod battered;
 mod block;
 mod general;
 mod interlocking;
