@@ -83,7 +83,7 @@ rules! {
     SectionGradient, "section-gradient", Engineering, "Sub telegrams call no circuit, and none ahead that it may be granted, less steep than it is.";
     SectionLimit, "section-limit", Engineering, "The layout lets no train run faster than the sub telegrams of a circuit: codes do not have their limit.";
     BorderNames, "border-names", Form, "A border names stations, a line and a segment that there are.";
-    BorderMissing, "border-missing", Engineering, "A line that two stations name is a border of the line.";
+    BorderMissing, "border-missing", Engineering, "A line that two stations name is a border of the line, and counted blocks border a station.";
     BorderViews, "border-views", Engineering, "Two stations see the line between them so that no stretch of it is seen by neither.";
     BorderJoint, "border-joint", Engineering, "A segment ends at the joint where the counted blocks begin.";
     BorderTail, "border-tail", Engineering, "The circuits that counted blocks ask a station to hold are as long as the longest train.";

@@ -40,8 +40,8 @@ pub struct Counted {
     pub station: String,
     /// Its segment.
     pub segment: String,
-    /// The joint at which the segment ends, if the file names it.
-    pub joint: Option<String>,
+    /// The joint at which the segment ends.
+    pub joint: String,
     /// The end of the blocks.
     pub blocks: End,
 }
@@ -71,14 +71,14 @@ impl Borders {
                     line: None,
                     station: Some(station),
                     segment: Some(segment),
-                    joint,
+                    joint: Some(joint),
                     blocks: Some(blocks),
                 } => {
                     let (station, segment, joint) = (station.clone(), segment.clone(), joint.clone());
                     all.counted.push(Counted { number, station, segment, joint, blocks: *blocks });
                 }
                 _ => {
-                    let what = "a border has between and line; or station, segment, blocks and perhaps joint";
+                    let what = "a border has between and line; or station, segment, joint and blocks";
                     return Err(Refusal::new(Rule::Form, format!("border[{number}]"), what));
                 }
             }
@@ -95,7 +95,6 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
     let some = |any: bool, why: &'static str, findings: Vec<Finding>| if any { Ok(findings) } else { Err(why) };
     let no_between = "the file has no [[border]] between stations";
     let no_counted = "the file has no [[border]] of counted blocks";
-    let joints = counted.iter().any(|one| one.joint.is_some());
     vec![
         judged(
             Rule::BorderNames,
@@ -111,11 +110,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
         judged(
             Rule::BorderJoint,
             count(counted.len(), "border"),
-            some(
-                joints,
-                "no [[border]] of counted blocks names a joint",
-                counted.iter().filter_map(|one| joint(line, one)).collect(),
-            ),
+            some(!counted.is_empty(), no_counted, counted.iter().filter_map(|one| joint(line, one)).collect()),
         ),
         judged(
             Rule::BorderTail,
@@ -215,9 +210,14 @@ fn two_borders(line: &Line, one: &Counted, station: &Station) -> Option<Finding>
     Some(finding(at(one.number, "segment"), at(also.number, "line"), what, "a segment has one border: leave one out"))
 }
 
-/// Lines that two stations name, and that are no border.
+/// Lines that two stations name, and that are no border; and counted blocks that no station borders.
 fn missing(line: &Line) -> Vec<Finding> {
     let mut findings = Vec::new();
+    if line.detection().is_some() && line.borders().counted.is_empty() && !line.stations().is_empty() {
+        let what = "the line has counted blocks and stations, and no border between them".to_owned();
+        let right = "add a [[border]] with station, segment, joint and blocks for each end at which a station is";
+        findings.push(finding(line.places().at("detection"), line.places().at("station"), what, right));
+    }
     let all = line.stations();
     for (number, second) in all.iter().enumerate() {
         for first in &all[..number] {
@@ -273,10 +273,10 @@ fn segment<'a>(line: &'a Line, one: &Counted) -> Option<(Sound<'a>, &'a Segment,
 }
 
 fn joint(line: &Line, one: &Counted) -> Option<Finding> {
-    let asked = one.joint.as_ref()?;
+    let asked = &one.joint;
     let (station, segment, given) = segment(line, one)?;
     let end = atc_layout::border::outer_end(station.model, segment);
-    if end == Some(asked.as_str()) {
+    if end == Some(asked) {
         return None;
     }
     let ends = end.map_or_else(|| "at no joint".to_owned(), |end| format!("at joint {end}"));

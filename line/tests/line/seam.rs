@@ -20,6 +20,13 @@ const SHORT_LOSS: [(&str, &str, &str); 3] = [
 /// One change: the file, what stands there, and what is put in its place.
 type Change<'a> = (&'a str, &'a str, &'a str);
 
+/// What stands in a text from here on, to the end of that.
+fn text_between(text: &str, from: &str, to: &str) -> String {
+    let start = text.find(from).expect(from);
+    let end = start + text[start..].find(to).expect(to) + to.len();
+    text[start..end].to_owned()
+}
+
 /// The example with these changes, in a folder of its own.
 fn changed(changes: &[Change<'_>]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
@@ -147,13 +154,14 @@ fn what_two_parts_of_the_line_break_together() {
     // Two stations at one end of the blocks; and a segment with two borders.
     let between = "[[border]]\nbetween = [\"Westham\", \"Eastham\"]";
     for (station, segment, end) in [("Westham", "West", "low"), ("Eastham", "West", "high")] {
-        let also =
-            format!("[[border]]\nstation = \"{station}\"\nsegment = \"{segment}\"\nblocks = \"{end}\"\n\n{between}");
+        let also = format!(
+            "[[border]]\nstation = \"{station}\"\nsegment = \"{segment}\"\njoint = \"a\"\nblocks = \"{end}\"\n\n{between}"
+        );
         found("border-names", &[(line, between, &also)], line, line);
     }
     found("range", &[(line, "longest_m = 200 ", "longest_m = 0 ")], line, "");
     let names = "line = \"middle\"             # as both";
-    let more = "[[border]]\nstation = \"Westham\"\nsegment = \"North\"\nblocks = \"low\"\n\n[[border]]\nbetween = [\"Westham\", \"Eastham\"]";
+    let more = "[[border]]\nstation = \"Westham\"\nsegment = \"North\"\njoint = \"a\"\nblocks = \"high\"\n\n[[border]]\nbetween = [\"Westham\", \"Eastham\"]";
     found("border-names", &[(line, "[[border]]\nbetween = [\"Westham\", \"Eastham\"]", more)], line, line);
     assert_eq!(
         broken(&[(line, names, "line = \"centre\" #")]).0,
@@ -182,6 +190,10 @@ fn a_border_that_the_two_sides_see_otherwise() {
     let border =
         "[[border]]\nbetween = [\"Westham\", \"Eastham\"]\nline = \"middle\"             # as both layouts call it\n";
     found("border-missing", &[(line, border, "")], west, east);
+    let counted = text_between(FILES[0].1, "[[border]]\nstation", "blocks = \"low\"");
+    found("border-missing", &[(line, &counted, "#")], line, line);
+    let joint = text_between(&counted, "joint", "\n");
+    found("form", &[(line, &joint, "")], line, "");
     found("border-joint", &[(line, "joint = \"z\"", "joint = \"y\"")], line, east);
     let short = [
         (east, "name = \"E9\"\nlength_m = 300", "name = \"E9\"\nlength_m = 199"),
