@@ -79,6 +79,7 @@ name = "W-A"
 entry = "A1"
 path = ["P1T", "A2"]
 short_overlap = "a buffer stop"
+conflicts = ["B-E"]
 [[route]]
 name = "A-W"
 entry = "A2"
@@ -89,6 +90,45 @@ name = "B-E"
 entry = "B1"
 path = ["P2T"]
 short_overlap = "plain line begins there"
+conflicts = ["W-A"]
+"#;
+
+/// Two circuits in line between which there is no room for two trains.
+const FOULING: &str = r#"name = "Fouling"
+longest_train_m = 200
+[speed]
+line_kmh = 45
+[[circuit]]
+name = "A1"
+length_m = 600
+left = "a"
+right = "b"
+[[circuit]]
+name = "M1"
+length_m = 100
+left = "b"
+right = "c"
+[[circuit]]
+name = "M2"
+length_m = 300
+left = "c"
+right = "d"
+[[end]]
+joint = "a"
+kind = "line"
+[[end]]
+joint = "d"
+kind = "buffer"
+[[segment]]
+name = "West"
+circuits = ["A1"]
+[[fouling]]
+between = ["M1", "M2"]
+[[route]]
+name = "W-M"
+entry = "A1"
+path = ["M1", "M2"]
+short_overlap = "a buffer stop"
 "#;
 
 type Size = Plan<64, 16, 32, 8>;
@@ -235,6 +275,18 @@ const WRONG: &[Wrong] = &[
         "a vehicle that comes in at h runs onto its path at x, and nothing keeps it off",
     ),
     (
+        "a declared conflict is not kept",
+        CROSSOVER,
+        |plan, it| plan.routes[it.route("B-E")].conflicts = RouteSet::EMPTY,
+        "the file excludes it and route B-E, and the plan does not",
+    ),
+    (
+        "one of two circuits that foul each other is not held",
+        FOULING,
+        |plan, it| plan.routes[it.route("W-M")].length = 1,
+        "foul each other, and it holds one of them",
+    ),
+    (
         "no signal at the end of a track",
         LOOP,
         |plan, it| {
@@ -357,7 +409,7 @@ fn every_wrong_plan_is_found() {
 /// Compiling asks: a layout whose plan differs is refused. Here the right ones are not.
 #[test]
 fn right_plans_agree() {
-    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER] {
+    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER, FOULING] {
         let (description, numbers) = Numbers::of(text);
         assert_eq!(differences(&description.station, &numbers.0.plan), []);
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::{CircuitSet, Heading, SegmentSet};
+use atc_kernel::interlocking::{CircuitSet, Heading, RouteSet, SegmentSet};
 
 use super::tracks::{Stand, Vehicle};
 use super::{Sides, members, stand};
@@ -168,17 +168,45 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         })
     }
 
-    /// A route that continues another one begins where that ends.
+    /// A route that continues another one begins where that ends; and what the file says of two routes, or of two circuits, is kept.
     pub(super) fn ends(&self, ways: &[Option<Way>], found: &mut Vec<Problem>) {
         for (number, way) in ways.iter().enumerate() {
+            self.excluded(number, found);
             let Some(way) = way else { continue };
             let route = &self.plan.routes[number];
             for (other, its) in ways.iter().enumerate() {
-                let continues = route.continuing.meets(atc_kernel::interlocking::RouteSet::nth(other));
+                let continues = route.continuing.meets(RouteSet::nth(other));
                 if continues && its.as_ref().is_none_or(|its| its.start != way.exit) {
                     let what = format!("route {} goes on elsewhere than it ends", self.station.routes[other].name);
                     found.push(self.differs(number, &what));
                 }
+            }
+        }
+    }
+
+    fn excluded(&self, number: usize, found: &mut Vec<Problem>) {
+        let (given, route) = (&self.station.routes[number], &self.plan.routes[number]);
+        for name in &given.conflicts {
+            let other = self.station.routes.iter().position(|other| other.name.value == name.value);
+            let Some(other) = other.filter(|other| *other < R) else { continue };
+            let both = route.conflicts.meets(RouteSet::nth(other))
+                && self.plan.routes[other].conflicts.meets(RouteSet::nth(number));
+            if !both {
+                found.push(
+                    self.differs(number, &format!("the file excludes it and route {name}, and the plan does not")),
+                );
+            }
+        }
+        let Some(path) = self.path(number) else { return };
+        for fouling in &self.station.fouling {
+            let kept =
+                |circuit: usize| path.contains(&circuit) || route.overlap.circuits.meets(CircuitSet::nth(circuit));
+            let holds = |name: &str| self.place_of(name).is_some_and(kept);
+            let [one, other] = &fouling.between;
+            if holds(one) != holds(other) {
+                found.push(
+                    self.differs(number, &format!("{one} and {other} foul each other, and it holds one of them")),
+                );
             }
         }
     }
