@@ -392,8 +392,9 @@ impl Engines<'_> {
             second::check(&[before, found.clone()].concat(), &names)?;
             let items = found.iter().map(|one| (one.model.clone(), one.seconds)).collect();
             live.with(|results| {
+                // What the provers' tools say of it says more, and comes before or after.
                 for one in found.iter().filter(|one| !one.version.is_empty()) {
-                    results.provenance.tools.insert(one.tool.clone(), one.version.clone());
+                    results.provenance.tools.entry(one.tool.clone()).or_insert_with(|| one.version.clone());
                 }
                 results.opinions.extend(found);
             });
