@@ -393,6 +393,12 @@ fn tails(
         slow.push((kmh(route.speed), format!("route {}", route.name)));
         let length: u32 = route.circuits().map(|circuit| u32::from(model.circuits[circuit].length.0)).sum();
         let reached = longest.is_none_or(|longest| u32::from(longest.0) > metres.saturating_add(length));
+        // What the train has left is held by nobody: there the limit is that of every route over it, whichever way.
+        let over = |other: &&Route| other.is_sound() && other.circuits().any(|circuit| circuit == route.entry);
+        let here = model.routes.iter().filter(over).filter(|_| reached);
+        slow.extend(
+            here.map(|other| (kmh(other.speed), format!("route {}, over the circuit that it has left", other.name))),
+        );
         if let Some(other) = route.from.filter(|other| *other != number && reached) {
             let other = &model.segments[other];
             slow.push((kmh(other.speed), format!("segment {}", other.name)));

@@ -79,10 +79,12 @@ impl Model {
         }
     }
 
-    /// The highest speed at which a train may run in a circuit, travelling so, in km/h: of the routes over it and of plain line; 0 where none does.
+    /// The highest speed that a train in a circuit, travelling so, may be told, in km/h: of the routes over it and of those that begin there, and of plain
+    /// line; 0 where none does.
     pub fn fastest_kmh(&self, circuit: usize, heading: Heading) -> u16 {
         let routes = self.routes.iter().filter(|route| route.is_sound() && route.heading == heading);
-        let over = routes.filter(|route| route.circuits().any(|at| at == circuit)).map(|route| route.speed);
+        let here = |route: &&Route| route.entry == circuit || route.circuits().any(|at| at == circuit);
+        let over = routes.filter(here).map(|route| route.speed);
         let line = self.segments.iter().filter(|segment| segment.circuits.contains(&circuit));
         let codes = over.chain(line.map(|segment| segment.speed));
         codes.map(|code| self.values.speeds_kmh[usize::from(code.0)]).max().unwrap_or(0)

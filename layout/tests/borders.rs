@@ -206,6 +206,51 @@ fn tails_behind_an_advanced_starter_and_beyond_a_short_station() {
     held(&post(45, 200), &east).expect("as long as a train");
 }
 
+/// The fourteenth attack: the circuit that a train has left is held by nobody, and a route over it the other way has the lower limit.
+#[test]
+fn a_tail_in_the_circuit_that_the_train_has_left() {
+    let at = |name: &str, turned: bool, kmh: u16| {
+        let circuit = |circuit: &str, length: u16, ends: [&str; 2]| {
+            let [left, right] = if turned { [ends[1], ends[0]] } else { ends };
+            format!("[[circuit]]\nname = \"{circuit}\"\nlength_m = {length}\nleft = \"{left}\"\nright = \"{right}\"\n")
+        };
+        let own = ["T", "X", "Y"].map(|circuit| format!("{name}{circuit}"));
+        let joints = ["b", "1", "2"].map(|joint| format!("{name}{joint}"));
+        let circuits = [
+            circuit(&own[0], 250, [&joints[0], &joints[1]]),
+            circuit(&own[1], 60, [&joints[1], &joints[2]]),
+            circuit(&own[2], 60, [&joints[2], &format!("{name}s")]),
+            circuit("S", 700, [&format!("{name}s"), if name == "A" { "Bs" } else { "As" }]),
+        ];
+        let ends = [(joints[0].clone(), "buffer"), (if name == "A" { "Bs" } else { "As" }.to_owned(), "line")]
+            .map(|(joint, kind)| format!("[[end]]\njoint = \"{joint}\"\nkind = \"{kind}\"\n"));
+        let route = |route: &str, entry: &str, path: &str, more: &str| {
+            format!(
+                "[[route]]\nname = \"{route}\"\nentry = \"{entry}\"\npath = [{path}]\nshort_overlap = \"x\"\n{more}"
+            )
+        };
+        let [t, x, y] = &own;
+        let routes = [
+            route("out", t, &format!("\"{x}\", \"{y}\""), ""),
+            route("in", "S", &format!("\"{y}\""), ""),
+            route("platform", y, &format!("\"{x}\", \"{t}\""), &format!("speed_kmh = {kmh}\n")),
+        ];
+        let text = format!(
+            "name = \"{name}\"\nlongest_train_m = 200\n[speed]\nline_kmh = 75\n{}{}[[segment]]\nname = \"L\"\nline = \"l\"\ncircuits = [\"S\"]\nshared = [\"S\"]\n{}",
+            circuits.concat(),
+            ends.concat(),
+            routes.concat()
+        );
+        Description::from_toml("station.toml", &text).expect("a layout")
+    };
+    held(&at("A", false, 75), &at("B", true, 75)).expect("as fast as the line");
+    refused(
+        &at("A", false, 25),
+        &at("B", true, 75),
+        "the neighbour lets one run at 75 km/h whose tail is still in route platform, over the circuit that it has left, which is for 25",
+    );
+}
+
 /// Approaches, releases and circuits are as long as the trains ask for that come in.
 #[test]
 fn trains_of_the_neighbour_are_longer_shorter_or_lost_for_longer() {

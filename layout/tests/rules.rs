@@ -1,6 +1,6 @@
 //! Each rule of a layout file is broken by a file that breaks nothing else, and the message says where.
 
-use atc_kernel::interlocking::Rule as Kernel;
+use atc_kernel::interlocking::{Heading, Rule as Kernel};
 use atc_layout::{Description, Errors, Rule};
 use std::time::{Duration, Instant};
 
@@ -143,6 +143,20 @@ fn range() {
     let approach = errors(&route("approach_kmh"));
     let says = "route W-1: approach_kmh is 450 km/h, faster than any code";
     assert!(approach.breaks(Rule::Range) && approach.to_string().contains(says), "{approach}");
+}
+
+/// Who stands where a route begins is told its speed, though no route runs over that circuit his way (the fourteenth attack).
+#[test]
+fn the_highest_speed_in_a_circuit() {
+    let kept =
+        LOOP.split("[[route]]").filter(|part| !["W-1", "W-2"].iter().any(|name| part.contains(&format!("\"{name}\""))));
+    let text = kept.collect::<Vec<_>>().join("[[route]]");
+    let made = Description::from_toml("station.toml", &text).and_then(|description| description.compile());
+    let model = made.unwrap_or_else(|errors| panic!("{errors}")).model;
+    let circuit = |name: &str| model.circuits.iter().position(|circuit| circuit.name == name).expect(name);
+    let kmh = |name: &str, heading| model.fastest_kmh(circuit(name), heading);
+    assert_eq!((kmh("1T", Heading::Right), kmh("1T", Heading::Left)), (75, 75));
+    assert_eq!((kmh("2T", Heading::Right), kmh("P1T", Heading::Right)), (45, 0));
 }
 
 /// What nobody has said costs speed: over reverse points it is the lowest code.

@@ -818,6 +818,7 @@ static bool step(const struct json *input) {
 
     // Confirmation.
     set held = 0;
+    for (int p = 0; p < plan.points; p++) held |= settled[p] == NOWHERE || now.drives[p] ? plan.detectors[p] : 0;
     for (int r = 0; r < plan.routes; r++) {
         held |= held_path(r) | held_overlap(r);
         for (int p = 0; p < plan.points; p++) held |= held_point(r, p) ? plan.detectors[p] : 0;

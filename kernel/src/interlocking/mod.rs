@@ -154,6 +154,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         //= spec/interlocking.md#ilk-31-blocks-ahead
         //# A block on an unswept circuit MUST NOT be confirmed.
         let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits);
+        // Their strokes may begin, or go on.
+        circuits = circuits.or(point::detectors(self, PointSet::ALL.without(firm.points())));
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             let needed = point::detectors(self, held.positions(route).points());

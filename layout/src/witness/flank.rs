@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::Sides;
+use atc_kernel::interlocking::{Route, SegmentSet};
+
 use super::routes::Way;
 use super::tracks::{Stand, Vehicle};
+use super::{Sides, members};
 use crate::form::Position;
 use crate::problem::Problem;
 
@@ -22,18 +24,19 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         let signals: BTreeSet<(usize, usize)> = ways
             .iter()
             .enumerate()
-            .filter_map(|(route, way)| {
-                Some((way.as_ref()?.start, super::members(self.plan.routes[route].entry).next()?))
-            })
+            .filter_map(|(route, way)| Some((way.as_ref()?.start, members(self.plan.routes[route].entry).next()?)))
             .collect();
         for (number, way) in ways.iter().enumerate() {
             let (Some(way), Some(circuits)) = (way, self.path(number)) else { continue };
             let path =
                 Path { way, circuits: circuits.into_iter().collect(), stand: self.held(number), signals: &signals };
             // Onto plain line goes whoever has its direction: that is no matter of signals.
-            let out = self.plan.routes[number].to != atc_kernel::interlocking::SegmentSet::EMPTY;
+            let out = self.plan.routes[number].to != SegmentSet::EMPTY;
             for vehicle in self.intruders(&path, out) {
-                if let Some(joint) = self.comes_from(&path, vehicle, &mut BTreeSet::new()) {
+                let against = self.tracks.ahead(vehicle) == way.exit;
+                let comes = self.comes_from(&path, vehicle, &mut BTreeSet::new());
+                // A line without a way in has no direction towards the station: whoever comes against the route comes by a route.
+                if let Some(joint) = comes.filter(|joint| !against || self.has_way_in(*joint)) {
                     let (onto, from) =
                         (self.tracks.joints[self.tracks.ahead(vehicle)].as_str(), &self.tracks.joints[joint]);
                     let what = format!(
@@ -43,6 +46,15 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
                 }
             }
         }
+    }
+
+    /// Whether a route leads in from the line at a joint.
+    fn has_way_in(&self, joint: usize) -> bool {
+        let here = |circuit: usize| self.tracks.at_joint(circuit, joint, true).next().is_some();
+        self.plan.segments.iter().enumerate().any(|(number, segment)| {
+            let from = |route: &Route<P>| route.from.meets(SegmentSet::nth(number));
+            members(segment.all()).any(here) && self.plan.routes.iter().any(from)
+        })
     }
 
     /// The vehicles outside the path that run onto it with their next step, but for those that the file gives a reason for.

@@ -26,7 +26,7 @@ harness! {
         Restricted: "it changes by command only: one to lift takes it away, one to restrict gives its code or a lower one that nobody lifts",
         Told: "the shared table has these blocks, and no limit above the restriction, whatever routes do",
         Confirmed: "only a blocked circuit that no route holds is confirmed, and no point in a blocked one is driven",
-        Clear: "it becomes confirmed only while it is not occupied, and no held route needs a point in it",
+        Clear: "it becomes confirmed only while it is not occupied, and the point in it has settled and is needed by no held route",
         Quiet: "on plain line it becomes confirmed only while segment and throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time",
         Stays: "a confirmed circuit stays confirmed until its block is lifted",
         Lasts: "while it stays confirmed, the neighbour is not permitted to send and no route out is held",
@@ -39,6 +39,7 @@ harness! {
         Lifts: "a restriction is lifted",
         Lower: "a command to restrict finds a lower restriction, and that one stays",
         Needed: "a blocked circuit that no route holds is not confirmed because a route needs the point in it",
+        Moves: "a blocked circuit is not confirmed because the point in it has not settled",
     }
     {
         let Some(layout) = any_layout::<E, ROUTES, PATH, 1, 1>(e) else { return };
@@ -123,8 +124,11 @@ harness! {
             }
         }
         let needed = in_it && needed == 1;
-        e.claim(Claim::Clear as u32, !becomes || !has(occupied) && !needed);
         let driven = in_it && (output.drives.normal.bits() | output.drives.reverse.bits()) & 1 == 1;
+        // Detected, undriven, and so for the layout's number of cycles.
+        let detected = (input.detected.normal.bits() | input.detected.reverse.bits()) & 1 == 1;
+        let settled = !in_it || detected && !driven && after.points.parts().0[0] >= layout.plan().settle;
+        e.claim(Claim::Clear as u32, !becomes || !has(occupied) && !needed && settled);
         e.claim(Claim::Confirmed as u32, (!confirmed || is_blocked && !in_route) && (!is_blocked || !driven));
         let clear = occupied & (line | segment.throat.bits()) == 0;
         let quiet = clear && protects(&after) && before.directions.withdrawn[0] == turn;
@@ -137,7 +141,8 @@ harness! {
         e.cover(Cover::Moving as u32, is_blocked && !confirmed && on_line && clear && !out(&after));
         e.cover(Cover::Both as u32, block && unblock);
         let quiet_place = !on_line && !has(occupied) && !in_route;
-        e.cover(Cover::Needed as u32, is_blocked && !confirmed && quiet_place && needed && !has(after.unswept.circuits.bits()));
+        e.cover(Cover::Needed as u32, is_blocked && !confirmed && quiet_place && needed && settled && !has(after.unswept.circuits.bits()));
+        e.cover(Cover::Moves as u32, is_blocked && !confirmed && quiet_place && !needed && !settled && !has(after.unswept.circuits.bits()));
         e.cover(Cover::Lifts as u32, lift && !restrict && restriction.0 < 7);
         e.cover(Cover::Lower as u32, restrict && !lift && restriction.0 < commanded && found == restriction.0);
     }

@@ -4,6 +4,9 @@ use atc_kernel::interlocking::{Phase, PointId, Position, Positions, Refusal, Seg
 
 use crate::session::Session;
 
+/// Enough cycles for a point of the terminus that stands to count as detected: its settling time is 1 s, its cycle 100 ms.
+const SETTLED: usize = 12;
+
 /// P1 is driven by hand, and W-1 set over it as it was detected. However late the point leaves within the settling time, W-1 shows nothing.
 #[test]
 fn a_point_that_leaves_after_an_individual_command_had_no_route_over_it() {
@@ -67,6 +70,7 @@ fn before_departure(p4: Option<Position>) -> Session {
 fn a_point_among_staff_is_not_driven_for_a_route_beside_it() {
     let mut session = before_departure(Some(Position::Reverse));
     session.block(&["P4T"], &["3T"]);
+    session.wait(SETTLED, &["3T"]);
     assert!(session.is_confirmed("P4T"));
     for request in [session.drive("P4", Position::Normal), session.set("3-D")] {
         assert_eq!(session.ask(request, &["3T"]), Err(Refusal::Blocked));
@@ -75,6 +79,8 @@ fn a_point_among_staff_is_not_driven_for_a_route_beside_it() {
     // Where it lies right nothing moves, and it is not driven when staff move it by hand.
     let mut session = before_departure(Some(Position::Normal));
     session.block(&["P4T"], &["3T"]);
+    session.wait(SETTLED, &["3T"]);
+    assert!(session.is_confirmed("P4T"));
     let set = session.set("3-D");
     assert_eq!(session.ask(set, &["3T"]), Ok(()));
     session.lie(&["P1", "P2", "P3", "P5"].map(|name| (name, Position::Normal)));
@@ -101,5 +107,47 @@ fn a_block_ends_a_drive_and_is_confirmed_when_no_route_needs_the_point() {
     assert!(!session.is_confirmed("P4T"));
     let withdraw = session.withdraw("3-D");
     assert_eq!(session.ask(withdraw, &["3T"]), Ok(()));
-    assert!(session.is_confirmed("P4T") && session.drives().is_empty());
+    // Nobody drives it any more, and where it is nobody knows: its stroke goes on.
+    session.wait(300, &["3T"]);
+    assert!(!session.is_confirmed("P4T") && session.drives().is_empty());
+    arrives(&mut session, Position::Normal);
+}
+
+/// P4 comes to a stand, and settles: then staff may rely on the block.
+fn arrives(session: &mut Session, at: Position) {
+    let all = ["P1", "P2", "P3", "P5"].map(|name| (name, Position::Normal));
+    session.lie(&all.into_iter().chain([("P4", at)]).collect::<Vec<_>>());
+    let mut waited = 0;
+    while !session.is_confirmed("P4T") {
+        session.wait(1, &["3T"]);
+        waited += 1;
+        assert!(waited <= SETTLED, "it has stood for {waited} cycles");
+    }
+    assert!(waited > 1, "it was confirmed at once");
+}
+
+/// The fourteenth attack: the block comes in the cycle after a drive, by hand or of a route that is withdrawn, before the point leaves. It leaves among
+/// staff, if they rely on the block.
+#[test]
+fn a_block_is_not_confirmed_while_a_point_that_was_driven_may_leave() {
+    for by_hand in [true, false] {
+        let mut session = before_departure(Some(Position::Reverse));
+        session.wait(SETTLED, &["3T"]);
+        let drive = if by_hand { session.drive("P4", Position::Normal) } else { session.set("3-D") };
+        assert_eq!(session.ask(drive, &["3T"]), Ok(()));
+        assert!(!session.drives().is_empty());
+        if !by_hand {
+            let withdraw = session.withdraw("3-D");
+            assert_eq!(session.ask(withdraw, &["3T"]), Ok(()));
+        }
+        // It is still detected where it was.
+        session.block(&["P4T"], &["3T"]);
+        assert!(!session.is_confirmed("P4T") && session.drives().is_empty());
+        session.lie(&["P1", "P2", "P3", "P5"].map(|name| (name, Position::Normal)));
+        for _ in 0..100 {
+            session.wait(1, &["3T"]);
+            assert!(!session.is_confirmed("P4T"));
+        }
+        arrives(&mut session, Position::Normal);
+    }
 }

@@ -225,7 +225,7 @@ impl Witness {
         let firm = self.settled(sketch, seen, &drives);
         self.reserve(sketch, &occupied, &firm);
         if self.age >= sketch.start {
-            self.confirm(sketch, &occupied);
+            self.confirm(sketch, &occupied, &firm);
         }
         // Only now: who looked at these times in this cycle has looked at the cycles before.
         for stretch in &mut self.stretches {
@@ -317,9 +317,12 @@ impl Witness {
         of_route || line.is_some_and(on_line)
     }
 
-    fn confirm(&mut self, sketch: &Sketch, occupied: &Set) {
+    fn confirm(&mut self, sketch: &Sketch, occupied: &Set, firm: &[Need]) {
+        let stands = |point: usize| firm.iter().any(|need| need.0 == point);
         let safe = |circuit: &usize| {
-            !self.unswept.circuits.contains(circuit)
+            let mut points = sketch.points.iter().enumerate();
+            points.all(|(point, detectors)| !detectors.contains(circuit) || stands(point))
+                && !self.unswept.circuits.contains(circuit)
                 && !occupied.contains(circuit)
                 && !self.may_be_coming(sketch, *circuit, occupied)
         };
