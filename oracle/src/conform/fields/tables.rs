@@ -146,7 +146,11 @@ const INTERLOCKING: Table = Table {
         },
         Field { shape: Shape::Entries(&[]), ..output("drives", Danger::More, &["ILK-3", "ILK-8", "ILK-23"]) },
         set("permits", Danger::More, &["ILK-4", "ILK-15", "ILK-18", "ILK-19", "ILK-20", "ILK-25"]),
-        set("confirmed", Danger::More, &["ILK-15", "ILK-16", "ILK-19", "ILK-24", "ILK-28", "ILK-31", "TRK-1"]),
+        set(
+            "confirmed",
+            Danger::More,
+            &["ILK-15", "ILK-16", "ILK-19", "ILK-23", "ILK-24", "ILK-28", "ILK-31", "TRK-1"],
+        ),
         Field { absent: Absent::Empty, ..set("silent", Danger::Fewer, &["ATC-12"]) },
         Field {
             get: Some(|output| {
