@@ -7,10 +7,10 @@
 //!
 //! | part | asks |
 //! |---|---|
-//! | [`routes`] | that the train of a route runs over its path and no other, slides into its overlap, and comes to what is beyond |
-//! | [`flank`] | that no vehicle comes onto the path from aside or against it, but past a signal, or over what the file gives a reason for |
-//! | [`lines`] | segments from the station to where the line goes on, and what detects a point |
-//! | [`numbers`] | approaches, distances, lengths, speeds and times, in floating point |
+//! | `routes` | that the train of a route runs over its path and no other, slides into its overlap, and comes to what is beyond |
+//! | `flank` | that no vehicle comes onto the path from aside or against it, but past a signal, or over what the file gives a reason for |
+//! | `lines` | segments from the station to where the line goes on, and what detects a point |
+//! | `numbers` | approaches, distances, lengths, speeds and times, in floating point |
 
 mod flank;
 mod lines;
