@@ -349,6 +349,10 @@ fn kit(folder: &Path, wrong: &Wrong) -> Tools {
     }
     for entry in fs::read_dir(provers.join("bin")).unwrap() {
         let tool: PathBuf = entry.unwrap().path();
+        // A run before has put the guards of its solvers beside them.
+        if tool.is_dir() {
+            continue;
+        }
         let name = tool.file_name().unwrap();
         let script = if name == wrong.tool { wrong.script } else { "real \"$@\"" };
         let text = TOOLS.replace("REAL", &format!("'{}'", tool.display())) + script + "\n";
