@@ -5,9 +5,8 @@ use std::collections::BTreeSet;
 use atc_kernel::interlocking::Heading;
 
 use super::tracks::Vehicle;
-use super::{Sides, members};
+use super::{Sides, difference, members};
 use crate::problem::Problem;
-use crate::rule::Rule;
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
     pub(super) fn lines(&self, found: &mut Vec<Problem>) {
@@ -16,9 +15,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
                 segment.circuits.iter().take(segment.length.into()).flat_map(|circuit| members(*circuit)).collect();
             let named: Vec<&str> = circuits.iter().map(|circuit| self.circuit(*circuit)).collect();
             let mut differs = |what: String| {
-                let what = format!("segment {}: {what}", given.name);
-                let right = "tell the authors: the layout was derived wrongly";
-                found.push(Problem::new(Rule::PlanAgainstTracks, &given.name.span, what, right));
+                found.push(difference(&given.name.span, format!("segment {}: {what}", given.name)));
             };
             if !named.iter().copied().eq(given.circuits.iter().map(|name| name.value.as_str())) {
                 differs(format!("the file has other circuits than {}", named.join(", ")));
@@ -68,8 +65,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
                     "point {}: a train in {name} stands on it or fouls it, and is not detected there",
                     given.name
                 );
-                let right = "tell the authors: the layout was derived wrongly";
-                found.push(Problem::new(Rule::PlanAgainstTracks, &given.name.span, what, right));
+                found.push(difference(&given.name.span, what));
             }
         }
         for number in 0..self.station.routes.len().min(R) {

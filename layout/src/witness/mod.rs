@@ -18,6 +18,8 @@ mod numbers;
 mod routes;
 mod tracks;
 
+use std::ops::Range;
+
 use atc_kernel::interlocking::{CircuitSet, PointSet, Positions};
 
 use crate::form::{Position, Station};
@@ -54,8 +56,7 @@ pub fn differences<const R: usize, const P: usize, const N: usize, const S: usiz
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
     fn differs(&self, route: usize, what: &str) -> Problem {
         let name = &self.station.routes[route].name;
-        let what = format!("route {name}: {what}");
-        Problem::new(Rule::PlanAgainstTracks, &name.span, what, "tell the authors: the layout was derived wrongly")
+        difference(&name.span, format!("route {name}: {what}"))
     }
 
     fn circuit(&self, number: usize) -> &str {
@@ -65,6 +66,11 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
     fn place_of(&self, circuit: &str) -> Option<usize> {
         self.station.circuits.iter().position(|given| given.name.value == circuit)
     }
+}
+
+/// Something in which the plan is not what the tracks are.
+fn difference(span: &Range<usize>, what: String) -> Problem {
+    Problem::new(Rule::PlanAgainstTracks, span, what, "tell the authors: the layout was derived wrongly")
 }
 
 /// The numbers in a set of circuits.

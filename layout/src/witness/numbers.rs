@@ -7,10 +7,9 @@ use atc_kernel::time::Ticks;
 
 use super::routes::Way;
 use super::tracks::Vehicle;
-use super::{Sides, members};
+use super::{Sides, difference, members};
 use crate::form::Position;
 use crate::problem::Problem;
-use crate::rule::Rule;
 
 /// What a fall of a thousandth takes off a brake, in m/s².
 const FALL: f64 = 9.80665e-3;
@@ -33,10 +32,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
 
     pub(super) fn numbers(&self, found: &mut Vec<Problem>) {
         let (station, plan) = (self.station, self.plan);
-        let mut differs = |what: String| {
-            let right = "tell the authors: the layout was derived wrongly";
-            found.push(Problem::new(Rule::PlanAgainstTracks, &(0..0), what, right));
-        };
+        let mut differs = |what: String| found.push(difference(&(0..0), what));
         for (given, length) in station.circuits.iter().zip(&plan.lengths) {
             if given.length_m.value != length.0 {
                 differs(format!(

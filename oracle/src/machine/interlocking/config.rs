@@ -27,6 +27,7 @@ pub(super) struct Opened {
     pub(super) names: Names,
     pub(super) speeds_kmh: [u16; MAX_CODES],
     pub(super) cycle_ms: u32,
+    /// What the file says besides; a plan has no file.
     pub(super) said: Option<Said>,
 }
 
