@@ -5,7 +5,7 @@ use std::fmt;
 
 use atc_kernel::distance::Metres;
 
-use crate::graph::Kind;
+use crate::graph::{Kind, Track};
 use crate::model::{Model, Values};
 use crate::table;
 
@@ -70,17 +70,23 @@ fn cells(model: &Model) -> Cells {
     let named = |circuits: &BTreeSet<usize>| circuits.iter().map(name).collect::<BTreeSet<_>>();
     for (number, circuit) in model.circuits.iter().enumerate() {
         let neighbours = model.graph.borders(number).into_iter().filter_map(|joint| model.graph.across(joint, number));
-        let values = [("length m", circuit.length.0.to_string()), ("adjoins", listed(named(&neighbours.collect())))];
+        let crossed = model.graph.tracks.iter().filter(|track| track.circuit == number && track.kind == Kind::Plain);
+        let values = [
+            ("length m", circuit.length.0.to_string()),
+            ("adjoins", listed(named(&neighbours.collect()))),
+            ("needs no protection", reasons(crossed)),
+        ];
         all.insert(format!("circuit {}", circuit.name), owned(values));
     }
     for (number, point) in model.points.iter().enumerate() {
-        let track = model.graph.tracks.iter().find(|track| track.kind == Kind::Point(number));
+        let track = model.graph.of_point(number).map(|track| &model.graph.tracks[track]);
         let leg = |leg: usize| {
             let joint = track.and_then(|track| track.joints.get(leg)).and_then(|joint| model.graph.joints.get(*joint));
             let beyond = joint.into_iter().flat_map(|joint| &joint.tracks).filter_map(|at| model.graph.tracks.get(*at));
             listed(beyond.filter(|at| at.kind != Kind::Point(number)).map(|at| name(&at.circuit)).collect())
         };
-        let reason = |number: usize| point.unprotected.get(number).cloned().flatten().unwrap_or_default();
+        let reason =
+            |end: usize| track.and_then(|track| track.unprotected.get(end)).cloned().flatten().unwrap_or_default();
         let values = [
             ("circuit", point.circuit.as_ref().map(name).unwrap_or_default().to_owned()),
             ("detectors", listed(named(&point.detectors))),
@@ -88,8 +94,8 @@ fn cells(model: &Model) -> Cells {
             ("toe leads to", leg(0)),
             ("normal leads to", leg(1)),
             ("reverse leads to", leg(2)),
-            ("normal needs no protection", reason(0)),
-            ("reverse needs no protection", reason(1)),
+            ("normal needs no protection", reason(1)),
+            ("reverse needs no protection", reason(2)),
         ];
         all.insert(format!("point {}", point.name), owned(values));
     }
@@ -106,6 +112,13 @@ fn cells(model: &Model) -> Cells {
     }
     all.insert("station".to_owned(), owned(station(&model.values)));
     all
+}
+
+/// The reasons at the ends of tracks: names of joints are no facts of the station, and do not count.
+fn reasons<'a>(tracks: impl Iterator<Item = &'a Track>) -> String {
+    let given: BTreeSet<&str> =
+        tracks.flat_map(|track| track.unprotected.iter().flatten()).map(String::as_str).collect();
+    given.into_iter().collect::<Vec<_>>().join("; ")
 }
 
 fn station(values: &Values) -> [(&'static str, String); 17] {

@@ -85,9 +85,50 @@ pub struct Circuit {
     /// The joint at its right end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub right: Option<At<String>>,
+    /// Why it is safe that nothing keeps vehicles off this track at its left end, while a route crosses it or a line is beside it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_unprotected: Option<At<String>>,
+    /// The same at its right end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub right_unprotected: Option<At<String>>,
     /// Further tracks through the same circuit, which cross the first on the level.
     #[serde(default, rename = "crossing", skip_serializing_if = "Vec::is_empty")]
     pub crossings: Vec<Crossing>,
+}
+
+/// A track through a circuit that is no point.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain<'a> {
+    /// The joints at its left and right end.
+    pub joints: [&'a At<String>; 2],
+    /// Why nothing need keep vehicles off at these ends.
+    pub unprotected: [Option<&'a At<String>>; 2],
+}
+
+impl Circuit {
+    /// Its tracks but for its points: its own, if both ends of it are named, and those that cross it.
+    pub fn tracks(&self) -> impl Iterator<Item = Plain<'_>> {
+        let own = self.left.as_ref().zip(self.right.as_ref()).map(|(left, right)| Plain {
+            joints: [left, right],
+            unprotected: [self.left_unprotected.as_ref(), self.right_unprotected.as_ref()],
+        });
+        own.into_iter().chain(self.crossings.iter().map(|crossing| Plain {
+            joints: [&crossing.left, &crossing.right],
+            unprotected: [crossing.left_unprotected.as_ref(), crossing.right_unprotected.as_ref()],
+        }))
+    }
+
+    /// The reasons at the left and right end of one of [`Circuit::tracks`], to be given; none if it has not so many.
+    pub(crate) fn unprotected_mut(&mut self, track: usize) -> Option<[&mut Option<At<String>>; 2]> {
+        let own = usize::from(self.left.is_some() && self.right.is_some());
+        match track.checked_sub(own) {
+            None => Some([&mut self.left_unprotected, &mut self.right_unprotected]),
+            Some(crossing) => {
+                let crossing = self.crossings.get_mut(crossing)?;
+                Some([&mut crossing.left_unprotected, &mut crossing.right_unprotected])
+            }
+        }
+    }
 }
 
 /// A track that crosses another one of the same circuit.
@@ -98,6 +139,12 @@ pub struct Crossing {
     pub left: At<String>,
     /// The joint at its right end.
     pub right: At<String>,
+    /// Why it is safe that nothing keeps vehicles off it at its left end, while a route runs over another track of the circuit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_unprotected: Option<At<String>>,
+    /// The same at its right end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub right_unprotected: Option<At<String>>,
 }
 
 /// A point. A double slip is two points of one circuit that have the joint at their toes in common.

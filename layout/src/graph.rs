@@ -39,6 +39,8 @@ pub struct Track {
     pub kind: Kind,
     /// The joints it reaches: left and right, or toe, normal leg and reverse leg.
     pub joints: Vec<usize>,
+    /// Why nothing need keep vehicles off at each of these ends, as the file says it.
+    pub unprotected: Vec<Option<String>>,
 }
 
 /// The most points in one circuit.
@@ -74,6 +76,18 @@ pub struct Way {
     pub exit: usize,
     /// The points it runs over, in order.
     pub passed: Vec<Passed>,
+    /// The tracks it runs over, in order, points among them.
+    pub tracks: Vec<usize>,
+}
+
+/// The reason that the file gives at an end of a track.
+fn reason(problems: &mut Vec<Problem>, about: &str, given: Option<&crate::At<String>>) -> Option<String> {
+    let given = given?;
+    if given.trim().is_empty() {
+        let what = format!("{about} lacks the reason why an end of it needs no protection");
+        problems.push(Problem::new(Rule::NoFlank, &given.span, what, "say what keeps vehicles off"));
+    }
+    Some(given.value.clone())
 }
 
 impl Graph {
@@ -90,12 +104,14 @@ impl Graph {
             })
         };
         for (circuit, given) in station.circuits.iter().enumerate() {
-            let mut plain = |left, right| {
-                let joints = vec![joint(&mut graph, left), joint(&mut graph, right)];
-                graph.tracks.push(Track { circuit, kind: Kind::Plain, joints });
-            };
+            for plain in given.tracks() {
+                let joints = plain.joints.map(|name| joint(&mut graph, name)).to_vec();
+                let about = format!("the track from {} to {}", plain.joints[0], plain.joints[1]);
+                let unprotected = plain.unprotected.map(|given| reason(problems, &about, given)).to_vec();
+                graph.tracks.push(Track { circuit, kind: Kind::Plain, joints, unprotected });
+            }
             match (&given.left, &given.right) {
-                (Some(left), Some(right)) => plain(left, right),
+                (Some(_), Some(_)) => {}
                 (None, None) => {
                     if !station.points.iter().any(|point| point.circuit.value == given.name.value) {
                         let what = format!("circuit {} has no track in it", given.name);
@@ -109,14 +125,15 @@ impl Graph {
                     problems.push(Problem::new(Rule::Joint, &one.span, what, "name both joints, left and right"));
                 }
             }
-            for crossing in &given.crossings {
-                plain(&crossing.left, &crossing.right);
-            }
         }
         for (number, point) in station.points.iter().enumerate() {
             let Some(circuit) = names.circuit(&point.circuit, problems) else { continue };
-            let joints = [&point.toe, &point.normal, &point.reverse].map(|name| joint(&mut graph, name));
-            graph.tracks.push(Track { circuit, kind: Kind::Point(number), joints: joints.to_vec() });
+            let joints = [&point.toe, &point.normal, &point.reverse].map(|name| joint(&mut graph, name)).to_vec();
+            let legs = [&point.normal_unprotected, &point.reverse_unprotected];
+            let about = format!("point {}", point.name);
+            let legs = legs.map(|given| reason(problems, &about, given.as_ref()));
+            let unprotected = [None].into_iter().chain(legs).collect();
+            graph.tracks.push(Track { circuit, kind: Kind::Point(number), joints, unprotected });
         }
         for (number, track) in graph.tracks.iter().enumerate() {
             for joint in &track.joints {
@@ -149,6 +166,11 @@ impl Graph {
             problems.extend(kept);
         }
         graph
+    }
+
+    /// The track of a point.
+    pub fn of_point(&self, point: usize) -> Option<usize> {
+        self.tracks.iter().position(|track| track.kind == Kind::Point(point))
     }
 
     fn check(&mut self, problems: &mut Vec<Problem>) {
@@ -229,7 +251,7 @@ impl Graph {
             let next = self.joints[exit].tracks.iter().copied().find(|next| *next != track);
             match next.filter(|next| self.tracks[*next].circuit == circuit) {
                 Some(next) => self.follow(exit, next, seen, passed, found),
-                None => found.push(Way { exit, passed: passed.clone() }),
+                None => found.push(Way { exit, passed: passed.clone(), tracks: seen.clone() }),
             }
             if over.is_some() {
                 passed.pop();

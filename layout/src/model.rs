@@ -9,7 +9,7 @@ use atc_kernel::time::Ticks;
 
 use crate::At;
 use crate::form::Position;
-use crate::graph::{Graph, Passed};
+use crate::graph::{Graph, Kind, Passed};
 
 /// Numbers of circuits.
 pub type Circuits = BTreeSet<usize>;
@@ -120,8 +120,6 @@ pub struct Point {
     pub fouled_in: Circuits,
     /// Its stroke, in ms.
     pub throw_ms: u32,
-    /// The reasons for which the normal and the reverse leg need no protection.
-    pub unprotected: [Option<String>; 2],
     /// Where it is named.
     pub span: Range<usize>,
 }
@@ -143,11 +141,13 @@ pub struct Segment {
     pub throat: Option<usize>,
     /// The speed code.
     pub speed: SpeedCode,
+    /// The protection where other tracks cross it.
+    pub flanks: Vec<Flank>,
     /// Where it is named.
     pub span: Range<usize>,
 }
 
-/// What keeps vehicles off one leg of a point that a path runs over.
+/// What keeps vehicles off a track beside a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Guard {
     /// Another point in this position.
@@ -156,7 +156,7 @@ pub enum Guard {
     Signal(String),
     /// A buffer stop, and no circuit of its own before it: no vehicle can stand there.
     Buffer,
-    /// Nothing: in this circuit, between the leg and a buffer stop or the path itself, a vehicle may stand that faces no signal.
+    /// Nothing: in this circuit, between the path and what would keep off others, a vehicle may stand that faces no signal.
     Standing(usize),
     /// The route itself holds what is there.
     Own,
@@ -166,15 +166,37 @@ pub enum Guard {
     Declared(String),
 }
 
-/// The protection of one leg.
+/// The protection at an end of a track that a path does not run over: the unused leg of a point, or a track that it crosses.
 #[derive(Clone, Debug)]
 pub struct Flank {
-    /// The point that the path runs over.
-    pub point: usize,
-    /// The leg that the path does not use.
-    pub leg: Position,
+    /// The track.
+    pub track: usize,
+    /// Which of its joints.
+    pub end: usize,
     /// What is there, for each track that leads to it.
     pub guards: Vec<Guard>,
+}
+
+impl Flank {
+    /// What it protects, in words.
+    pub fn of(&self, model: &Model) -> String {
+        let track = &model.graph.tracks[self.track];
+        let joint = |end: usize| &model.graph.joints[track.joints[end]].name;
+        match track.kind {
+            Kind::Point(point) => format!("the {} leg of point {}", self.word(model), model.points[point].name),
+            Kind::Plain => format!("the track from {} to {}", joint(0), joint(1)),
+        }
+    }
+
+    /// The word for its end.
+    pub fn word(&self, model: &Model) -> &'static str {
+        match (model.graph.tracks[self.track].kind, self.end) {
+            (Kind::Point(_), 1) => "normal",
+            (Kind::Point(_), _) => "reverse",
+            (Kind::Plain, 0) => "left",
+            (Kind::Plain, _) => "right",
+        }
+    }
 }
 
 /// One place of a path.
@@ -184,6 +206,8 @@ pub struct Place {
     pub circuit: usize,
     /// The points that the path runs over there.
     pub passed: Vec<Passed>,
+    /// The tracks that it runs over, points among them.
+    pub tracks: Vec<usize>,
     /// Every position that is needed there, flank included.
     pub positions: Positions,
     /// Where the place is named.
@@ -239,7 +263,7 @@ pub struct Route {
     pub stay: Ticks,
     /// The speed code.
     pub speed: SpeedCode,
-    /// The protection of the legs that the path does not use.
+    /// The protection of the legs that the path does not use, and of the tracks that it crosses.
     pub flanks: Vec<Flank>,
     /// Where it is named.
     pub span: Range<usize>,

@@ -184,7 +184,11 @@ fn over_a_scissors_crossover_no_point_is_a_guard_that_leads_under_the_train() {
     assert_eq!(["2a", "2b"].map(held), [Some(Position::Normal); 2], "as the table of such a station has them");
     let guards: Vec<&Guard> = route.flanks.iter().flat_map(|flank| &flank.guards).collect();
     let circuit = |name: &str| model.circuits.iter().position(|circuit| circuit.name == name).expect("it is there");
-    assert_eq!(guards, [&Guard::Standing(circuit("AR")), &Guard::Standing(circuit("BL"))]);
+    let point = |name: &str| model.points.iter().position(|point| point.name == name).expect("it is there");
+    // The other track of the crossing is left by the two points of the other crossover.
+    let crossed = ["2b", "2a"].map(|name| Guard::Point(point(name), Position::Normal));
+    let [after, before] = ["AR", "BL"].map(|name| Guard::Standing(circuit(name)));
+    assert_eq!(guards, [&after, &crossed[0], &crossed[1], &before]);
 }
 
 #[test]

@@ -491,9 +491,76 @@ fn entry_not_plain() {
     let says = "route P-1: point P1 lies in the entry P1T: a train there may stand on the other leg";
     breaks(&format!("{LOOP}\n{route}"), Rule::EntryNotPlain, says);
     let ends = "[[end]]\njoint = \"k\"\nkind = \"line\"\n[[end]]\njoint = \"l\"\nkind = \"line\"\n";
-    let text = change(LOOP, "name = \"W1\"", "left", "crossing = [{ left = \"k\", right = \"l\" }]\nleft");
+    let text = change(
+        LOOP,
+        "name = \"W1\"",
+        "left",
+        "crossing = [{ left = \"k\", right = \"l\", left_unprotected = \"gate\", right_unprotected = \"gate\" }]\nleft",
+    );
     let says = "route W-2: tracks cross in the entry W1: a train there may stand on the other one";
     breaks(&format!("{text}\n{ends}"), Rule::EntryNotPlain, says);
+}
+
+/// A single line that a track crosses on the level: from a siding without a signal, and from a trap point.
+const DIAMOND: &str = include_str!("files/diamond.toml");
+
+/// What stands on a track that crosses a path would roll into the train's side.
+#[test]
+fn no_flank_of_a_crossing() {
+    let compiled = Description::from_toml("diamond.toml", DIAMOND).unwrap().compile().unwrap();
+    let trap = "point T1 reverse as flank protection of the track from k1 to k2";
+    assert!(compiled.derived.iter().any(|note| note.about == "route W-A" && note.text == trap));
+    let dropped = |line: &str| {
+        let text = DIAMOND.replace(line, "");
+        assert_ne!(text, DIAMOND, "{line}");
+        text
+    };
+    breaks(
+        &dropped("left_unprotected = \"the derail at k1 is locked by hand\"\n"),
+        Rule::NoFlank,
+        "route W-A crosses the track from k1 to k2, and at k1 a vehicle may stand in S that faces no signal there; \
+         if none can, give that track of circuit X left_unprotected = \"the reason\"",
+    );
+    breaks(
+        &dropped("right_unprotected = \"trains in A2 obey signal A-W\"\n"),
+        Rule::NoFlank,
+        "route M-S crosses the track from b to c, and at c only signal A-W at stop keeps vehicles off it; \
+         if that is enough, give that track of circuit X right_unprotected",
+    );
+    // The point is held for nothing if what it keeps off is not all that may come.
+    let between =
+        "\n[[circuit]]\nname = \"U\"\nlength_m = 100\nleft = \"k2\"\nright = \"k3\"\n[[point]]\nname = \"T1\"";
+    let text = DIAMOND
+        .replace("\n[[point]]\nname = \"T1\"", between)
+        .replace("normal = \"k2\"", "normal = \"k3\"")
+        .replace("path = [\"T\", \"X\"", "path = [\"T\", \"U\", \"X\"");
+    breaks(&text, Rule::NoFlank, "and at k2 a vehicle may stand in U that faces no signal there");
+    breaks(
+        &DIAMOND.replace("the derail at k1 is locked by hand", " "),
+        Rule::NoFlank,
+        "the track from k1 to k2 lacks the reason why an end of it needs no protection",
+    );
+    // A buffer stop at the crossing itself: nothing stands before it.
+    let siding = "[[circuit]]\nname = \"S\"\nlength_m = 300\nleft = \"s\"\nright = \"k1\"\n";
+    let text = dropped(siding)
+        .replace("joint = \"s\"", "joint = \"k1\"")
+        .replace("left_unprotected = \"the derail at k1 is locked by hand\"\n", "")
+        .replace("path = [\"T\", \"X\", \"S\"]", "path = [\"T\", \"X\"]");
+    Description::from_toml("diamond.toml", &text).unwrap().compile().unwrap_or_else(|errors| panic!("{errors}"));
+}
+
+/// Plain line that a track crosses: no point is held for a line, so nothing but a reason or a buffer stop will do.
+#[test]
+fn no_flank_of_a_line() {
+    let crossing = "right = \"b\"\n\n[[circuit.crossing]]\nleft = \"x\"\nright = \"y\"\nleft_unprotected = \"a gate\"";
+    let text = change(LOOP, "name = \"W2\"", "right = \"b\"", crossing);
+    let yard = "\n[[circuit]]\nname = \"yard\"\nlength_m = 200\nleft = \"y\"\nright = \"z\"\n";
+    let ends = "\n[[end]]\njoint = \"x\"\nkind = \"buffer\"\n[[end]]\njoint = \"z\"\nkind = \"buffer\"\n";
+    breaks(
+        &format!("{text}{yard}{ends}"),
+        Rule::NoFlank,
+        "segment West crosses the track from x to y, and at y a vehicle may stand in yard that faces no signal there",
+    );
 }
 
 /// The segments that a file names are those that the tracks lead to, in the positions that the path holds.
@@ -646,7 +713,7 @@ fn line_across_a_segment() {
         LOOP,
         "name = \"W2\"",
         "right = \"b\"",
-        "right = \"b\"\n\n[[circuit.crossing]]\nleft = \"x\"\nright = \"y\"",
+        "right = \"b\"\n\n[[circuit.crossing]]\nleft = \"x\"\nright = \"y\"\nleft_unprotected = \"gate\"\nright_unprotected = \"gate\"",
     );
     let line = |joint: &str| format!("\n[[end]]\njoint = \"{joint}\"\nkind = \"line\"\n");
     let text = format!("{text}{}{}", line("x"), line("y"));
@@ -708,10 +775,9 @@ fn what_derives_from_the_tracks() {
     note("segment West", "throat: P1T");
     note("point P1", "detectors");
     let terminus = Description::from_toml("terminus", TERMINUS).unwrap().compile().unwrap();
-    let flank = terminus
-        .derived
-        .iter()
-        .any(|note| note.about == "route 3-D" && note.text == "point P4 normal as flank protection of point P3");
+    let flank = terminus.derived.iter().any(|note| {
+        note.about == "route 3-D" && note.text == "point P4 normal as flank protection of the reverse leg of point P3"
+    });
     assert!(flank, "{:?}", terminus.derived);
 }
 

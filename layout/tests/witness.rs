@@ -19,6 +19,9 @@ const CROSSOVER: &str = include_str!("files/crossover.toml");
 /// Two circuits in line between which there is no room for two trains.
 const FOULING: &str = include_str!("files/fouling.toml");
 
+/// A single line that a track crosses on the level.
+const DIAMOND: &str = include_str!("files/diamond.toml");
+
 type Size = Plan<64, 16, 32, 8>;
 
 /// A wrong derivation: its name, the file, what it does to the plan, and what is told.
@@ -253,6 +256,12 @@ const WRONG: &[Wrong] = &[
         |plan, it| plan.routes[it.route("W-2")].speed = SpeedCode(6),
         "its trains run at 75 km/h, and the file allows 45",
     ),
+    (
+        "a trap point beside a crossing is not held",
+        DIAMOND,
+        |plan, it| plan.routes[it.route("W-A")].path[0].positions = Positions::NONE,
+        "what is parked in T runs onto its path at k2, and faces no signal",
+    ),
     ("a line has no limit", LOOP, |plan, _| plan.line = SpeedLimits::NONE, "90 km/h is its limit, and the file has 75"),
     ("a circuit counts as clear at once", LOOP, |plan, _| plan.clear = 1, "clear_ms of the plan is 100 ms"),
     ("a loss is shorter", LOOP, |plan, _| plan.loss = 1, "shunt_loss_ms of the plan is 100 ms"),
@@ -297,8 +306,30 @@ fn every_wrong_plan_is_found() {
 /// Compiling asks: a layout whose plan differs is refused. Here the right ones are not.
 #[test]
 fn right_plans_agree() {
-    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER, FOULING] {
+    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER, FOULING, DIAMOND] {
         let (description, numbers) = Numbers::of(text);
         assert_eq!(differences(&description.station, &numbers.0.plan), []);
+    }
+}
+
+/// A reason is the file's: where it gives none, what may stand there and faces no signal is told.
+#[test]
+fn what_is_parked_is_found() {
+    let (_, numbers) = Numbers::of(DIAMOND);
+    for (line, says) in [
+        (
+            "left_unprotected = \"the derail at k1 is locked by hand\"\n",
+            &["W-A: what is parked in S runs onto its path at k1", "A-W: what is parked in S"][..],
+        ),
+        // Where a signal stands, it faces one.
+        ("right_unprotected = \"trains in A2 obey signal A-W\"\n", &[]),
+    ] {
+        let text = DIAMOND.replace(line, "");
+        assert_ne!(text, DIAMOND);
+        let station = Description::from_toml("station.toml", &text).unwrap_or_else(|errors| panic!("{errors}")).station;
+        let told: Vec<String> =
+            differences(&station, &numbers.0.plan).iter().map(|problem| problem.what.clone()).collect();
+        assert_eq!(told.len(), says.len(), "{told:?}");
+        assert!(told.iter().zip(says).all(|(told, says)| told.contains(says)), "{told:?}");
     }
 }

@@ -116,20 +116,19 @@ fn overlaps(model: &Model, cycle: u32) -> String {
 }
 
 fn flanks(model: &Model) -> String {
-    let legs: BTreeSet<_> = model
-        .routes
-        .iter()
-        .flat_map(|route| &route.flanks)
+    let routes = model.routes.iter().flat_map(|route| &route.flanks);
+    let ends: BTreeSet<_> = routes
+        .chain(model.segments.iter().flat_map(|segment| &segment.flanks))
         .filter(|flank| flank.guards.iter().any(|guard| matches!(guard, Guard::Declared(_))))
-        .map(|flank| (flank.point, flank.leg))
+        .map(|flank| (flank.track, flank.end))
         .collect();
-    match legs.len() {
-        0 => {
-            "Every leg that a route does not use is protected by a point, a buffer stop or the route itself.".to_owned()
-        }
+    match ends.len() {
+        0 => "Every leg that a route does not use, and every track that one crosses, is protected by a point, a \
+              buffer stop or the route itself."
+            .to_owned(),
         count => format!(
             "{} not protected; the file gives a reason for each: see what is to be confirmed.",
-            number(count, "leg of a point is", "legs of points are")
+            number(count, "end of a track beside a route is", "ends of tracks beside routes are")
         ),
     }
 }

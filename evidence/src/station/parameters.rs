@@ -98,6 +98,17 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
     let station = &description.station;
     let one = |origin, about: &str, text: String, at: String| Confirm { origin, about: about.to_owned(), text, at };
     let mut all = Vec::new();
+    for circuit in &station.circuits {
+        for track in circuit.tracks() {
+            for (end, reason) in ["left", "right"].into_iter().zip(track.unprotected) {
+                let Some(reason) = reason else { continue };
+                let [left, right] = track.joints;
+                let about = format!("circuit {}, track from {left} to {right}, {end} end", circuit.name);
+                let text = format!("no flank protection: {reason}");
+                all.push(one(Origin::Reason, &about, text, at(description, &reason.span)));
+            }
+        }
+    }
     for point in &station.points {
         for (leg, reason) in [("normal", &point.normal_unprotected), ("reverse", &point.reverse_unprotected)] {
             if let Some(reason) = reason {

@@ -1,10 +1,13 @@
 //! Rules of one route: times, flank protection, positions.
 
+use std::ops::Range;
+
 use atc_kernel::time::Ticks;
 
 use crate::derive::positions::{opposite, word};
-use crate::form;
-use crate::model::{Guard, Model, Route};
+use crate::form::{self, Position};
+use crate::graph::Kind;
+use crate::model::{Flank, Guard, Model, Route};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -47,33 +50,55 @@ fn strokes(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec
 }
 
 fn flanks(model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    let held = |point: usize, position: Position| {
+        route.path.iter().any(|place| place.positions.get(&point) == Some(&position))
+    };
     for flank in &route.flanks {
-        let point = &model.points[flank.point].name;
-        for guard in &flank.guards {
-            let (found, hint) = match guard {
-                Guard::Own | Guard::Buffer | Guard::Declared(_) => continue,
-                Guard::Point(other, position) => {
-                    let held = route.path.iter().any(|place| place.positions.get(other) == Some(position));
-                    if held {
-                        continue;
-                    }
-                    let (other, away) = (&model.points[*other].name, word(*position));
-                    (format!("point {other} is not held {away}"), format!("hold it {away}, or"))
-                }
-                Guard::Signal(signal) => {
-                    (format!("only signal {signal} at stop keeps vehicles off it"), "if that is enough,".to_owned())
-                }
-                Guard::Line => ("nothing keeps vehicles off it".to_owned(), "mend the tracks, or".to_owned()),
-                Guard::Standing(circuit) => {
-                    let circuit = &model.circuits[*circuit].name;
-                    (format!("a vehicle may stand in {circuit} that faces no signal there"), "if none can,".to_owned())
-                }
-            };
-            let leg = word(flank.leg);
-            let what = format!("route {} runs past the {leg} leg of point {point}, and {found}", route.name);
-            let right = format!("{hint} give point {point} {leg}_unprotected = \"the reason\"");
-            problems.push(Problem::new(Rule::NoFlank, &route.span, what, right));
+        protection(model, flank, &format!("route {}", route.name), &route.span, &held, problems);
+    }
+}
+
+/// The protection at one end of a track beside a path or a segment, which holds these positions.
+pub fn protection(
+    model: &Model,
+    flank: &Flank,
+    who: &str,
+    span: &Range<usize>,
+    held: &dyn Fn(usize, Position) -> bool,
+    problems: &mut Vec<Problem>,
+) {
+    let of = flank.of(model);
+    let end = flank.word(model);
+    let track = &model.graph.tracks[flank.track];
+    let (passes, what) = match track.kind {
+        Kind::Point(point) => (format!("runs past {of}, and"), format!("point {}", model.points[point].name)),
+        Kind::Plain => {
+            let joint = &model.graph.joints[track.joints[flank.end]].name;
+            let circuit = &model.circuits[track.circuit].name;
+            (format!("crosses {of}, and at {joint}"), format!("that track of circuit {circuit}"))
         }
+    };
+    for guard in &flank.guards {
+        let (found, hint) = match guard {
+            Guard::Own | Guard::Buffer | Guard::Declared(_) => continue,
+            Guard::Point(other, position) => {
+                if held(*other, *position) {
+                    continue;
+                }
+                let (other, away) = (&model.points[*other].name, word(*position));
+                (format!("point {other} is not held {away}"), format!("hold it {away}, or"))
+            }
+            Guard::Signal(signal) => {
+                (format!("only signal {signal} at stop keeps vehicles off it"), "if that is enough,".to_owned())
+            }
+            Guard::Line => ("nothing keeps vehicles off it".to_owned(), "mend the tracks, or".to_owned()),
+            Guard::Standing(circuit) => {
+                let circuit = &model.circuits[*circuit].name;
+                (format!("a vehicle may stand in {circuit} that faces no signal there"), "if none can,".to_owned())
+            }
+        };
+        let right = format!("{hint} give {what} {end}_unprotected = \"the reason\"");
+        problems.push(Problem::new(Rule::NoFlank, span, format!("{who} {passes} {found}"), right));
     }
 }
 

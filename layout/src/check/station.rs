@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use atc_kernel::time::Ticks;
 
-use crate::derive::way::{Step, through};
+use super::routes::protection;
+use crate::derive::way::of_segment;
 use crate::form::{EndKind, Station};
 use crate::graph::{Kind, Passed};
-use crate::model::{Model, Positions, Route, Segment};
+use crate::model::{Model, Route, Segment};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -249,19 +250,10 @@ fn segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
             continue;
         }
         // A train must be able to run through all of them: over a crossing the tracks lead elsewhere.
-        let Some(first) = segment.circuits.first() else { continue };
-        let starts = match segment.throat {
-            Some(throat) => model.graph.between(throat, *first),
-            None => model.graph.borders(*first),
-        };
-        let step = |(place, circuit): (usize, &usize)| Step {
-            circuit: *circuit,
-            positions: Positions::new(),
-            span: span(place).clone(),
-        };
-        let steps: Vec<Step> = segment.circuits.iter().enumerate().map(step).collect();
+        let spans: Vec<Range<usize>> = given.circuits.iter().map(|named| named.span.clone()).collect();
         let right = "name the circuits along one track";
-        match through(&model.graph, &name, &starts, &steps) {
+        match of_segment(model, segment, &spans) {
+            Ok(ways) if ways.is_empty() => {}
             Err(problem) => {
                 let what = format!("segment {}: {}", segment.name, problem.what);
                 problems.push(Problem::new(Rule::SegmentOrder, &problem.span, what, right));
@@ -270,7 +262,12 @@ fn segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
                 let what = format!("segment {}: its tracks lead to a buffer stop", segment.name);
                 problems.push(Problem::new(Rule::SegmentOrder, &segment.span, what, right));
             }
-            Ok(_) => {}
+            Ok(_) => {
+                let who = format!("segment {}", segment.name);
+                for flank in &segment.flanks {
+                    protection(model, flank, &who, &segment.span, &|_, _| false, problems);
+                }
+            }
         }
     }
 }

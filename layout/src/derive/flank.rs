@@ -17,14 +17,48 @@ pub struct Path {
     pub circuits: Circuits,
 }
 
-/// What is on the tracks that lead to the unused leg of `passed`, which `path` runs over.
-pub fn guards(graph: &Graph, signals: &Signals, path: &Path, passed: Passed) -> Vec<Guard> {
-    let mut walk = Walk { graph, signals, path, seen: BTreeSet::new(), guards: Vec::new() };
-    let point = graph.tracks.iter().position(|track| track.kind == Kind::Point(passed.point));
-    if let Some(point) = point {
-        walk.outward(point, passed.other_leg);
+/// What is on the tracks that lead to an end of `track`, seen from `path`.
+pub fn guards(graph: &Graph, signals: &Signals, path: &Path, track: usize, end: usize) -> Vec<Guard> {
+    if let Some(reason) = graph.tracks[track].unprotected.get(end).and_then(Option::as_ref) {
+        return vec![Guard::Declared(reason.clone())];
     }
+    let mut walk = Walk { graph, signals, path, seen: BTreeSet::new(), guards: Vec::new() };
+    walk.outward(track, graph.tracks[track].joints[end]);
     walk.guards
+}
+
+/// The ends of the tracks of a circuit from which a vehicle may come onto a path that runs over `run` there: the unused legs of its
+/// points, and the ends of the tracks that it crosses.
+pub fn beside(graph: &Graph, circuit: usize, run: &[usize], passed: &[Passed]) -> Vec<(usize, usize)> {
+    let legs = passed.iter().filter_map(|passed| {
+        let track = graph.of_point(passed.point)?;
+        Some((track, graph.tracks[track].joints.iter().position(|joint| *joint == passed.other_leg)?))
+    });
+    let crossing = (0..graph.tracks.len()).filter(|number| {
+        let track = &graph.tracks[*number];
+        track.circuit == circuit && track.kind == Kind::Plain && !run.contains(number)
+    });
+    let ends = crossing.flat_map(|track| [(track, 0), (track, 1)]);
+    legs.chain(ends.filter(|(track, end)| !continues_a_leg(graph, run, *track, *end))).collect()
+}
+
+/// Whether all that comes to the other end of `track` is the unused leg of a point that the path runs over: who comes in at `end` is asked
+/// for there.
+fn continues_a_leg(graph: &Graph, run: &[usize], track: usize, end: usize) -> bool {
+    let (mut at, mut joint) = (track, graph.tracks[track].joints[1 - end]);
+    let mut seen = BTreeSet::from([track]);
+    loop {
+        let Some(next) = graph.joints[joint].tracks.iter().copied().find(|next| *next != at) else { return false };
+        let within = graph.tracks[next].circuit == graph.tracks[track].circuit;
+        if !within || graph.tracks[next].kind != Kind::Plain {
+            return within && run.contains(&next) && graph.tracks[next].joints[0] != joint;
+        }
+        if !seen.insert(next) {
+            return false;
+        }
+        let [one, other] = graph.tracks[next].joints[..] else { return false };
+        (at, joint) = (next, if one == joint { other } else { one });
+    }
 }
 
 struct Walk<'a> {
@@ -74,7 +108,8 @@ impl Walk<'_> {
             // Over a scissors crossover both positions lead under the train: what keeps vehicles off is farther away.
             self.on(next, joint);
         } else {
-            self.guards.push(Guard::Point(point, away));
+            let guard = self.or_standing(track, Guard::Point(point, away));
+            self.guards.push(guard);
         }
     }
 

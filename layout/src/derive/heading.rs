@@ -85,8 +85,10 @@ pub fn align(station: &mut Station) {
         let is_it = |left: &At<String>| graph.joints[track.joints[0]].name == left.value;
         if circuit.left.as_ref().is_some_and(is_it) {
             core::mem::swap(&mut circuit.left, &mut circuit.right);
+            core::mem::swap(&mut circuit.left_unprotected, &mut circuit.right_unprotected);
         } else if let Some(crossing) = circuit.crossings.iter_mut().find(|crossing| is_it(&crossing.left)) {
             core::mem::swap(&mut crossing.left, &mut crossing.right);
+            core::mem::swap(&mut crossing.left_unprotected, &mut crossing.right_unprotected);
         }
     }
 }

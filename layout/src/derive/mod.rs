@@ -124,16 +124,8 @@ fn points(station: &Station, names: &Names, notes: &mut Vec<Note>, problems: &mu
             detectors,
             fouled_in,
             throw_ms: throw.value,
-            unprotected: [&given.normal_unprotected, &given.reverse_unprotected]
-                .map(|reason| reason.as_ref().map(|reason| reason.value.clone())),
             span: given.name.span.clone(),
         });
-        for reason in [&given.normal_unprotected, &given.reverse_unprotected].into_iter().flatten() {
-            if reason.trim().is_empty() {
-                let what = format!("point {} lacks the reason why a leg needs no protection", given.name);
-                problems.push(Problem::new(Rule::NoFlank, &reason.span, what, "say what keeps vehicles off"));
-            }
-        }
     }
     points
 }
@@ -183,6 +175,7 @@ fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Ve
             ));
         }
         segments.push(Segment {
+            flanks: Vec::new(),
             name: given.name.value.clone(),
             circuits: given.circuits.iter().filter_map(|name| names.circuit(name, problems)).collect(),
             line: given.line.as_ref().map(|name| name.value.clone()),

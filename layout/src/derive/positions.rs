@@ -1,11 +1,11 @@
 //! The positions that a route needs beyond the points it runs over: flank points, and points that a circuit of the path detects.
 
-use super::flank::{Path, Signals, guards};
+use super::flank::{Path, Signals, beside, guards};
+use super::way::of_segment;
 use crate::form::Position;
-use crate::graph::Kind;
-use crate::model::{Circuits, Flank, Guard, Model, Note, Positions, Route};
+use crate::model::{Circuits, Flank, Guard, Model, Note, Positions, Route, Segment};
 
-/// Fills in the flank protection and the positions of every route with a path.
+/// Fills in the flank protection and the positions of every route with a path, and the flank protection of the segments.
 pub fn positions(model: &mut Model) {
     let signals: Signals = model
         .routes
@@ -21,6 +21,9 @@ pub fn positions(model: &mut Model) {
         }
         model.routes[number] = route;
     }
+    for number in 0..model.segments.len() {
+        model.segments[number].flanks = crossed(model, &signals, &model.segments[number]);
+    }
 }
 
 fn path(route: &Route) -> Path {
@@ -33,34 +36,46 @@ fn path(route: &Route) -> Path {
 
 fn flanks(model: &mut Model, signals: &Signals, route: &mut Route) {
     let path = path(route);
-    for place in 0..route.path.len() {
-        for passed in route.path[place].passed.clone() {
-            let leg = opposite(passed.position);
-            let declared = &model.points[passed.point].unprotected[usize::from(leg == Position::Reverse)];
-            if let Some(reason) = declared {
-                let guards = vec![Guard::Declared(reason.clone())];
-                route.flanks.push(Flank { point: passed.point, leg, guards });
-                continue;
-            }
-            let guards = guards(&model.graph, signals, &path, passed);
-            for guard in &guards {
+    for number in 0..route.path.len() {
+        let place = &route.path[number];
+        for (track, end) in beside(&model.graph, place.circuit, &place.tracks, &place.passed) {
+            let guards = guards(&model.graph, signals, &path, track, end);
+            let flank = Flank { track, end, guards };
+            for guard in &flank.guards {
                 let Guard::Point(point, position) = guard else { continue };
                 // What the file gives stands; whether it protects is checked later.
                 if route.path.iter().any(|place| place.positions.contains_key(point)) {
                     continue;
                 }
-                route.path[place].positions.insert(*point, *position);
+                route.path[number].positions.insert(*point, *position);
                 let text = format!(
-                    "point {} {} as flank protection of point {}",
+                    "point {} {} as flank protection of {}",
                     model.points[*point].name,
                     word(*position),
-                    model.points[passed.point].name
+                    flank.of(model)
                 );
                 model.notes.push(Note { about: format!("route {}", route.name), text });
             }
-            route.flanks.push(Flank { point: passed.point, leg, guards });
+            route.flanks.push(flank);
         }
     }
+}
+
+/// The protection of plain line where other tracks cross it: no point is held for it.
+fn crossed(model: &Model, signals: &Signals, segment: &Segment) -> Vec<Flank> {
+    let path = Path { points: Positions::new(), circuits: segment.circuits.iter().copied().collect() };
+    let ways = of_segment(model, segment, &[]).unwrap_or_default();
+    let mut found = Vec::new();
+    for (place, circuit) in segment.circuits.iter().enumerate() {
+        // Where the file does not say which of two tracks is the line, each is asked for.
+        let over =
+            |track: &usize| ways.iter().all(|way| way.ways.get(place).is_some_and(|way| way.tracks.contains(track)));
+        let run: Vec<usize> = (0..model.graph.tracks.len()).filter(over).collect();
+        for (track, end) in beside(&model.graph, *circuit, &run, &[]) {
+            found.push(Flank { track, end, guards: guards(&model.graph, signals, &path, track, end) });
+        }
+    }
+    found
 }
 
 /// Positions the points whose detectors are among the circuits of a place, as the kernel's rule asks.
@@ -96,7 +111,7 @@ fn detected(model: &mut Model, route: &mut Route) {
 
 /// The position whose leg does not lead to one of `circuits`; normal if both do, or neither.
 fn away_from(model: &Model, point: usize, circuits: &Circuits) -> Position {
-    let track = model.graph.tracks.iter().find(|track| track.kind == Kind::Point(point));
+    let track = model.graph.of_point(point).map(|track| &model.graph.tracks[track]);
     let leads = |leg: usize| {
         track.is_some_and(|track| {
             model.graph.circuits_at(track.joints[leg]).any(|at| at != track.circuit && circuits.contains(&at))

@@ -106,7 +106,7 @@ fn places(path: Vec<Step>, way: Through) -> Vec<Place> {
     let made = path.into_iter().zip(way.ways).map(|(step, way)| {
         let mut positions = step.positions;
         positions.extend(way.passed.iter().map(|passed| (passed.point, passed.position)));
-        Place { circuit: step.circuit, passed: way.passed, positions, span: step.span }
+        Place { circuit: step.circuit, passed: way.passed, tracks: way.tracks, positions, span: step.span }
     });
     made.collect()
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::form::Position;
 use crate::graph::{Graph, Passed, Way};
-use crate::model::Positions;
+use crate::model::{Model, Positions, Segment};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -86,6 +86,25 @@ pub fn through(
     }
     found.sort_by_key(Through::reversed);
     Ok(found)
+}
+
+/// Every way along a segment, outward from the station; `spans` says where the file names its circuits.
+///
+/// # Errors
+/// The first circuit that no way reaches.
+pub fn of_segment(model: &Model, segment: &Segment, spans: &[Range<usize>]) -> Result<Vec<Through>, Problem> {
+    let Some(first) = segment.circuits.first() else { return Ok(Vec::new()) };
+    let starts = match segment.throat {
+        Some(throat) => model.graph.between(throat, *first),
+        None => model.graph.borders(*first),
+    };
+    let step = |(place, circuit): (usize, &usize)| Step {
+        circuit: *circuit,
+        positions: Positions::new(),
+        span: spans.get(place).unwrap_or(&segment.span).clone(),
+    };
+    let steps: Vec<Step> = segment.circuits.iter().enumerate().map(step).collect();
+    through(&model.graph, &|circuit| model.circuits[circuit].name.clone(), &starts, &steps)
 }
 
 fn broken(

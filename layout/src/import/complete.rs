@@ -1,13 +1,13 @@
 //! What a file of another form leaves open and a layout must say: filled in and reported, each to be confirmed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Report;
 use crate::at::At;
 use crate::derive;
-use crate::form::{EndKind, Position, Segment, Station};
-use crate::graph::Graph;
-use crate::model::Guard;
+use crate::form::{EndKind, Segment, Station};
+use crate::graph::{Graph, Kind, Track};
+use crate::model::{Guard, Model};
 use crate::names::Names;
 use crate::problem::Problem;
 use crate::rule::Rule;
@@ -24,34 +24,7 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
     derive::heading::align(station);
     segments(station, report);
     let model = derive::model(station, &mut Vec::new());
-    let mut open = BTreeSet::new();
-    for route in &model.routes {
-        for flank in &route.flanks {
-            let kept = |guard: &Guard| match guard {
-                Guard::Point(point, position) => {
-                    route.path.iter().any(|place| place.positions.get(point) == Some(position))
-                }
-                Guard::Signal(_) | Guard::Line | Guard::Standing(_) => false,
-                Guard::Own | Guard::Buffer | Guard::Declared(_) => true,
-            };
-            if !flank.guards.iter().all(kept) {
-                open.insert((flank.point, flank.leg));
-            }
-        }
-    }
-    for (point, leg) in open {
-        let given = &mut station.points[point];
-        let (field, word) = match leg {
-            Position::Normal => (&mut given.normal_unprotected, "normal"),
-            Position::Reverse => (&mut given.reverse_unprotected, "reverse"),
-        };
-        *field = Some(At::derived(format!(
-            "assumed on import: signals and ATC keep trains off, as the {form} file names no flank point"
-        )));
-        report
-            .defaulted
-            .push(format!("point {}: no point protects its {word} leg; signals and ATC are taken to do", given.name));
-    }
+    unprotected(station, &model, form, report);
     for (number, route) in model.routes.iter().enumerate() {
         let at_line = route.to.is_some() || model.graph.joints.get(route.exit).is_some_and(|joint| joint.end.is_some());
         let length: u32 = route.overlap.iter().map(|circuit| u32::from(model.circuits[*circuit].length.0)).sum();
@@ -70,6 +43,55 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
             ));
             *stay = At::derived(values.stay_ms.value);
         }
+    }
+}
+
+/// Gives a reason wherever no flank point protects a path, and reports it.
+fn unprotected(station: &mut Station, model: &Model, form: &str, report: &mut Report) {
+    let mut open = BTreeMap::new();
+    let routes = model.routes.iter().flat_map(|route| route.flanks.iter().map(move |flank| (Some(route), flank)));
+    let segments = model.segments.iter().flat_map(|segment| segment.flanks.iter().map(|flank| (None, flank)));
+    for (route, flank) in routes.chain(segments) {
+        let kept = |guard: &Guard| match guard {
+            Guard::Point(point, position) => {
+                route.is_some_and(|route| route.path.iter().any(|place| place.positions.get(point) == Some(position)))
+            }
+            Guard::Signal(_) | Guard::Line | Guard::Standing(_) => false,
+            Guard::Own | Guard::Buffer | Guard::Declared(_) => true,
+        };
+        if !flank.guards.iter().all(kept) {
+            open.insert((flank.track, flank.end), flank);
+        }
+    }
+    for ((track, end), flank) in open {
+        let at = &model.graph.tracks[track];
+        let field = match (at.kind, end) {
+            (Kind::Point(point), 1) => Some(&mut station.points[point].normal_unprotected),
+            (Kind::Point(point), _) => Some(&mut station.points[point].reverse_unprotected),
+            (Kind::Plain, _) => {
+                let plain = |other: &&Track| other.circuit == at.circuit && other.kind == Kind::Plain;
+                let place = model.graph.tracks[..track].iter().filter(plain).count();
+                station.circuits[at.circuit]
+                    .unprotected_mut(place)
+                    .map(|[left, right]| if end == 0 { left } else { right })
+            }
+        };
+        let Some(field) = field else { continue };
+        *field = Some(At::derived(format!(
+            "assumed on import: signals and ATC keep trains off, as the {form} file names no flank point"
+        )));
+        let word = flank.word(model);
+        report.defaulted.push(match at.kind {
+            Kind::Point(point) => format!(
+                "point {}: no point protects its {word} leg; signals and ATC are taken to do",
+                model.points[point].name
+            ),
+            Kind::Plain => format!(
+                "circuit {}: no point protects {word} of {}; signals and ATC are taken to do",
+                model.circuits[at.circuit].name,
+                flank.of(model)
+            ),
+        });
     }
 }
 

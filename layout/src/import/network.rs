@@ -288,7 +288,7 @@ impl Divided {
                         if circuit.left.is_none() {
                             (circuit.left, circuit.right) = (Some(left), Some(right));
                         } else {
-                            circuit.crossings.push(Crossing { left, right });
+                            circuit.crossings.push(Crossing { left, right, ..Crossing::default() });
                         }
                     }
                     (Stop::Port(switch, port), Stop::Border(name)) | (Stop::Border(name), Stop::Port(switch, port)) => {

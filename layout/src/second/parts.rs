@@ -7,7 +7,6 @@ use roxmltree::Node;
 use super::Difference;
 use super::compare::left_is_normal;
 use super::file::{Divider, End, File, figure, milliseconds, refers};
-use crate::graph::Kind;
 use crate::model::{Model, Route};
 use crate::problem::Source;
 
@@ -289,7 +288,7 @@ fn beyond_branch<'b>(file: &'b File<'b>, switch: &str, side: &str) -> Option<Vec
 fn beyond_leg(model: &Model, point: usize, leg: usize) -> BTreeSet<String> {
     let graph = &model.graph;
     let mut found = BTreeSet::new();
-    let Some(track) = graph.tracks.iter().position(|track| track.kind == Kind::Point(point)) else { return found };
+    let Some(track) = graph.of_point(point) else { return found };
     let Some(joint) = graph.tracks.get(track).and_then(|track| track.joints.get(leg)).copied() else { return found };
     let mut open = vec![(track, joint)];
     let mut seen = BTreeSet::new();

@@ -19,6 +19,13 @@ struct Path<'a> {
     signals: &'a BTreeSet<(usize, usize)>,
 }
 
+impl Path<'_> {
+    /// Whether the train of the path runs over the stretch of a vehicle.
+    fn runs_over(&self, vehicle: Vehicle) -> bool {
+        self.way.run.iter().any(|train| train.piece == vehicle.piece)
+    }
+}
+
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
     pub(super) fn flanks(&self, ways: &[Option<Way>], found: &mut Vec<Problem>) {
         let signals: BTreeSet<(usize, usize)> = ways
@@ -34,6 +41,12 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
             let out = self.plan.routes[number].to != SegmentSet::EMPTY;
             for vehicle in self.intruders(&path, out) {
                 let against = self.tracks.ahead(vehicle) == way.exit;
+                if !against && self.stands(&path, vehicle) {
+                    let at = &self.tracks.joints[self.tracks.ahead(vehicle)];
+                    let circuit = self.circuit(self.tracks.piece(vehicle).circuit);
+                    let what = format!("what is parked in {circuit} runs onto its path at {at}, and faces no signal");
+                    found.push(self.differs(number, &what));
+                }
                 let comes = self.comes_from(&path, vehicle, &mut BTreeSet::new());
                 // A line without a way in has no direction towards the station: whoever comes against the route comes by a route.
                 if let Some(joint) = comes.filter(|joint| !against || self.has_way_in(*joint)) {
@@ -78,6 +91,41 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         all
     }
 
+    /// Whether a vehicle that is parked there would come under the train of the path, or into its side.
+    fn stands(&self, path: &Path<'_>, vehicle: Vehicle) -> bool {
+        let circuit = self.tracks.piece(vehicle).circuit;
+        let stopped = path.signals.contains(&(self.tracks.ahead(vehicle), circuit));
+        let mut onward = self.tracks.onward(vehicle);
+        !stopped
+            && !self.tracks.diverts(vehicle, &path.stand)
+            && onward.any(|next| self.meets(path, next, &mut BTreeSet::new()))
+    }
+
+    /// Whether a vehicle that runs in a circuit of the path comes onto the way of the train, or onto a track that crosses it.
+    fn meets(&self, path: &Path<'_>, vehicle: Vehicle, seen: &mut BTreeSet<Vehicle>) -> bool {
+        let piece = self.tracks.piece(vehicle);
+        if !path.circuits.contains(&piece.circuit) || self.tracks.diverts(vehicle, &path.stand) || !seen.insert(vehicle)
+        {
+            return false;
+        }
+        let mut way = path.way.run.iter().map(|train| self.tracks.piece(*train));
+        // A point is one track, whichever leg the train uses.
+        let on_the_way = way.any(|over| over.track == piece.track);
+        on_the_way || piece.over.is_none() || self.tracks.onward(vehicle).any(|next| self.meets(path, next, seen))
+    }
+
+    /// Whether the file gives a reason for the end of a plain track over which a vehicle has come onto it.
+    fn is_reasoned(&self, vehicle: Vehicle) -> bool {
+        let joint = &self.tracks.joints[self.tracks.behind(vehicle)];
+        let circuit = &self.station.circuits[self.tracks.piece(vehicle).circuit];
+        let crossing = circuit.crossings.iter().map(|track| {
+            [(&track.left.value, &track.left_unprotected), (&track.right.value, &track.right_unprotected)]
+        });
+        let ends = circuit.left.iter().map(|at| (&at.value, &circuit.left_unprotected));
+        let ends = ends.chain(circuit.right.iter().map(|at| (&at.value, &circuit.right_unprotected)));
+        ends.chain(crossing.flatten()).any(|(at, reason)| at == joint && reason.is_some())
+    }
+
     /// Whether all that a vehicle in a circuit of the path can do is to come to the way over a leg that the file gives a reason for.
     fn is_declared(&self, path: &Path<'_>, vehicle: Vehicle, seen: &mut BTreeSet<Vehicle>) -> bool {
         let piece = self.tracks.piece(vehicle);
@@ -91,6 +139,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
             let reason =
                 if position == Position::Normal { &given.normal_unprotected } else { &given.reverse_unprotected };
             return vehicle.toward == 0 && needs != position && reason.is_some();
+        }
+        if piece.over.is_none() && !path.runs_over(vehicle) && self.is_reasoned(vehicle) {
+            return true;
         }
         if !path.circuits.contains(&piece.circuit) || !seen.insert(vehicle) {
             return false;

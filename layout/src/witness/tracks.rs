@@ -14,7 +14,7 @@ pub struct Piece {
     /// The point that it leads over, and the position that a vehicle needs.
     pub over: Option<(usize, Position)>,
     /// The two stretches of a point are one track: no vehicle runs from one onto the other.
-    track: usize,
+    pub track: usize,
 }
 
 /// A vehicle on a stretch that leaves it over this end of it.

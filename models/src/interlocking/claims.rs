@@ -89,6 +89,10 @@ impl<D: Device> Yard<D> {
             return Harm::Staff;
         }
         let ground = &self.station.ground;
+        let mut points = ground.points_in.iter().zip(&after.blades);
+        if points.any(|(lies, blade)| mask(output.confirmed) >> lies & 1 == 1 && blade.rests().is_none()) {
+            return Harm::Staff;
+        }
         let shows = |routes: u8| routes & after.shown.proceed != 0;
         if ground
             .signals
@@ -271,7 +275,7 @@ impl<D: Device> Yard<D> {
         if self.environment.blocks != 0 || self.environment.staff_beyond.is_some() {
             claims.push(Claim::<Self>::always(
                 "no-staff-hit",
-                "no train is in a circuit whose block was confirmed",
+                "no train is in a circuit whose block was confirmed, and no point moves there",
                 |_, s| s.harm != Harm::Staff,
             ));
         }

@@ -118,7 +118,7 @@ pub enum Harm {
     Proceed,
     /// A telegram lets a train run over a circuit with another train, or that is granted to another one, or over a point that does not lie right.
     Authority,
-    /// A train is in a circuit whose block was confirmed to staff, of this station or of the neighbour.
+    /// A train is in a circuit whose block was confirmed to staff, of this station or of the neighbour; or a point moves there.
     Staff,
     /// A telegram has a higher speed code than a restriction.
     Speed,

@@ -110,6 +110,7 @@ pub const UNIQUE_STATES: &[(&str, usize)] = &[
     ("interlocking-loop-line-blocked-own", 9_814),
     ("interlocking-loop-falsely-occupied", 6_821),
     ("interlocking-loop-settling", 40_146),
+    ("interlocking-loop-settling-blocked", 64_984),
     ("interlocking-loop-start", 3_722),
     ("interlocking-loop-restart", 34_546),
     ("interlocking-junction", 4_769),

@@ -1,6 +1,6 @@
 //! What is an accident: judged on the ground, never on what the device remembers.
 
-use super::ground::{Ground, Mask, bit, members};
+use super::ground::{Ground, Mask, Piece, bit, members};
 use super::point::Points;
 use super::train::{Driver, Train};
 
@@ -15,7 +15,7 @@ pub enum Family {
     Speed,
     /// A train over a restriction that is under a part of it.
     Restriction,
-    /// A worker struck whose block was confirmed.
+    /// Who works in a block that was confirmed is struck by a train, or by a point that moves.
     Worker,
     /// Two trains that both have authority over one circuit, or still run on it.
     Authority,
@@ -86,6 +86,14 @@ const TOLERANCE_MM_S: i64 = 300;
 pub fn judge(ground: &Ground, trains: &[Train], points: &Points, truth: &Truth, sought: &[Family]) -> Option<Accident> {
     let seek = |family: Family| sought.contains(&family);
     let found = |family: Family, text: String| Some(Accident { family, cycle: truth.now, text });
+    if seek(Family::Worker) && truth.workers != 0 {
+        let moving = |piece: &Piece| piece.point.filter(|point| points.moves(*point));
+        let mut among = ground.pieces.iter().filter(|piece| bit(piece.circuit) & truth.workers != 0);
+        if let Some((point, circuit)) = among.find_map(|piece| Some((moving(piece)?, piece.circuit))) {
+            let (point, place) = (&ground.points[point], &ground.circuits[circuit]);
+            return found(Family::Worker, format!("point {point} moves among those who work on {place}"));
+        }
+    }
     for (number, train) in trains.iter().enumerate() {
         if seek(Family::Worker) && train.under & truth.workers != 0 {
             let place = ground.named(train.under & truth.workers);

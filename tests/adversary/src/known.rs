@@ -162,6 +162,17 @@ pub const KNOWN: &[Fault] = &[
         model: "interlocking-loop-restart",
     },
     Fault {
+        name: "point leaves among staff",
+        session: "none: a fourteenth reader found it",
+        must: "no block is confirmed while a point in it may yet leave its position",
+        arsenal: Arsenal { point: 30, block: 30, slow_points: true, ..TELEGRAMS },
+        ends_in: &[Family::Worker],
+        layout: LOOP,
+        old_rule: &["blocked-point-unsettled"],
+        seed: 1,
+        model: "interlocking-loop-settling-blocked",
+    },
+    Fault {
         name: "telegram against the direction",
         session: "telegram-against-the-direction",
         must: "a telegram says for which direction of travel it is, and a train that faces the other way has none",

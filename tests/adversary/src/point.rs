@@ -54,6 +54,11 @@ impl Points {
         self.blades[point].left == 0 && self.blades[point].reverse == reverse
     }
 
+    /// Whether it is in its stroke.
+    pub fn moves(&self, point: usize) -> bool {
+        self.blades[point].left > 0
+    }
+
     /// Its detection is lost for so many cycles.
     pub fn blind(&mut self, point: usize, cycles: i64) {
         self.blades[point].blind = cycles;

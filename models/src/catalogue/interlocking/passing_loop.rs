@@ -296,6 +296,24 @@ fn false_occupancy_and_start() -> Vec<Entry> {
         ),
         yard(
             about(
+                "interlocking-loop-settling-blocked",
+                "The western throat is blocked in any cycle, also just after its point was driven: the block is confirmed only when the point can no \
+                 longer leave, and nothing drives it after that.",
+                "the same; the throat is blocked and unblocked in any cycle",
+                &["ILK-16", "ILK-23"],
+                SOUND,
+            ),
+            station.with(|plan| plan.settle = 2),
+            Environment {
+                drives: Drives::AfterTheDrive,
+                requests: [following(1).requests, drives(0)].concat(),
+                blocks: 1 << passing::WEST,
+                ..following(1)
+            },
+            Purpose::Safe(&[Sight::Arrived, Sight::ConfirmedAhead]),
+        ),
+        yard(
+            about(
                 "interlocking-loop-start",
                 "A device starts with a train before a signal that showed proceed: nothing moves until the train has passed it or stands.",
                 "routes are set and withdrawn, segments turned and a point driven by individual commands in any cycle; the train passes the signal for as \
