@@ -55,9 +55,6 @@ pub fn join(mut runs: Vec<(String, Results)>) -> Result<Results, Vec<Fault>> {
         phases: Vec::new(),
     };
     let mut from: BTreeMap<String, usize> = BTreeMap::new();
-    // The order of the engines is that of a run with all of them: a shard may have nothing for the first one.
-    let engines = |run: &Results| run.campaigns.iter().map(|one| one.campaign.engine.clone()).collect::<Vec<_>>();
-    let engines = all.iter().map(engines).max_by_key(Vec::len).unwrap_or_default();
     for (place, mut run) in all.into_iter().enumerate() {
         run.provenance.tools = compared(&run);
         let mut seen = Seen { from: &mut from, names: &names, place, open: &mut open };
@@ -93,8 +90,6 @@ pub fn join(mut runs: Vec<(String, Results)>) -> Result<Results, Vec<Fault>> {
         joined.phases.extend(run.phases.into_iter().map(named));
         joined.open.extend(run.open);
     }
-    let order = |engine: &String| engines.iter().position(|other| other == engine).unwrap_or(usize::MAX);
-    joined.campaigns.sort_by_key(|one| order(&one.campaign.engine));
     in_order(&mut joined);
     joined.open.extend(open.0);
     joined.open.extend(missing);

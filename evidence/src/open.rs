@@ -9,6 +9,9 @@ use crate::trace::own_kills;
 use crate::verdict::{Verdict, list};
 use std::collections::BTreeMap;
 
+/// What the note is about that says who searched the models.
+pub const SEARCHED: &str = "models";
+
 /// The open items of a case, the worst first. `cited`: what the citation check has to say beyond the plan.
 pub fn items(plan: &Plan, case: &Case) -> Vec<OpenItem> {
     let mut items = Vec::new();

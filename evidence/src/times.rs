@@ -1,7 +1,8 @@
 //! Where the time went, by the clock and in processor time, phase by phase; and a case without its times and other chance.
 
-use crate::case::{Case, Phase};
+use crate::case::{Case, Phase, Severity};
 use crate::inputs::measured;
+use crate::open::SEARCHED;
 use comfy_table::{CellAlignment, Table, presets::NOTHING};
 use nix::sys::resource::{UsageWho, getrusage};
 use nix::sys::time::TimeVal;
@@ -111,6 +112,8 @@ pub fn without(mut case: Case) -> Case {
     }
     case.second_opinions.iter_mut().for_each(|one| one.seconds = 0.0);
     case.measurements.seconds = 0.0;
+    // Who searched a model, the tests or this run, is no matter of what was found.
+    case.open_items.retain(|item| item.severity != Severity::Note || item.about != SEARCHED);
     // How fast this machine is.
     case.measurements.figures.retain(|figure| figure.group != measured::SPEED);
     case

@@ -10,6 +10,7 @@ use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
 use crate::inputs::{faults, provenance};
 use crate::live::Live;
+use crate::open::SEARCHED;
 use crate::output::{Folder, PAGE};
 use crate::plan::Plan;
 use crate::progress::Progress;
@@ -142,7 +143,7 @@ fn beginning(
 /// What the page says of so many models that the tests have searched.
 pub(super) fn searched_by_tests(models: usize) -> Option<OpenItem> {
     let text = format!("{models} of them were searched by the tests of this commit, and not once more in this run.");
-    (models > 0).then(|| OpenItem { severity: Severity::Note, about: "models".to_owned(), text })
+    (models > 0).then(|| OpenItem { severity: Severity::Note, about: SEARCHED.to_owned(), text })
 }
 
 /// Does the work while line and page are kept up to date beside it.

@@ -132,7 +132,11 @@ pub const ENGINES: &[(&str, &str, bool, &str)] = &[
 
 /// The evidence of every harness, and for every engine how far it went.
 pub fn evidence(harnesses: &[Catalogue], campaigns: &[Campaigned]) -> (Vec<Evidence>, Vec<Engine>) {
-    let evidence = harnesses.iter().map(|harness| one(harness, campaigns)).collect();
+    // In the order of the table above, whichever ran first.
+    let place = |run: &&Campaigned| ENGINES.iter().position(|(name, ..)| *name == run.campaign.engine);
+    let mut campaigns: Vec<&Campaigned> = campaigns.iter().collect();
+    campaigns.sort_by_key(|run| place(run).unwrap_or(usize::MAX));
+    let evidence = harnesses.iter().map(|harness| one(harness, &campaigns)).collect();
     let engines = ENGINES
         .iter()
         .map(|(name, what, proves, command)| {
@@ -170,8 +174,8 @@ fn is_asked(harness: &Catalogue, run: &Campaigned) -> bool {
 
 /// The evidence of one harness: the best result of any engine that looks at the code, unless one of them refutes it. The algebra is of no code: what it
 /// proves stands beside, and makes no bound of the code's proof go away.
-fn one(harness: &Catalogue, campaigns: &[Campaigned]) -> Evidence {
-    let asked = campaigns.iter().filter(|run| is_asked(harness, run));
+fn one(harness: &Catalogue, campaigns: &[&Campaigned]) -> Evidence {
+    let asked = campaigns.iter().copied().filter(|run| is_asked(harness, run));
     let judged: Vec<_> = asked.map(|run| (run, judge(harness, run))).collect();
     let refuted = judged.iter().filter(|(_, one)| matches!(one.verdict, Verdict::Failed | Verdict::Vacuous));
     // "Undecided" is worse than "not run" in the order, and must not hide behind it: take it if nothing holds.

@@ -135,6 +135,19 @@ fn two_results_for_one_harness_are_none() {
     assert_eq!(all[0].verdict, Verdict::Undecided);
 }
 
+/// Whichever ran first, and whichever shard had nothing for one of them.
+#[test]
+fn engines_stand_in_one_order() {
+    let all = [campaign("native", vec![good()]), campaign("cbmc", vec![good()])];
+    let of = |campaigns: &[Campaigned]| -> Vec<String> {
+        let (evidence, _) = evidence(&[harness()], campaigns);
+        evidence[0].engines.iter().map(|engine| engine.engine.clone()).collect()
+    };
+    let [first, second] = all.clone();
+    assert_eq!(of(&all), of(&[second, first]));
+    assert_eq!(of(&all).len(), 2);
+}
+
 #[test]
 fn a_tester_cannot_prove() {
     let (all, _) = evidence(&[harness()], &[campaign("native", vec![good()])]);
