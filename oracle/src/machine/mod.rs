@@ -22,7 +22,7 @@ use crate::film::Take;
 use crate::protocol::{self, Fault, PROTOCOL};
 
 /// A machine behind the protocol: a kernel machine, its state, and the forms of its messages.
-pub trait Machine: Sized + 'static {
+pub trait Machine: Sized + Send + Sync + 'static {
     /// The name in `{"start":{"machine":…}}`.
     const NAME: &'static str;
     /// A step that is right, for messages.
@@ -95,8 +95,8 @@ pub enum Refusal {
     Rejected(String),
 }
 
-/// An open case.
-pub trait Case {
+/// An open case. Plain data: it may be handed from one thread to another.
+pub trait Case: Send + Sync {
     /// One logic cycle: reads `body`, which stands in `line`, and appends the body of the output to `reply`.
     ///
     /// # Errors

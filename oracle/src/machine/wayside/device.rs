@@ -35,7 +35,7 @@ pub(super) struct Done {
 }
 
 /// A device with its state.
-pub(super) trait Device {
+pub(super) trait Device: Send + Sync {
     /// One logic cycle. `station` is the layout with which it was made.
     fn step(&mut self, station: &Station, read: &Read) -> Result<Done, WaysideError>;
 

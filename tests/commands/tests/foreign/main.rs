@@ -5,6 +5,7 @@ mod draw;
 mod side;
 mod small;
 mod station;
+mod wheel;
 
 use std::process::Command;
 

@@ -1,0 +1,93 @@
+//! The Python module, as its users get it: built into a wheel, installed, and asked.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use atc_tests::device;
+
+use super::side;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../python")
+}
+
+/// What a command printed. What a failure printed, if it fails.
+fn run(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| format!("{}: {error}", command.get_program().display()))?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if output.status.success() {
+        return Ok(said);
+    }
+    Err(format!("{command:?}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr)))
+}
+
+/// The folder of a Python of our own with what building and testing take, under `target`; or why there is none.
+fn environment(target: &Path) -> Result<PathBuf, String> {
+    let place = target.join("python/environment");
+    let whole = place.join("whole");
+    if !whole.exists() {
+        // One that was begun and not ended is no good.
+        let _ = fs::remove_dir_all(&place);
+        run(Command::new("python3").args(["-m", "venv"]).arg(&place))?;
+        let packages = ["maturin>=1.9,<2", "numpy>=1.24,<3", "mypy>=1.18,<3"];
+        run(Command::new(place.join("bin/pip")).args(["install", "--quiet"]).args(packages))?;
+        fs::write(&whole, "").map_err(|error| error.to_string())?;
+    }
+    Ok(place.join("bin"))
+}
+
+#[test]
+fn the_wheel_holds_what_its_page_promises() {
+    let oracle = device::oracle();
+    let target = Path::new(&oracle).parent().and_then(Path::parent).expect("in target/debug").to_owned();
+    let bin = match environment(&target) {
+        Ok(bin) => bin,
+        Err(why) => {
+            eprintln!("NOT RUN: nothing is known of the Python module: {why}");
+            return;
+        }
+    };
+    let wheels = target.join("python/wheels");
+    let _ = fs::remove_dir_all(&wheels);
+    let mut build = Command::new(bin.join("maturin"));
+    build
+        .args(["build", "--quiet", "--locked", "--profile", "dev", "--manifest-path"])
+        .arg(folder().join("Cargo.toml"));
+    let python = bin.join("python");
+    let made = build.arg("--target-dir").arg(&target).arg("--interpreter").arg(&python).arg("--out").arg(&wheels);
+    run(made).unwrap_or_else(|why| panic!("{why}"));
+    let wheel = fs::read_dir(&wheels).expect("a folder").next().expect("a wheel").expect("a file").path();
+    let install = ["install", "--quiet", "--no-index", "--no-deps", "--force-reinstall"];
+    run(Command::new(bin.join("pip")).args(install).arg(&wheel)).unwrap_or_else(|why| panic!("{why}"));
+    let asked = |script: &Path| run(Command::new(&python).arg("-B").arg(script)).unwrap_or_else(|why| panic!("{why}"));
+    asked(&folder().join("tests/test_atc.py"));
+    let said = asked(&folder().join("examples/aspect.py"));
+    assert!(said.contains("  250 ms  heard [45]  displayed 45\n 1650 ms  heard []  displayed None\n"), "{said}");
+    assert!(asked(&folder().join("examples/columns.py")).contains(" 0 per mille: [  0.   72. "));
+    // The stubs say what is there.
+    let stubs = bin.join("stubtest");
+    run(Command::new(stubs).args(["atc", "--ignore-disjoint-bases"]).current_dir(&wheels))
+        .unwrap_or_else(|why| panic!("{why}"));
+    sessions(&python);
+}
+
+/// Every session of the oracle's examples has the same replies from the module.
+fn sessions(python: &Path) {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../oracle/examples");
+    let pass_on = "import sys, atc._atc\nsays = atc._atc.Conversation()\nfor line in open(sys.argv[1]):\n    \
+                   print(says.answer(line.rstrip('\\n')))";
+    let mut held = 0;
+    for entry in fs::read_dir(examples).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_none_or(|end| end != "jsonl") {
+            continue;
+        }
+        let ours =
+            run(Command::new(python).args(["-B", "-c", pass_on]).arg(&path)).unwrap_or_else(|why| panic!("{why}"));
+        let theirs = run(side::oracle().stdin(fs::File::open(&path).expect("a session"))).expect("the oracle answers");
+        assert!(ours == theirs, "{}: the module says something else", path.display());
+        held += 1;
+    }
+    assert!(held >= 10, "only {held} sessions");
+}
