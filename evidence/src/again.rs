@@ -3,10 +3,10 @@
 use crate::build::Results;
 use crate::case::Provenance;
 use crate::cli::HERE;
+use crate::files::SUMS;
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::provenance::{differences, sha256};
 use crate::inputs::{measured, tests};
-use crate::output::SUMS;
 use crate::results;
 use crate::scope::Scope;
 use atc_models::Outcome;

@@ -10,12 +10,14 @@
 #![forbid(unsafe_code)]
 
 pub mod again;
+pub mod alike;
 pub mod argument;
 pub mod build;
 pub mod case;
 pub mod cli;
 pub mod data;
 pub mod error;
+pub mod files;
 pub mod gsn;
 pub mod hazard;
 pub mod html;

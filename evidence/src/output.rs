@@ -2,20 +2,12 @@
 
 use crate::case::Case;
 use crate::error::Fault;
+use crate::files::{MARKER, PAGE, STATION, SUMS};
 use crate::inputs::provenance::sha256;
 use crate::{gsn, html, junit, sarif, tables};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
-
-/// The file that is there from the beginning of a run until every entry of the manifest has a result.
-pub const MARKER: &str = "incomplete";
-/// The hashes of the files of a case, in the form of `sha256sum`.
-pub const SUMS: &str = "SHA256SUMS";
-/// The page.
-pub const PAGE: &str = "index.html";
-/// The short case of the station.
-pub const STATION: &str = "station.html";
 
 /// A case's folder while its run goes on.
 #[derive(Debug)]

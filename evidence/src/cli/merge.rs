@@ -2,12 +2,14 @@
 
 use super::render::load;
 use super::{Merge, checkout, planned, required};
+use crate::alike::without_times;
 use crate::build::build;
 use crate::error::Fault;
+use crate::files::PAGE;
 use crate::inputs::{faults, provenance, second};
 use crate::merge::join;
-use crate::output::{Folder, PAGE};
-use crate::{results, stale, terminal, times};
+use crate::output::Folder;
+use crate::{results, stale, terminal};
 use serde_json::Value;
 use std::path::Path;
 
@@ -48,7 +50,7 @@ pub fn merge(options: &Merge) -> Result<u8, Vec<Fault>> {
 /// There is no case.
 pub fn compare(one: &Path, other: &Path) -> Result<u8, Vec<Fault>> {
     let value = |path: &Path| -> Result<Value, Fault> {
-        serde_json::to_value(times::without(load(path)?)).map_err(|error| Fault::new(&path.display(), error))
+        serde_json::to_value(without_times(load(path)?)).map_err(|error| Fault::new(&path.display(), error))
     };
     let pair = value(one).and_then(|first| Ok((first, value(other)?)));
     let (first, second) = pair.map_err(|fault| vec![fault])?;

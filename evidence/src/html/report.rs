@@ -71,7 +71,7 @@ pub fn ending(case: &Case) -> Markup {
         p { "Beside this page: the whole case as data (" code { "case.json" } ", its shape in " code { "case.schema.json" }
             "), the argument (" code { "gsn.yaml" } "), the results for build servers (" code { "junit.xml" }
             "), what is not good, with file and line, for editors and code review (" code { (crate::sarif::FILE) }
-            "), the registers (" code { "*.csv" } "), and the hashes of all of them (" code { (crate::output::SUMS) } ")." }
+            "), the registers (" code { "*.csv" } "), and the hashes of all of them (" code { (crate::files::SUMS) } ")." }
         dl.facts {
             dt { "Generated" } dd { (date(provenance.generated_unix)) ", in " (format!("{:.0}", provenance.seconds)) " s" }
             dt { "Commit" } dd { (provenance.commit.as_deref().unwrap_or("not a git checkout"))

@@ -3,7 +3,7 @@
 use super::checks::rules;
 use super::{badge, date, links};
 use crate::case::{Case, Confirm, NeededRule, Origin, Station};
-use crate::output::STATION;
+use crate::files::STATION;
 use crate::station::conclusion;
 use crate::verdict::Verdict;
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
-use super::infrastructure::{Places, apart};
+use super::places::{Places, apart};
 use super::xml::{Xml, child, children, number};
 use crate::form::Position;
 use crate::graph::Way;

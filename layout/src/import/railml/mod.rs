@@ -5,6 +5,7 @@ mod infrastructure;
 mod interlocking;
 mod limits;
 mod machines;
+mod places;
 mod unread;
 mod xml;
 
