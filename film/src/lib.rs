@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 
 mod event;
+mod filling;
 mod form;
 mod lane;
 mod page;

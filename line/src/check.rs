@@ -3,19 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::rule::Rule;
-
-/// Who asks for a rule.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Asked {
-    /// The file must say one thing, and say it clearly.
-    Form,
-    /// Engineering: no theorem rests on it, but safe running does.
-    Engineering,
-    /// A theorem rests on it.
-    Theorems,
-}
+use crate::rule::{Asked, Rule};
 
 /// One rule and its verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -10,7 +10,6 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::kmh::shorten;
 use crate::refusal::Refusal;
 use crate::rule::Rule;
 
@@ -271,5 +270,14 @@ mod tests {
             let text = serde_json::to_string(&Decibels(parts)).expect("a number");
             assert_eq!((super::parts(&text, 2), &text), (Ok(parts), &Decibels(parts).to_string()));
         }
+    }
+}
+
+/// The text, cut to a length that is fit for a message.
+pub fn shorten(text: &str) -> Cow<'_, str> {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
     }
 }

@@ -9,7 +9,9 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use crate::decimal::{self, NotWhole, Quantity};
+use crate::decimal::{self, NotWhole, Quantity, shorten};
+use crate::refusal::Refusal;
+use crate::rule::Rule;
 
 /// A speed, in tenths of km/h. On the wire a JSON number of km/h, such as `45` or `44.9`.
 ///
@@ -47,13 +49,13 @@ impl Kmh {
     }
 }
 
-/// The text, cut to a length that is fit for a message.
-pub fn shorten(text: &str) -> Cow<'_, str> {
-    const LONGEST: usize = 40;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
-        None => Cow::Borrowed(text),
-    }
+/// A speed in tenths of km/h.
+///
+/// # Errors
+/// If it does not fit, with the name of its field.
+pub fn tenths(field: &str, speed: Kmh) -> Result<KmhTenths, Refusal> {
+    let what = || Refusal::new(Rule::Range, field, format!("{field} is {speed} km/h; it must be 0 to 6553.5 km/h"));
+    u16::try_from(speed.0).map(KmhTenths).map_err(|_| what())
 }
 
 impl From<KmhTenths> for Kmh {

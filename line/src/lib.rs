@@ -32,8 +32,8 @@ pub mod seam;
 pub mod signal;
 pub mod supervision;
 
-pub use check::{Asked, DataCheck, Finding, Outcome};
+pub use check::{DataCheck, Finding, Outcome};
 pub use form::End;
 pub use line::{Line, Problem, Problems, Train, parse, read};
 pub use refusal::Refusal;
-pub use rule::Rule;
+pub use rule::{Asked, Rule};

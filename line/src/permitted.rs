@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::aspect;
-use crate::kmh::Kmh;
-use crate::refusal::{Refusal, brake, gradient, metres, no_cycle, short, tenths};
+use crate::kmh::{Kmh, tenths};
+use crate::refusal::{Refusal, brake, gradient, metres, no_cycle, short};
 use crate::rule::Rule;
 
 /// The configuration. The defaults are of an urban line with frames of 530 ms (106 bits at 200 bit/s). Every time is one for which

@@ -3,10 +3,7 @@
 use crate::rule::Rule;
 use atc_kernel::distance::Metres;
 use atc_kernel::pattern::Deceleration;
-use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::Gradient;
-
-use crate::kmh::Kmh;
 
 /// A rule that a group of parameters breaks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,15 +54,6 @@ pub fn gradient(field: &str, permille: i32) -> Result<Gradient, Refusal> {
 /// If they do not fit, with the name of their field.
 pub fn metres(field: &str, metres: u32) -> Result<Metres, Refusal> {
     fit(field, metres, "0 to 65535 m").map(Metres)
-}
-
-/// A speed in tenths of km/h.
-///
-/// # Errors
-/// If it does not fit, with the name of its field.
-pub fn tenths(field: &str, speed: Kmh) -> Result<KmhTenths, Refusal> {
-    let what = || Refusal::new(Rule::Range, field, format!("{field} is {speed} km/h; it must be 0 to 6553.5 km/h"));
-    u16::try_from(speed.0).map(KmhTenths).map_err(|_| what())
 }
 
 /// The brake of a train on the level.

@@ -1,6 +1,19 @@
 //! The rules of a line's data: those of the kernel's constructors, and those between the parts of a line.
 
-use crate::check::Asked;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Who asks for a rule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Asked {
+    /// The file must say one thing, and say it clearly.
+    Form,
+    /// Engineering: no theorem rests on it, but safe running does.
+    Engineering,
+    /// A theorem rests on it.
+    Theorems,
+}
 
 /// Declares the rules: name in the code, name in messages, who asks for it, what it demands.
 macro_rules! rules {

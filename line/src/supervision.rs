@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::kmh::Kmh;
-use crate::refusal::{Refusal, tenths};
+use crate::kmh::tenths;
+use crate::refusal::Refusal;
 use crate::rule::Rule;
 
 /// The configuration; both fields have defaults.

@@ -19,7 +19,7 @@ pub(crate) fn read<'de, N: Named, D: Deserializer<'de>>(deserializer: D) -> Resu
     let found = String::deserialize(deserializer)?;
     N::EVERY.iter().copied().find(|value| value.name() == found).ok_or_else(|| {
         let names: Vec<_> = N::EVERY.iter().map(|value| format!("{:?}", value.name())).collect();
-        let found = crate::kmh::shorten(&found);
+        let found = crate::decimal::shorten(&found);
         D::Error::custom(format_args!("unknown {} {found:?}, expected one of {}", N::WHAT, names.join(", ")))
     })
 }

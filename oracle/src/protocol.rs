@@ -30,7 +30,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use crate::kmh::shorten;
+use crate::decimal::shorten;
 
 /// The version of the protocol.
 pub const PROTOCOL: u32 = 1;

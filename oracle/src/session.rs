@@ -100,7 +100,7 @@ impl Session {
             (kind.open)(line, config).map(|opened| (kind, opened))
         } else {
             let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
-            let asked = crate::kmh::shorten(&start.machine);
+            let asked = crate::decimal::shorten(&start.machine);
             Err(Refusal::Rejected(format!("there is no machine {asked:?} here; there are {}", names.join(", "))))
         };
         match opened {

@@ -1,7 +1,15 @@
 //! `bench.json`, as far as it is read here, and what makes it worthless.
 
-use super::figures::{AN_ERROR_RATE, from_ratio};
 use serde::{Deserialize, Serialize};
+
+/// How far a rate may be from its errors over its bits: by less than one error in a million bits.
+pub(super) const AN_ERROR_RATE: f64 = 1e-7;
+
+/// A part of a whole.
+#[allow(clippy::cast_precision_loss)]
+pub(super) fn from_ratio(part: u64, whole: u64) -> f64 {
+    part as f64 / whole.max(1) as f64
+}
 
 /// A run of `waveform bench`.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]

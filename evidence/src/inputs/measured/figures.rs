@@ -18,15 +18,6 @@ const OUTSIDE: &str = "Position outside the limits of its table";
 const MOST_LOSS_DB: f64 = 1.0;
 /// The tolerance of a level in the measured positions, in decibels.
 const TOLERANCE_DB: f64 = 0.1;
-/// How far a rate may be from its errors over its bits: by less than one error in a million bits.
-pub(super) const AN_ERROR_RATE: f64 = 1e-7;
-
-/// A part of a whole.
-#[allow(clippy::cast_precision_loss)]
-pub(super) fn from_ratio(part: u64, whole: u64) -> f64 {
-    part as f64 / whole.max(1) as f64
-}
-
 #[allow(clippy::cast_precision_loss)]
 fn count(number: u64) -> f64 {
     number as f64

@@ -24,8 +24,8 @@ pub use words::{Heading, Phase, Reason, Side, Travel};
 
 use super::{Cycle, Machine};
 use crate::chart::{self, Scene};
+use crate::decimal::shorten;
 use crate::film::{self, Take};
-use crate::kmh::shorten;
 
 /// The state of the kernel's machine, with room for every station.
 pub type State = kernel::State<64, 8>;

@@ -1,7 +1,7 @@
 //! `permitted-speed`: [`atc_kernel::permitted`] behind the protocol.
 
+use atc_line::kmh::tenths;
 pub use atc_line::permitted::Config;
-use atc_line::refusal::tenths;
 
 use atc_kernel::distance::Millimetres;
 use atc_kernel::permitted::{self, Heard, Permitted, State};

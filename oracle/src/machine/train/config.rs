@@ -7,7 +7,8 @@ use atc_kernel::train::{Parts, Train, TrainError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use atc_line::refusal::{Refusal, tenths};
+use atc_line::kmh::tenths;
+use atc_line::refusal::Refusal;
 
 use crate::decimal::Hertz;
 use crate::kmh::Kmh;

@@ -12,7 +12,8 @@ use atc_kernel::wayside::{Equipment, Fixed, Join, Session, SignalPlan, Spot, Way
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use atc_line::refusal::{Refusal, fit, gradient, metres, tenths};
+use atc_line::kmh::tenths;
+use atc_line::refusal::{Refusal, fit, gradient, metres};
 
 use crate::kmh::Kmh;
 use crate::machine::block;
