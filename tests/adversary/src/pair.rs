@@ -53,7 +53,7 @@ pub struct Pair {
     /// The most cycles that a message takes.
     pub late: i64,
     /// Until when no message comes through.
-    pub cut: u64,
+    cut: u64,
     /// The requests of each station's own signaller, where none comes from elsewhere.
     pub asks: [Option<Ask>; 2],
     /// What only one of the two is falsely told of.
@@ -107,6 +107,17 @@ impl Pair {
             wrong,
             twice: Cell::new(0),
         }
+    }
+
+    /// An episode begins: both devices start, and chance begins anew.
+    pub fn begin(&mut self, seed: u64) {
+        self.restart();
+        (self.now, self.dice) = (0, Dice::new(seed));
+    }
+
+    /// No message comes through for so many cycles.
+    pub fn silence(&mut self, cycles: i64) {
+        self.cut = self.now + u64::try_from(cycles).unwrap_or(0);
     }
 
     /// The circuits that a station sees.

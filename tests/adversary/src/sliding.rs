@@ -10,6 +10,8 @@ struct Slide {
     train: usize,
     /// Where it comes to a stand, on its odometer.
     end: i64,
+    /// The overlap over which it does.
+    over: Mask,
     /// Its deceleration.
     brake: i64,
 }
@@ -26,10 +28,8 @@ pub struct Sliding {
 
 impl Sliding {
     /// The overlaps over which trains slide now.
-    pub fn over(&self, ground: &Ground, overlaps: &[Vec<usize>], trains: &[Train]) -> Mask {
-        let slides = self.slides.iter().filter_map(|slide| trains.iter().find(|train| train.number == slide.train));
-        let routes = slides.filter_map(|train| train.route);
-        routes.flat_map(|route| &overlaps[route]).fold(0, |all, it| all | bit(*it)) & (bit(ground.seen) - 1)
+    pub fn over(&self) -> Mask {
+        self.slides.iter().fold(0, |all, slide| all | slide.over)
     }
 
     /// One cycle, after the drivers have decided: some trains run on for farther than they want.
@@ -61,7 +61,8 @@ impl Sliding {
                     continue;
                 }
                 let brake = (train.speed * train.speed / (2 * far)).max(1);
-                self.slides.push(Slide { train: train.number, end: train.run + far, brake });
+                let over = overlaps[route].iter().fold(0, |all, circuit| all | bit(*circuit));
+                self.slides.push(Slide { train: train.number, end: train.run + far, over, brake });
                 self.count += 1;
             }
             let Some(slide) = self.slides.iter().find(|slide| slide.train == train.number) else { continue };

@@ -237,7 +237,7 @@ impl Between {
     }
 
     /// Only one station is falsely told of a train; messages stay out for a while.
-    fn disturb(&mut self, world: &World, pair: &mut Pair, now: u64, ground: &Ground, line: Mask) {
+    fn disturb(&mut self, pair: &mut Pair, ground: &Ground, line: Mask) {
         for at in 0..2 {
             self.extra[at] -= 1;
             if self.extra[at] <= 0 {
@@ -249,9 +249,8 @@ impl Between {
                 }
             }
         }
-        let _ = world;
         if self.dice.once_in(900) {
-            pair.cut = now + u64::try_from(self.dice.within(1, 2 * ground.turn)).unwrap_or(0);
+            pair.silence(self.dice.within(1, 2 * ground.turn));
         }
     }
 
@@ -302,7 +301,7 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
     let mut setting = attacker.setting(ground);
     setting.faces = scene.wrong != "facing";
     let mut world = World::new(ground, setting);
-    atc_adversary::device::Device::restart(pair);
+    pair.begin(seed);
     pair.lag = (between.dice.below(2), [0, 0, 20, 200][between.dice.below(4)]);
     pair.late = [0, 3, 12, 60][between.dice.below(4)];
     let mut sliding = Sliding::default();
@@ -316,12 +315,12 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
         attacker.draw(&world, &mut moves);
         moves.retain(|it| !matches!(it, Move::Place(circuit, _) if scene.line & bit(*circuit) != 0));
         if now > 0 {
-            let over = sliding.over(ground, &scene.overlaps, &world.trains);
+            let over = sliding.over();
             between.beside(&world, over, &mut moves);
             tally.restrictions += u64::from(between.staff(&world, scene.line, &mut moves));
             between.turns(scene.places, now, pair);
             tally.restarts += u64::from(between.restart(&mut world, scene.places, pair));
-            between.disturb(&world, pair, tally.cycles, ground, scene.line);
+            between.disturb(pair, ground, scene.line);
         }
         // Quiet and disturbed times take turns, so that trains get into the places where it hurts.
         if now > 0 && now / between.period % 3 != 0 {
@@ -345,6 +344,10 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
         // One command in a cycle.
         let mut commanded = false;
         moves.retain(|it| !matches!(it, Move::Command(_)) || !std::mem::replace(&mut commanded, true));
+        // Nobody steps on what is unblocked in this cycle.
+        if moves.iter().any(|it| matches!(it, Move::Command(given) if given.unblock != 0)) {
+            moves.retain(|it| !matches!(it, Move::Work(_, true)));
+        }
         // While a station reads its record nothing else is commanded.
         if now > 0 && !(pair.is_up(0) && pair.is_up(1)) {
             moves.retain(|it| !matches!(it, Move::Command(_)));
@@ -354,7 +357,7 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
         }
         let workers = world.truth.workers;
         // A train that slides keeps no limit of what it slides over.
-        let over = sliding.over(ground, &scene.overlaps, &world.trains);
+        let over = sliding.over();
         let limits = |family: &Family| matches!(family, Family::Speed | Family::Restriction);
         let judged: Vec<Family> = sought.iter().copied().filter(|it| over == 0 || !limits(it)).collect();
         found = world.cycle(pair, &moves, &judged);
