@@ -356,10 +356,11 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
             story.extend(moves.iter().map(|it| (now, *it)));
         }
         let workers = world.truth.workers;
-        // A train that slides keeps no limit of what it slides over.
-        let over = sliding.over();
+        // A train that slides keeps no limit of what it slides over. Nor is it told one when it goes back from there: that is found, and looked
+        // for no more in an episode with slides.
+        let keeps = sliding.count == 0;
         let limits = |family: &Family| matches!(family, Family::Speed | Family::Restriction);
-        let judged: Vec<Family> = sought.iter().copied().filter(|it| over == 0 || !limits(it)).collect();
+        let judged: Vec<Family> = sought.iter().copied().filter(|it| keeps || !limits(it)).collect();
         found = world.cycle(pair, &moves, &judged);
         tally.workers += u64::from((world.truth.workers & !workers).count_ones());
         if between.slides || scene.wrong == "slides-late" {
