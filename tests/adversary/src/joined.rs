@@ -53,13 +53,13 @@ pub struct Joined {
 
 /// The text of a station with its `side` turned to the other one.
 fn text(number: Option<u64>, side: &str, meets: bool) -> String {
-    let text = match number {
-        Some(number) => stations::random(number).source.text,
-        None => {
-            let text = stations::of("passing-loop").source.text;
-            let text = text.replace("name = \"East\"", "name = \"E\"").replace("name = \"West\"", "name = \"W\"");
-            text.replace(&format!("circuits = [\"{side}1\", \"{side}2\"]"), &format!("circuits = [\"{side}1\", \"{side}2\"]\nshared = [\"{side}2\"]"))
-        }
+    let text = if let Some(number) = number {
+        stations::random(number).source.text
+    } else {
+        let text = stations::of("passing-loop").source.text;
+        let text = text.replace("name = \"East\"", "name = \"E\"").replace("name = \"West\"", "name = \"W\"");
+        let alone = format!("circuits = [\"{side}1\", \"{side}2\"]");
+        text.replace(&alone, &format!("{alone}\nshared = [\"{side}2\"]"))
     };
     let outer = format!("\"{side}2\"");
     let segment = format!("name = \"{side}\"\ncircuits");
@@ -108,7 +108,7 @@ pub fn join(numbers: [Option<u64>; 2], meets: bool, checked: bool) -> Result<Joi
     }
     let kernel = |station: &Description| device::kernel(station).map_err(|error| error.to_string());
     let ((one, ground), (two, other)) = (kernel(&stations[0])?, kernel(&stations[1])?);
-    let mut joined = lay([ground, other], [one, two], meets)?;
+    let mut joined = lay(&[ground, other], [one, two], meets)?;
     for (place, model) in joined.places.iter_mut().zip(&models) {
         place.standstill = i64::from(model.values.standstill.0);
         let overlap = |route: &atc_layout::model::Route| route.overlap.iter().map(|at| place.circuits[*at]).collect();
@@ -117,7 +117,8 @@ pub fn join(numbers: [Option<u64>; 2], meets: bool, checked: bool) -> Result<Joi
     let life = |at: usize| {
         let values = &models[at].values;
         let age = i64::from(values.telegram_age_ms / values.cycle_ms);
-        age.min(i64::from(values.turn.0) - i64::from(values.residual.0) - joined.ground.loss).min(i64::from(values.turn.0) - 1)
+        age.min(i64::from(values.turn.0) - i64::from(values.residual.0) - joined.ground.loss)
+            .min(i64::from(values.turn.0) - 1)
     };
     joined.life = life(0).min(life(1));
     Ok(joined)
@@ -129,9 +130,9 @@ fn inner(ground: &Ground, name: &str) -> Result<usize, String> {
 }
 
 /// Lays the tracks of both.
-fn lay(grounds: [Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Result<Joined, String> {
+fn lay(grounds: &[Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Result<Joined, String> {
     let inner = [inner(&grounds[0], "E")?, inner(&grounds[1], "W")?];
-    let [first, second] = &grounds;
+    let [first, second] = grounds;
     if first.codes != second.codes || first.cycle_ms != second.cycle_ms {
         return Err("their codes or cycles differ".to_owned());
     }
@@ -154,13 +155,16 @@ fn lay(grounds: [Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Resu
     let limits = |pick: fn(&Ground) -> i64| (pick(first), pick(second));
     let least = |(one, two): (i64, i64)| one.min(two);
     let most = |(one, two): (i64, i64)| one.max(two);
-    (ground.loss, ground.life, ground.fastest) = (least(limits(|it| it.loss)), least(limits(|it| it.life)), least(limits(|it| it.fastest)));
-    (ground.clear, ground.turn, ground.start) = (most(limits(|it| it.clear)), most(limits(|it| it.turn)), most(limits(|it| it.start)));
+    (ground.loss, ground.life, ground.fastest) =
+        (least(limits(|it| it.loss)), least(limits(|it| it.life)), least(limits(|it| it.fastest)));
+    (ground.clear, ground.turn, ground.start) =
+        (most(limits(|it| it.clear)), most(limits(|it| it.turn)), most(limits(|it| it.start)));
     ground.longest = least(limits(|it| it.longest));
     let meeting = joints_of(first, last[0], inner[0]);
     let theirs = joints_of(second, last[1], inner[1]);
     // Inner and outer joint: the outer one of each view is the inner one of the other, or both are one.
-    let same = if meets { vec![(theirs[1], meeting[1])] } else { vec![(theirs[1], meeting[0]), (theirs[0], meeting[1])] };
+    let same =
+        if meets { vec![(theirs[1], meeting[1])] } else { vec![(theirs[1], meeting[0]), (theirs[0], meeting[1])] };
     let shift = first.joints.len();
     let joint = |at: usize, number: usize| {
         let mapped = same.iter().find(|(its, _)| at == 1 && *its == number).map(|(_, ours)| *ours);
@@ -174,7 +178,12 @@ fn lay(grounds: [Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Resu
                 outer.push(joints);
             } else if at == 0 || meets || piece.circuit != last[1] {
                 let point = piece.point.map(|point| point + places[at].points);
-                ground.pieces.push(Piece { circuit: places[at].circuits[piece.circuit], joints, point, length: piece.length });
+                ground.pieces.push(Piece {
+                    circuit: places[at].circuits[piece.circuit],
+                    joints,
+                    point,
+                    length: piece.length,
+                });
             }
         }
         for circuit in 0..it.seen {
@@ -189,11 +198,32 @@ fn lay(grounds: [Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Resu
     ground.points = [&first.points[..], &second.points[..]].concat();
     ground.throw = [&first.throw[..], &second.throw[..]].concat();
     ground.reverse = [&first.reverse[..], &second.reverse[..]].concat();
-    ground.routes = grounds.iter().enumerate().flat_map(|(at, it)| routes(it, &places[at], &|number| joint(at, number))).collect();
+    ground.routes =
+        grounds.iter().enumerate().flat_map(|(at, it)| routes(it, &places[at], &|number| joint(at, number))).collect();
     if ground.routes.len() > 64 || ground.points.len() > 32 {
         return Err("too many routes or points for one ground".to_owned());
     }
-    let mut joints = shift + second.joints.len();
+    let joints = outward(&mut ground, (grounds, &places, inner), &outer, shift + second.joints.len());
+    ground.joints = vec![Vec::new(); joints];
+    for (number, piece) in ground.pieces.iter().enumerate() {
+        for joint in &piece.joints {
+            ground.joints[*joint].push(number);
+        }
+    }
+    ground.name = format!("{} and {}", first.name, second.name);
+    let shared = if meets { 0 } else { bit(last[0]) };
+    let mut places: [Place; 2] = places.try_into().map_err(|_| "two stations")?;
+    neighbours(&ground, &mut places, last, meets);
+    Ok(Joined { ground, places, devices, life: 0, shared })
+}
+
+/// Lays the lines of both; `outer` are the ends of what lies beyond each. How many joints there are then, of `joints` before.
+fn outward(
+    ground: &mut Ground,
+    (grounds, places, inner): (&[Ground; 2], &[Place], [usize; 2]),
+    outer: &[Vec<usize>],
+    mut joints: usize,
+) -> usize {
     for (at, it) in grounds.iter().enumerate() {
         for (number, line) in it.lines.iter().enumerate() {
             let mapped = mask(&places[at], line.mask);
@@ -219,17 +249,7 @@ fn lay(grounds: [Ground; 2], devices: [Box<dyn Device>; 2], meets: bool) -> Resu
             ground.pieces.push(Piece { circuit, joints: ends, point: None, length: OUTSIDE_MM });
         }
     }
-    ground.joints = vec![Vec::new(); joints];
-    for (number, piece) in ground.pieces.iter().enumerate() {
-        for joint in &piece.joints {
-            ground.joints[*joint].push(number);
-        }
-    }
-    ground.name = format!("{} and {}", first.name, second.name);
-    let shared = if meets { 0 } else { bit(last[0]) };
-    let mut places: [Place; 2] = places.try_into().map_err(|_| "two stations")?;
-    neighbours(&ground, &mut places, last, meets);
-    Ok(Joined { ground, places, devices, life: 0, shared })
+    joints
 }
 
 /// Which restrictions of the other one each station is told of: those within a train's length of where it begins to speak.

@@ -8,24 +8,25 @@ use atc_kernel::wayside::{Consent, Message, Permission, Session, Stamp};
 
 use super::device::{Ask, Commands, Device, Phase, Read, Said, Telegram};
 use super::dice::Dice;
-use super::ground::{Mask, bit, members};
+use super::ground::{Mask, bit};
 use super::joined::{Joined, Place, mask};
 
 /// What is wrong on purpose, to see whether it is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wrong {
+pub enum Wrong {
+    /// Nothing.
+    #[default]
+    Nothing,
     /// The neighbour is taken to consent always.
-    pub consent_always: bool,
+    ConsentAlways,
     /// A permission counts for so many times its life.
-    pub consent_old: u16,
-    /// A restriction is told to the first station only.
-    pub told_once: bool,
+    ConsentOld(u16),
+    /// A restriction of what both see, or of what is near, is told to the first station only.
+    ToldOnce,
     /// Staff take a block for confirmed when it is commanded.
-    pub unconfirmed: bool,
+    Unconfirmed,
     /// After a start staff unblock and lift without the record.
-    pub without_record: bool,
-    /// The devices do not fall silent where the other one speaks: whoever is open is heard.
-    pub both_speak: bool,
+    WithoutRecord,
 }
 
 /// A station's device and what it has of the other one.
@@ -77,7 +78,8 @@ const NONE: u8 = u8::MAX;
 impl Pair {
     /// The devices of two stations, both just started. The places stay with the caller too.
     pub fn new(joined: Joined, seed: u64, wrong: Wrong) -> Self {
-        let life = u16::try_from(joined.life.max(1)).unwrap_or(1) * wrong.consent_old.max(1);
+        let life = u16::try_from(joined.life.max(1)).unwrap_or(1)
+            * if let Wrong::ConsentOld(times) = wrong { times } else { 1 };
         let [one, two] = joined.devices;
         let [first, second] = joined.places;
         let side = |device, place| Side {
@@ -146,12 +148,20 @@ impl Pair {
 
     /// Its staff command from their record what it has forgotten, a speed in each of the next cycles.
     pub fn recall(&mut self, at: usize) {
-        self.sides[at].recall = if self.wrong.without_record { vec![None] } else { (0..8).map(Some).chain([None]).rev().collect() };
+        self.sides[at].recall = if self.wrong == Wrong::WithoutRecord {
+            vec![None]
+        } else {
+            (0..8).map(Some).chain([None]).rev().collect()
+        };
     }
 
     /// The lowest code that a station must have been told for its circuit.
     fn code(&self, at: usize, circuit: usize) -> u8 {
-        let told = self.sides[at].place.told.iter().filter(|(_, nearest)| *nearest == circuit && !self.wrong.told_once);
+        let told = self.sides[at]
+            .place
+            .told
+            .iter()
+            .filter(|(_, nearest)| *nearest == circuit && self.wrong != Wrong::ToldOnce);
         told.map(|(other, _)| self.record[*other]).chain([self.record[circuit]]).min().unwrap_or(NONE)
     }
 
@@ -160,25 +170,49 @@ impl Pair {
         let circuits = self.sides[at].place.circuits.clone();
         let told = self.sides[at].place.told.clone();
         let local = |global: Mask| {
-            circuits.iter().enumerate().filter(|(_, circuit)| global & bit(**circuit) != 0).fold(0, |all, (number, _)| all | bit(number))
+            circuits
+                .iter()
+                .enumerate()
+                .filter(|(_, circuit)| global & bit(**circuit) != 0)
+                .fold(0, |all, (number, _)| all | bit(number))
         };
         if let Some(next) = self.sides[at].recall.pop() {
             // The staff of this station read their record; it has the commands of this cycle too.
-            let with = |code: u8| circuits.iter().enumerate().filter(|(_, it)| self.code(at, **it) == code).fold(0, |all, (number, _)| all | bit(number));
+            let with = |code: u8| {
+                circuits
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, it)| self.code(at, **it) == code)
+                    .fold(0, |all, (number, _)| all | bit(number))
+            };
             let everything = bit(circuits.len()) - 1;
             return match next {
-                _ if self.wrong.without_record => Commands { unblock: everything, lift: everything, ..Commands::default() },
-                Some(code) => Commands { lift: with(code), restrict: (with(code), code), block: local(self.blocked), ..Commands::default() },
-                None => Commands { lift: with(NONE), unblock: everything & !local(self.blocked), block: local(self.blocked), ..Commands::default() },
+                _ if self.wrong == Wrong::WithoutRecord => {
+                    Commands { unblock: everything, lift: everything, ..Commands::default() }
+                }
+                Some(code) => Commands {
+                    lift: with(code),
+                    restrict: (with(code), code),
+                    block: local(self.blocked),
+                    ..Commands::default()
+                },
+                None => Commands {
+                    lift: with(NONE),
+                    unblock: everything & !local(self.blocked),
+                    block: local(self.blocked),
+                    ..Commands::default()
+                },
             };
         }
         let mut restrict = given.restrict.0;
         let mut spared = 0;
-        for (other, nearest) in told.iter().filter(|_| !self.wrong.told_once) {
-            restrict |= if given.restrict.0 & bit(*other) != 0 { bit(*nearest) } else { 0 };
+        for (other, nearest) in told.iter().filter(|_| self.wrong != Wrong::ToldOnce) {
+            if given.restrict.0 & bit(*other) != 0 {
+                restrict |= bit(*nearest);
+            }
         }
         for circuit in &circuits {
-            spared |= if self.code(at, *circuit) != NONE { bit(*circuit) } else { 0 };
+            spared |= if self.code(at, *circuit) == NONE { 0 } else { bit(*circuit) };
         }
         // What is still in force for another reason is not lifted here; what is restricted anew in this cycle is.
         let anew = given.lift & given.restrict.0;
@@ -188,9 +222,11 @@ impl Pair {
             lift |= if over { bit(*nearest) } else { 0 };
             // Raised on one, in force on the other: the lower one stays.
             let lower = self.code(at, *nearest) < given.restrict.1;
-            lift &= if lower { !bit(*nearest) } else { !0 };
+            if lower {
+                lift &= !bit(*nearest);
+            }
         }
-        if self.wrong.told_once && at == 1 {
+        if self.wrong == Wrong::ToldOnce && at == 1 {
             restrict &= !self.shared;
         }
         let restrict = (local(restrict), given.restrict.1);
@@ -247,7 +283,7 @@ impl Pair {
             return 0;
         }
         let commands = self.orders(at, &read.commands);
-        let always = self.wrong.consent_always;
+        let always = self.wrong == Wrong::ConsentAlways;
         let (life, extra, asked) = (Ticks(self.life), self.extra[at], self.asks[at].take());
         let side = &mut self.sides[at];
         let place = &side.place;
@@ -259,10 +295,16 @@ impl Pair {
         let consent = outer | if always || side.consent.counts(life) { inner } else { 0 };
         let mine = read.ask.and_then(|ask| own(place, ask));
         let occupied = read.occupied | extra;
-        let local = place.circuits.iter().enumerate().filter(|(_, it)| occupied & bit(**it) != 0).fold(0, |all, (number, _)| all | bit(number));
+        let local = place
+            .circuits
+            .iter()
+            .enumerate()
+            .filter(|(_, it)| occupied & bit(**it) != 0)
+            .fold(0, |all, (number, _)| all | bit(number));
         let points = (1_u64 << place.point_count) - 1;
         let detected = read.detected.map(|it| u32::try_from(u64::from(it) >> place.points & points).unwrap_or(0));
-        let it = Read { occupied: local, detected, ask: mine.or(asked.and_then(|ask| own(place, ask))), commands, consent };
+        let it =
+            Read { occupied: local, detected, ask: mine.or(asked.and_then(|ask| own(place, ask))), commands, consent };
         let its = side.device.cycle(&it);
         side.cycle += 1;
         said.proceed |= its.proceed << place.routes;
@@ -310,7 +352,7 @@ impl Device for Pair {
         // A block on a shared circuit is commanded at both; one that confirms it is enough.
         let unheard = self.blocks.iter().fold(0, |all, (_, mask)| all | mask) & self.shared;
         said.confirmed = (confirmed[0] | confirmed[1]) & !unheard;
-        if self.wrong.unconfirmed {
+        if self.wrong == Wrong::Unconfirmed {
             said.confirmed |= self.blocked & self.shared;
         }
         said
@@ -331,7 +373,13 @@ impl Device for Pair {
     }
 
     fn phases(&self) -> Vec<(usize, Phase)> {
-        let of = |side: &Side| side.device.phases().into_iter().map(|(route, phase)| (route + side.place.routes, phase)).collect::<Vec<_>>();
+        let of = |side: &Side| {
+            side.device
+                .phases()
+                .into_iter()
+                .map(|(route, phase)| (route + side.place.routes, phase))
+                .collect::<Vec<_>>()
+        };
         self.sides.iter().flat_map(of).collect()
     }
 
@@ -343,14 +391,4 @@ impl Device for Pair {
         (self.blocked, self.cut, self.extra, self.asks) = (0, 0, [0; 2], [None; 2]);
         self.record.fill(NONE);
     }
-}
-
-/// The stations that see a circuit of a set.
-pub fn seen_by(pair: &Pair, set: Mask) -> Vec<usize> {
-    (0..2).filter(|at| pair.sees(*at) & set != 0).collect()
-}
-
-/// The circuits of both.
-pub fn all(pair: &Pair) -> Vec<usize> {
-    members(pair.sees(0) | pair.sees(1)).collect()
 }

@@ -33,7 +33,12 @@ impl Sliding {
     }
 
     /// One cycle, after the drivers have decided: some trains run on for farther than they want.
-    pub fn pass(&mut self, (ground, dice): (&Ground, &mut Dice), trains: &mut [Train], (overlaps, stands): (&[Vec<usize>], &[i64])) {
+    pub fn pass(
+        &mut self,
+        (ground, dice): (&Ground, &mut Dice),
+        trains: &mut [Train],
+        (overlaps, stands): (&[Vec<usize>], &[i64]),
+    ) {
         for train in trains.iter_mut() {
             self.within.resize(self.within.len().max(train.number + 1), 0);
             let here = train.front_circuit(ground);
@@ -72,7 +77,9 @@ impl Sliding {
             train.next = next.max(if left > 0 { train.next.min(train.speed) } else { 0 });
             train.slid = true;
         }
-        let stands = |slide: &Slide| trains.iter().any(|train| train.number == slide.train && train.speed == 0 && train.next == 0);
+        let stands = |slide: &Slide| {
+            trains.iter().any(|train| train.number == slide.train && train.speed == 0 && train.next == 0)
+        };
         self.slides.retain(|slide| !stands(slide));
     }
 }

@@ -24,13 +24,13 @@ use atc_adversary::world::World;
 const EPISODE: i64 = 9_000;
 
 /// Undoes the step from one episode's seed to the next.
-const INVERSE: u64 = 0xC097EF87329E28A5;
+const INVERSE: u64 = 0xC097_EF87_329E_28A5;
 
 /// For how long nothing moves until an episode is over, besides turn and start.
 const REST: i64 = 1_000;
 
 /// The faults that can be put in, by name.
-const WRONGS: [&str; 11] = [
+const WRONGS: [&str; 10] = [
     "none",
     "consent-always",
     "consent-old",
@@ -41,7 +41,6 @@ const WRONGS: [&str; 11] = [
     "deaf",
     "facing",
     "slides-late",
-    "sought-all",
 ];
 
 struct Wanted {
@@ -95,7 +94,19 @@ impl Between {
         let slides = dice.once_in(2);
         let period = dice.within(100, 900);
         let orders = [[0, 300, 1_500][dice.below(3)], [0, 0, 400][dice.below(3)]];
-        Self { dice, agreed, duel, period, restarts, slides, orders, recall: [None; 2], extra: [0; 2], route: 0, crossed: Vec::new() }
+        Self {
+            dice,
+            agreed,
+            duel,
+            period,
+            restarts,
+            slides,
+            orders,
+            recall: [None; 2],
+            extra: [0; 2],
+            route: 0,
+            crossed: Vec::new(),
+        }
     }
 
     /// The two stations ask for directions as they have agreed, or against each other.
@@ -152,8 +163,12 @@ impl Between {
             moves.push(Move::Consent(line, false));
             moves.push(Move::Ask(Ask::Turn(line, false)));
             let driver = if self.dice.once_in(3) { Driver::Signals } else { Driver::Telegrams };
-            let (length, speed) = (self.dice.within(40_000, ground.longest), self.dice.within(ground.fastest / 2, ground.fastest));
-            moves.push(Move::Send(line, Arrival { length, driver, speed, gap: self.dice.within(0, 5_000), about: false }));
+            let (length, speed) =
+                (self.dice.within(40_000, ground.longest), self.dice.within(ground.fastest / 2, ground.fastest));
+            moves.push(Move::Send(
+                line,
+                Arrival { length, driver, speed, gap: self.dice.within(0, 5_000), about: false },
+            ));
             return;
         }
         let Some(train) = world.trains.get(self.dice.below(world.trains.len())) else { return };
@@ -198,8 +213,10 @@ impl Between {
             return;
         }
         let ground = world.ground;
-        let over: Vec<usize> = (0..ground.routes.len()).filter(|at| ground.routes[*at].mask & self.route != 0).collect();
-        let points: Vec<usize> = ground.pieces.iter().filter(|it| bit(it.circuit) & self.route != 0).filter_map(|it| it.point).collect();
+        let over: Vec<usize> =
+            (0..ground.routes.len()).filter(|at| ground.routes[*at].mask & self.route != 0).collect();
+        let points: Vec<usize> =
+            ground.pieces.iter().filter(|it| bit(it.circuit) & self.route != 0).filter_map(|it| it.point).collect();
         if self.dice.once_in(3) {
             if let Some(point) = self.dice.pick(&points) {
                 moves.push(Move::Ask(Ask::Drive(point, !world.points.lies(point))));
@@ -216,7 +233,9 @@ impl Between {
         let mut restricted = false;
         let [restricts, blocks] = self.orders;
         if restricts > 0 && self.dice.once_in(restricts) {
-            let code = u8::try_from(self.dice.below(world.ground.codes.len().min(6)).max(usize::from(!self.dice.once_in(3)))).unwrap_or(0);
+            let code =
+                u8::try_from(self.dice.below(world.ground.codes.len().min(6)).max(usize::from(!self.dice.once_in(3))))
+                    .unwrap_or(0);
             let lift = [0, bit(circuit), line][self.dice.below(3)];
             let restrict = if self.dice.once_in(3) { (0, 0) } else { (bit(circuit), code) };
             moves.push(Move::Command(Commands { restrict, lift, ..Commands::default() }));
@@ -226,7 +245,11 @@ impl Between {
         } else if self.dice.once_in(500) {
             let here: Vec<usize> = members(world.truth.workers & all(world.ground)).collect();
             moves.extend(here.into_iter().map(|circuit| Move::Work(circuit, false)));
-            moves.push(Move::Command(Commands { unblock: all(world.ground), lift: if restricts > 0 && !self.dice.once_in(4) { 0 } else { all(world.ground) }, ..Commands::default() }));
+            moves.push(Move::Command(Commands {
+                unblock: all(world.ground),
+                lift: if restricts > 0 && !self.dice.once_in(4) { 0 } else { all(world.ground) },
+                ..Commands::default()
+            }));
         }
         for circuit in members(world.said.confirmed & line) {
             if self.dice.once_in(8) {
@@ -260,7 +283,13 @@ impl Between {
         for train in &world.trains {
             self.crossed.resize(self.crossed.len().max(train.number + 1), None);
             let here = bit(train.front_circuit(world.ground));
-            let side = if sides[0] & here != 0 { Some(false) } else if sides[1] & here != 0 { Some(true) } else { None };
+            let side = if sides[0] & here != 0 {
+                Some(false)
+            } else if sides[1] & here != 0 {
+                Some(true)
+            } else {
+                None
+            };
             let before = &mut self.crossed[train.number];
             if side.is_some() && *before != side {
                 count += u64::from(before.is_some());
@@ -275,7 +304,9 @@ impl Between {
 fn arsenal(dice: &mut Dice) -> Arsenal {
     let running = Arsenal { set: 8, line: 2, faces: true, slow_points: dice.once_in(2), ..Arsenal::RUNNING };
     match dice.below(5) {
-        0 => Arsenal { restart: 0, neighbour_work: 1, withdraw: 3, one: 2, many: 1, block: 2, point: 5, ..Arsenal::ALL },
+        0 => {
+            Arsenal { restart: 0, neighbour_work: 1, withdraw: 3, one: 2, many: 1, block: 2, point: 5, ..Arsenal::ALL }
+        }
         1 => Arsenal { lose: 8, one: 2, withdraw: 2, pace: 3, ..running },
         2 => Arsenal { deaf: 8, withdraw: 4, point: 4, face: 2, ..running },
         3 => Arsenal { lose: 4, deaf: 4, many: 1, one: 1, blind: 1, ..running },
@@ -294,7 +325,13 @@ struct Scene<'a> {
     verbose: bool,
 }
 
-fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: &mut Tally) -> Option<(Accident, Vec<(i64, Move)>)> {
+fn episode(
+    scene: &Scene,
+    pair: &mut Pair,
+    seed: u64,
+    sought: &[Family],
+    tally: &mut Tally,
+) -> Option<(Accident, Vec<(i64, Move)>)> {
     let ground = scene.ground;
     let mut between = Between::new(seed);
     let mut attacker = Attacker::new(seed, arsenal(&mut between.dice));
@@ -356,9 +393,8 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
             story.extend(moves.iter().map(|it| (now, *it)));
         }
         let workers = world.truth.workers;
-        // A train that slides keeps no limit of what it slides over. Nor is it told one when it goes back from there: that is found, and looked
-        // for no more in an episode with slides.
-        let keeps = sliding.count == 0;
+        // A train that slides keeps no limit of what it slides over.
+        let keeps = sliding.over() == 0 && world.trains.iter().all(|it| !it.slid || it.speed == 0);
         let limits = |family: &Family| matches!(family, Family::Speed | Family::Restriction);
         let judged: Vec<Family> = sought.iter().copied().filter(|it| keeps || !limits(it)).collect();
         found = world.cycle(pair, &moves, &judged);
@@ -397,16 +433,14 @@ fn episode(scene: &Scene, pair: &mut Pair, seed: u64, sought: &[Family], tally: 
 }
 
 fn wrong_of(name: &str) -> Wrong {
-    let mut wrong = Wrong::default();
     match name {
-        "consent-always" => wrong.consent_always = true,
-        "consent-old" => wrong.consent_old = 15,
-        "told-once" => wrong.told_once = true,
-        "unconfirmed" => wrong.unconfirmed = true,
-        "without-record" => wrong.without_record = true,
-        _ => {}
+        "consent-always" => Wrong::ConsentAlways,
+        "consent-old" => Wrong::ConsentOld(15),
+        "told-once" => Wrong::ToldOnce,
+        "unconfirmed" => Wrong::Unconfirmed,
+        "without-record" => Wrong::WithoutRecord,
+        _ => Wrong::Nothing,
     }
-    wrong
 }
 
 fn hunt(wanted: &Wanted, number: u64, tally: &mut Tally) -> Result<bool, String> {
@@ -422,7 +456,15 @@ fn hunt(wanted: &Wanted, number: u64, tally: &mut Tally) -> Result<bool, String>
     let late = if wanted.wrong == "slides-late" { 2_000 } else { 0 };
     let stands = places.iter().flat_map(|place| vec![place.standstill + late; place.route_count]).collect();
     let line = places.iter().fold(0, |all, place| all | ground.lines[place.lines + place.inner].mask);
-    let scene = Scene { ground: &ground, places: &places, overlaps, stands, line, wrong: &wanted.wrong, verbose: wanted.verbose };
+    let scene = Scene {
+        ground: &ground,
+        places: &places,
+        overlaps,
+        stands,
+        line,
+        wrong: &wanted.wrong,
+        verbose: wanted.verbose,
+    };
     let mut pair = Pair::new(joined, number ^ wanted.seed, wrong_of(&wanted.wrong));
     let sought: Vec<Family> = Family::ALL.to_vec();
     let before = tally.cycles;
@@ -434,7 +476,13 @@ fn hunt(wanted: &Wanted, number: u64, tally: &mut Tally) -> Result<bool, String>
     while tally.cycles - before < wanted.cycles {
         seed = seed.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
         if let Some((accident, story)) = episode(&scene, &mut pair, seed, &sought, tally) {
-            println!("  {}: pair {number}, episode seed {seed:#x}, cycle {} of it, {} in all: {}", accident.family.name(), accident.cycle, tally.cycles, accident.text);
+            println!(
+                "  {}: pair {number}, episode seed {seed:#x}, cycle {} of it, {} in all: {}",
+                accident.family.name(),
+                accident.cycle,
+                tally.cycles,
+                accident.text
+            );
             let commanded = |it: &Move| matches!(it, Move::Command(_) | Move::Restart);
             for (cycle, it) in story.iter().filter(|(cycle, it)| *cycle > accident.cycle - 400 || commanded(it)) {
                 println!("    {cycle}: {}", it.words(&ground));
@@ -449,8 +497,16 @@ fn hunt(wanted: &Wanted, number: u64, tally: &mut Tally) -> Result<bool, String>
 }
 
 fn wanted() -> Result<Wanted, String> {
-    let mut wanted =
-        Wanted { seed: 1, cycles: 200_000, pairs: 10, passing: false, meets: false, wrong: "none".to_owned(), verbose: false, episode: None };
+    let mut wanted = Wanted {
+        seed: 1,
+        cycles: 200_000,
+        pairs: 10,
+        passing: false,
+        meets: false,
+        wrong: "none".to_owned(),
+        verbose: false,
+        episode: None,
+    };
     let mut words = std::env::args().skip(1);
     while let Some(option) = words.next() {
         let value = words.next().ok_or_else(|| format!("{option} needs a value"))?;
@@ -463,7 +519,8 @@ fn wanted() -> Result<Wanted, String> {
             "--meets" => wanted.meets = value == "yes",
             "--episode" => {
                 let digits = value.trim_start_matches("0x");
-                wanted.episode = Some(u64::from_str_radix(digits, 16).map_err(|_| format!("{option}: {value} is no seed"))?);
+                wanted.episode =
+                    Some(u64::from_str_radix(digits, 16).map_err(|_| format!("{option}: {value} is no seed"))?);
             }
             "--verbose" => wanted.verbose = value == "yes",
             "--wrong" if WRONGS.contains(&value.as_str()) => wanted.wrong = value,
