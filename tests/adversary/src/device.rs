@@ -86,6 +86,10 @@ pub trait Device {
     fn cycle(&mut self, read: &Read) -> Said;
     /// The telegram that the circuit sends in this cycle.
     fn telegram(&self, circuit: usize) -> Telegram;
+    /// What a train hears there that faces right or left: where two devices speak, that of its direction.
+    fn heard(&self, circuit: usize, _right: bool) -> Telegram {
+        self.telegram(circuit)
+    }
     /// The routes that are held, and their phases.
     fn phases(&self) -> Vec<(usize, Phase)>;
     /// A restart: what it remembered is lost.

@@ -37,8 +37,10 @@ pub fn hear(train: &mut Train, ground: &Ground, (device, faces): (&dyn Device, b
         return;
     }
     let circuit = train.front_circuit(ground);
-    let telegram = if circuit < ground.seen { device.telegram(circuit) } else { super::device::Telegram::default() };
-    let meant = !faces || telegram.right == Some(ground.faces_right(&train.front()));
+    let right = ground.faces_right(&train.front());
+    let telegram =
+        if circuit < ground.seen { device.heard(circuit, right) } else { super::device::Telegram::default() };
+    let meant = !faces || telegram.right == Some(right);
     train.heard = if telegram.hold != 0 && meant {
         Heard {
             limit: train.run + train.to_joint() + length(ground, telegram.hold),

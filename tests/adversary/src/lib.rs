@@ -8,6 +8,7 @@
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
 //!   [`trace`]: the same for `oracle explore`, which makes a film of it.
+//! * [`joined`], [`pair`], [`sliding`]: two stations with a line between them, as one ground and one device, for the program `loop`.
 //! * [`altered`]: stations whose files were altered at random, and still break no rule.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
 
@@ -21,11 +22,14 @@ pub mod dispatcher;
 pub mod driver;
 pub mod ground;
 pub mod hunt;
+pub mod joined;
 pub mod judge;
 pub mod known;
 pub mod moves;
 pub mod neighbour;
+pub mod pair;
 pub mod point;
+pub mod sliding;
 pub mod stations;
 pub mod trace;
 pub mod train;

@@ -1,0 +1,551 @@
+//! Hunts for accidents of two stations with a line between them: two devices, one ground, trains that run from one to the other and back.
+//!
+//! `loop [--seed N] [--cycles N] [--pairs N] [--passing yes] [--meets yes] [--wrong NAME]`
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use atc_adversary::arsenal::Arsenal;
+use atc_adversary::attacker::Attacker;
+use atc_adversary::conditions::broken;
+use atc_adversary::device::{Ask, Commands, all};
+use atc_adversary::dice::Dice;
+use atc_adversary::dispatcher::{is_at_rest, wanted as wanted_routes};
+use atc_adversary::ground::{Ground, Mask, bit, members, mm_s};
+use atc_adversary::joined::{Joined, Place, join};
+use atc_adversary::judge::{Accident, Family};
+use atc_adversary::moves::{Arrival, Move};
+use atc_adversary::pair::{Pair, Wrong};
+use atc_adversary::sliding::Sliding;
+use atc_adversary::train::Driver;
+use atc_adversary::world::World;
+
+/// The cycles of an episode.
+const EPISODE: i64 = 9_000;
+
+/// Undoes the step from one episode's seed to the next.
+const INVERSE: u64 = 0xC097_EF87_329E_28A5;
+
+/// For how long nothing moves until an episode is over, besides turn and start.
+const REST: i64 = 1_000;
+
+/// The faults that can be put in, by name.
+const WRONGS: [&str; 10] = [
+    "none",
+    "consent-always",
+    "consent-old",
+    "told-once",
+    "unconfirmed",
+    "without-record",
+    "loss",
+    "deaf",
+    "facing",
+    "slides-late",
+];
+
+struct Wanted {
+    seed: u64,
+    cycles: u64,
+    pairs: u64,
+    passing: bool,
+    meets: bool,
+    wrong: String,
+    verbose: bool,
+    episode: Option<u64>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    cycles: u64,
+    episodes: u64,
+    routes: u64,
+    trains: u64,
+    crossings: u64,
+    restarts: u64,
+    slides: u64,
+    workers: u64,
+    restrictions: u64,
+    broken: u64,
+}
+
+/// What happens on the line between the stations, and to one station alone.
+struct Between {
+    dice: Dice,
+    agreed: i64,
+    duel: bool,
+    /// Every third of these times is disturbed.
+    period: i64,
+    restarts: usize,
+    slides: bool,
+    /// How often staff restrict and block: once in so many cycles, or never.
+    orders: [usize; 2],
+    recall: [Option<i64>; 2],
+    extra: [i64; 2],
+    route: Mask,
+    crossed: Vec<Option<bool>>,
+}
+
+impl Between {
+    fn new(seed: u64) -> Self {
+        let mut dice = Dice::new(seed ^ 0x1234_5678_9ABC_DEF0);
+        let agreed = dice.within(600, 4_000);
+        let duel = dice.once_in(4);
+        let restarts = [0, 1_500, 6_000, 20_000][dice.below(4)];
+        let slides = dice.once_in(2);
+        let period = dice.within(100, 900);
+        let orders = [[0, 300, 1_500][dice.below(3)], [0, 0, 400][dice.below(3)]];
+        Self {
+            dice,
+            agreed,
+            duel,
+            period,
+            restarts,
+            slides,
+            orders,
+            recall: [None; 2],
+            extra: [0; 2],
+            route: 0,
+            crossed: Vec::new(),
+        }
+    }
+
+    /// The two stations ask for directions as they have agreed, or against each other.
+    fn turns(&mut self, places: &[Place; 2], now: i64, pair: &mut Pair) {
+        if !self.dice.once_in(5) {
+            return;
+        }
+        let right = (now / self.agreed) % 2 == 0;
+        for (at, place) in places.iter().enumerate() {
+            let sends = right == (at == 0);
+            let away = if self.duel && self.dice.once_in(3) { self.dice.once_in(2) } else { sends };
+            if self.dice.once_in(2) {
+                pair.asks[at] = Some(Ask::Turn(place.lines + place.inner, away));
+            }
+        }
+    }
+
+    /// One device restarts; later its staff command what their record has.
+    fn restart(&mut self, world: &mut World, places: &[Place; 2], pair: &mut Pair) -> bool {
+        let now = world.truth.now;
+        for at in 0..2 {
+            if self.recall[at].is_some_and(|when| when <= now) {
+                self.recall[at] = None;
+                pair.recall(at);
+            }
+        }
+        if self.restarts == 0 || !self.dice.once_in(self.restarts) {
+            return false;
+        }
+        let at = self.dice.below(2);
+        let off = [0, 1, 3, 40][self.dice.below(4)];
+        pair.restart_one(at, off);
+        self.recall[at] = Some(now + off + self.dice.within(1, 60));
+        let place = &places[at];
+        for route in place.routes..place.routes + place.route_count {
+            if world.truth.asked[route].0 {
+                world.truth.asked[route] = (false, now);
+            }
+            world.said.proceed &= !(1 << route);
+        }
+        world.said.confirmed &= !pair.sees(at) | pair.sees(1 - at);
+        true
+    }
+
+    /// Trains are let run: routes for those that stand at signals, new ones from beyond, and drivers who change ends.
+    fn traffic(&mut self, (world, places): (&World, &[Place; 2]), pair: &Pair, moves: &mut Vec<Move>) {
+        if !self.dice.once_in(6) {
+            return;
+        }
+        let ground = world.ground;
+        if world.trains.len() < 3 && self.dice.once_in(12) {
+            let outer: Vec<usize> = (0..ground.lines.len()).filter(|line| ground.lines[*line].ways[0]).collect();
+            let Some(line) = self.dice.pick(&outer) else { return };
+            moves.push(Move::Consent(line, false));
+            moves.push(Move::Ask(Ask::Turn(line, false)));
+            let driver = if self.dice.once_in(3) { Driver::Signals } else { Driver::Telegrams };
+            let (length, speed) =
+                (self.dice.within(40_000, ground.longest), self.dice.within(ground.fastest / 2, ground.fastest));
+            moves.push(Move::Send(
+                line,
+                Arrival { length, driver, speed, gap: self.dice.within(0, 5_000), about: false },
+            ));
+            return;
+        }
+        let Some(train) = world.trains.get(self.dice.below(world.trains.len())) else { return };
+        if train.speed == 0 && train.authority == 0 && self.dice.once_in(25) {
+            moves.push(Move::Face(train.number));
+        }
+        let routes = wanted_routes(world, train);
+        if train.speed == 0 && self.dice.once_in(12) {
+            moves.push(Move::Pace(train.number, mm_s(400)));
+        }
+        if train.speed == 0 && train.authority == 0 {
+            // What a false occupancy has closed is withdrawn, and asked for anew; so is what was withdrawn under the train.
+            let asked: Vec<usize> = routes.iter().copied().filter(|route| world.truth.asked[*route].0).collect();
+            if let Some(route) = self.dice.pick(&asked).filter(|_| self.dice.once_in(8)) {
+                moves.push(Move::Ask(Ask::Withdraw(route)));
+                return;
+            }
+            if let Some(route) = train.route.filter(|_| routes.is_empty()) {
+                moves.push(Move::Ask(Ask::Set(route)));
+                return;
+            }
+        }
+        let Some(route) = self.dice.pick(&routes) else { return };
+        let inner = places.iter().position(|place| ground.routes[route].lines[1] == Some(place.lines + place.inner));
+        match ground.routes[route].lines[1] {
+            Some(_) if inner.is_some_and(|at| !pair.consented(at)) => {}
+            Some(line) if inner.is_none() && self.dice.once_in(2) => {
+                moves.push(Move::Consent(line, true));
+                moves.push(Move::Ask(Ask::Turn(line, true)));
+            }
+            _ => moves.push(Move::Ask(Ask::Set(route))),
+        }
+    }
+
+    /// Where trains slide others are let through, if the device lets them.
+    fn beside(&mut self, world: &World, over: Mask, moves: &mut Vec<Move>) {
+        self.route |= over;
+        if self.dice.once_in(300) {
+            self.route = 0;
+        }
+        if self.route == 0 || !self.dice.once_in(3) {
+            return;
+        }
+        let ground = world.ground;
+        let over: Vec<usize> =
+            (0..ground.routes.len()).filter(|at| ground.routes[*at].mask & self.route != 0).collect();
+        let points: Vec<usize> =
+            ground.pieces.iter().filter(|it| bit(it.circuit) & self.route != 0).filter_map(|it| it.point).collect();
+        if self.dice.once_in(3) {
+            if let Some(point) = self.dice.pick(&points) {
+                moves.push(Move::Ask(Ask::Drive(point, !world.points.lies(point))));
+            }
+        } else if let Some(route) = self.dice.pick(&over) {
+            moves.push(Move::Ask(Ask::Set(route)));
+        }
+    }
+
+    /// Restrictions near the line, set, lowered, raised; blocks on it, with staff as soon as one may step on.
+    fn staff(&mut self, world: &World, line: Mask, moves: &mut Vec<Move>) -> bool {
+        let circuits: Vec<usize> = members(line).collect();
+        let Some(circuit) = self.dice.pick(&circuits) else { return false };
+        let mut restricted = false;
+        let [restricts, blocks] = self.orders;
+        if restricts > 0 && self.dice.once_in(restricts) {
+            let code =
+                u8::try_from(self.dice.below(world.ground.codes.len().min(6)).max(usize::from(!self.dice.once_in(3))))
+                    .unwrap_or(0);
+            let lift = [0, bit(circuit), line][self.dice.below(3)];
+            let restrict = if self.dice.once_in(3) { (0, 0) } else { (bit(circuit), code) };
+            moves.push(Move::Command(Commands { restrict, lift, ..Commands::default() }));
+            restricted = true;
+        } else if blocks > 0 && self.dice.once_in(blocks) {
+            moves.push(Move::Command(Commands { block: bit(circuit), ..Commands::default() }));
+        } else if self.dice.once_in(500) {
+            let here: Vec<usize> = members(world.truth.workers & all(world.ground)).collect();
+            moves.extend(here.into_iter().map(|circuit| Move::Work(circuit, false)));
+            moves.push(Move::Command(Commands {
+                unblock: all(world.ground),
+                lift: if restricts > 0 && !self.dice.once_in(4) { 0 } else { all(world.ground) },
+                ..Commands::default()
+            }));
+        }
+        for circuit in members(world.said.confirmed & line) {
+            if self.dice.once_in(8) {
+                moves.push(Move::Work(circuit, true));
+            }
+        }
+        restricted
+    }
+
+    /// Only one station is falsely told of a train; messages stay out for a while.
+    fn disturb(&mut self, pair: &mut Pair, ground: &Ground, line: Mask) {
+        for at in 0..2 {
+            self.extra[at] -= 1;
+            if self.extra[at] <= 0 {
+                pair.extra[at] = 0;
+                if self.dice.once_in(300) {
+                    let circuits: Vec<usize> = members(pair.sees(at) & line).collect();
+                    pair.extra[at] = self.dice.pick(&circuits).map_or(0, bit);
+                    self.extra[at] = [1, 2, 5, ground.clear, 60][self.dice.below(5)];
+                }
+            }
+        }
+        if self.dice.once_in(900) {
+            pair.silence(self.dice.within(1, 2 * ground.turn));
+        }
+    }
+
+    /// How many trains have come over the border since the last cycle: onto another side's line circuits.
+    fn crossings(&mut self, world: &World, sides: [Mask; 2]) -> u64 {
+        let mut count = 0;
+        for train in &world.trains {
+            self.crossed.resize(self.crossed.len().max(train.number + 1), None);
+            let here = bit(train.front_circuit(world.ground));
+            let side = if sides[0] & here != 0 {
+                Some(false)
+            } else if sides[1] & here != 0 {
+                Some(true)
+            } else {
+                None
+            };
+            let before = &mut self.crossed[train.number];
+            if side.is_some() && *before != side {
+                count += u64::from(before.is_some());
+                *before = side;
+            }
+        }
+        count
+    }
+}
+
+/// The weapons of an episode: few of them let trains run, many stop them.
+fn arsenal(dice: &mut Dice) -> Arsenal {
+    let running = Arsenal { set: 8, line: 2, faces: true, slow_points: dice.once_in(2), ..Arsenal::RUNNING };
+    match dice.below(5) {
+        0 => {
+            Arsenal { restart: 0, neighbour_work: 1, withdraw: 3, one: 2, many: 1, block: 2, point: 5, ..Arsenal::ALL }
+        }
+        1 => Arsenal { lose: 8, one: 2, withdraw: 2, pace: 3, ..running },
+        2 => Arsenal { deaf: 8, withdraw: 4, point: 4, face: 2, ..running },
+        3 => Arsenal { lose: 4, deaf: 4, many: 1, one: 1, blind: 1, ..running },
+        _ => running,
+    }
+}
+
+/// What is fixed for a pair of stations.
+struct Scene<'a> {
+    ground: &'a Ground,
+    places: &'a [Place; 2],
+    overlaps: Vec<Vec<usize>>,
+    stands: Vec<i64>,
+    line: Mask,
+    wrong: &'a str,
+    verbose: bool,
+}
+
+fn episode(
+    scene: &Scene,
+    pair: &mut Pair,
+    seed: u64,
+    sought: &[Family],
+    tally: &mut Tally,
+) -> Option<(Accident, Vec<(i64, Move)>)> {
+    let ground = scene.ground;
+    let mut between = Between::new(seed);
+    let mut attacker = Attacker::new(seed, arsenal(&mut between.dice));
+    let mut setting = attacker.setting(ground);
+    setting.faces = scene.wrong != "facing";
+    let mut world = World::new(ground, setting);
+    pair.begin(seed);
+    pair.lag = (between.dice.below(2), [0, 0, 20, 200][between.dice.below(4)]);
+    pair.late = [0, 3, 12, 60][between.dice.below(4)];
+    let mut sliding = Sliding::default();
+    let (mut moves, mut story) = (Vec::new(), Vec::new());
+    let mut rest = 0;
+    let only = [0, 1].map(|at| pair.sees(at) & !pair.sees(1 - at));
+    let mut found = None;
+    while found.is_none() && world.truth.now < EPISODE && rest < REST + ground.turn {
+        moves.clear();
+        let now = world.truth.now;
+        attacker.draw(&world, &mut moves);
+        moves.retain(|it| !matches!(it, Move::Place(circuit, _) if scene.line & bit(*circuit) != 0));
+        if now > 0 {
+            let over = sliding.over();
+            between.beside(&world, over, &mut moves);
+            tally.restrictions += u64::from(between.staff(&world, scene.line, &mut moves));
+            between.turns(scene.places, now, pair);
+            tally.restarts += u64::from(between.restart(&mut world, scene.places, pair));
+            between.disturb(pair, ground, scene.line);
+        }
+        // Quiet and disturbed times take turns, so that trains get into the places where it hurts.
+        if now > 0 && now / between.period % 3 != 0 {
+            let hurts = |it: &Move| {
+                matches!(it, Move::Occupy(..) | Move::Blind(..) | Move::Command(_) | Move::NeighbourWork(..))
+                    || matches!(it, Move::Ask(Ask::Withdraw(_) | Ask::Drive(..)))
+                    || matches!(it, Move::Pace(_, pace) if *pace < 8_000)
+            };
+            moves.retain(|it| !hurts(it) || between.dice.once_in(40));
+        }
+        // The direction between the two is for `turns` alone; now and then somebody else meddles.
+        let inner = scene.places.each_ref().map(|place| place.lines + place.inner);
+        if !between.dice.once_in(40) {
+            moves.retain(|it| !matches!(it, Move::Ask(Ask::Turn(line, _)) if inner.contains(line)));
+        }
+        if now > 0 {
+            between.traffic((&world, scene.places), pair, &mut moves);
+        }
+        let mut sent = false;
+        moves.retain(|it| !matches!(it, Move::Send(..)) || !std::mem::replace(&mut sent, true));
+        // One command in a cycle.
+        let mut commanded = false;
+        moves.retain(|it| !matches!(it, Move::Command(_)) || !std::mem::replace(&mut commanded, true));
+        // Nobody steps on what is unblocked in this cycle.
+        if moves.iter().any(|it| matches!(it, Move::Command(given) if given.unblock != 0)) {
+            moves.retain(|it| !matches!(it, Move::Work(_, true)));
+        }
+        // While a station reads its record nothing else is commanded.
+        if now > 0 && !(pair.is_up(0) && pair.is_up(1)) {
+            moves.retain(|it| !matches!(it, Move::Command(_)));
+        }
+        if scene.verbose {
+            story.extend(moves.iter().map(|it| (now, *it)));
+        }
+        let workers = world.truth.workers;
+        // A train that slides keeps no limit of what it slides over.
+        let keeps = sliding.over() == 0 && world.trains.iter().all(|it| !it.slid || it.speed == 0);
+        let limits = |family: &Family| matches!(family, Family::Speed | Family::Restriction);
+        let judged: Vec<Family> = sought.iter().copied().filter(|it| keeps || !limits(it)).collect();
+        found = world.cycle(pair, &moves, &judged);
+        tally.workers += u64::from((world.truth.workers & !workers).count_ones());
+        if between.slides || scene.wrong == "slides-late" {
+            let before = sliding.count;
+            sliding.pass((ground, &mut between.dice), &mut world.trains, (&scene.overlaps, &scene.stands));
+            tally.slides += sliding.count - before;
+        }
+        tally.crossings += between.crossings(&world, only);
+        tally.routes += u64::from(world.has_set());
+        tally.cycles += 1;
+        rest = if is_at_rest(&world) && now > ground.start { rest + 1 } else { 0 };
+    }
+    tally.episodes += 1;
+    tally.trains += u64::try_from(world.arrived()).unwrap_or(0);
+    let found = found?;
+    let conditions = broken(ground, &world.measured);
+    if scene.wrong == "none" && !conditions.is_empty() {
+        tally.broken += 1;
+        return None;
+    }
+    for train in &world.trains {
+        println!(
+            "    train {}: {:?} {} m, at {}, {} mm/s, route {:?}, heard {:?}",
+            train.number,
+            train.driver,
+            train.length / 1000,
+            ground.named(train.under),
+            train.speed,
+            train.route.map(|route| &ground.routes[route].name),
+            train.heard
+        );
+    }
+    Some((found, story))
+}
+
+fn wrong_of(name: &str) -> Wrong {
+    match name {
+        "consent-always" => Wrong::ConsentAlways,
+        "consent-old" => Wrong::ConsentOld(15),
+        "told-once" => Wrong::ToldOnce,
+        "unconfirmed" => Wrong::Unconfirmed,
+        "without-record" => Wrong::WithoutRecord,
+        _ => Wrong::Nothing,
+    }
+}
+
+fn hunt(wanted: &Wanted, number: u64, tally: &mut Tally) -> Result<bool, String> {
+    let random = |add: u64| (!wanted.passing).then(|| (wanted.seed * 1_000 + number * 2 + add) % 100_000);
+    let mut joined: Joined = join([random(0), random(1)], wanted.meets, true)?;
+    match wanted.wrong.as_str() {
+        "loss" => joined.ground.loss = joined.ground.clear + 2,
+        "deaf" => joined.ground.life *= 20,
+        _ => {}
+    }
+    let (ground, places) = (joined.ground.clone(), joined.places.clone());
+    let overlaps: Vec<Vec<usize>> = places.iter().flat_map(|place| place.overlaps.clone()).collect();
+    let late = if wanted.wrong == "slides-late" { 2_000 } else { 0 };
+    let stands = places.iter().flat_map(|place| vec![place.standstill + late; place.route_count]).collect();
+    let line = places.iter().fold(0, |all, place| all | ground.lines[place.lines + place.inner].mask);
+    let scene = Scene {
+        ground: &ground,
+        places: &places,
+        overlaps,
+        stands,
+        line,
+        wrong: &wanted.wrong,
+        verbose: wanted.verbose,
+    };
+    let mut pair = Pair::new(joined, number ^ wanted.seed, wrong_of(&wanted.wrong));
+    let sought: Vec<Family> = Family::ALL.to_vec();
+    let before = tally.cycles;
+    let mut seed = wanted.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ number;
+    if let Some(only) = wanted.episode {
+        // The seed before this one.
+        seed = only.wrapping_sub(0x1405_7B7E_F767_814F).wrapping_mul(INVERSE);
+    }
+    while tally.cycles - before < wanted.cycles {
+        seed = seed.wrapping_mul(0x5851_F42D_4C95_7F2D).wrapping_add(0x1405_7B7E_F767_814F);
+        if let Some((accident, story)) = episode(&scene, &mut pair, seed, &sought, tally) {
+            println!(
+                "  {}: pair {number}, episode seed {seed:#x}, cycle {} of it, {} in all: {}",
+                accident.family.name(),
+                accident.cycle,
+                tally.cycles,
+                accident.text
+            );
+            let commanded = |it: &Move| matches!(it, Move::Command(_) | Move::Restart);
+            for (cycle, it) in story.iter().filter(|(cycle, it)| *cycle > accident.cycle - 400 || commanded(it)) {
+                println!("    {cycle}: {}", it.words(&ground));
+            }
+            return Ok(true);
+        }
+    }
+    if pair.twice.get() > 0 {
+        println!("  pair {number}: two devices spoke for one direction in {} telegrams", pair.twice.get());
+    }
+    Ok(false)
+}
+
+fn wanted() -> Result<Wanted, String> {
+    let mut wanted = Wanted {
+        seed: 1,
+        cycles: 200_000,
+        pairs: 10,
+        passing: false,
+        meets: false,
+        wrong: "none".to_owned(),
+        verbose: false,
+        episode: None,
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(option) = words.next() {
+        let value = words.next().ok_or_else(|| format!("{option} needs a value"))?;
+        let number = || value.parse::<u64>().map_err(|_| format!("{option}: {value} is no number"));
+        match option.as_str() {
+            "--seed" => wanted.seed = number()?,
+            "--cycles" => wanted.cycles = number()?,
+            "--pairs" => wanted.pairs = number()?,
+            "--passing" => wanted.passing = value == "yes",
+            "--meets" => wanted.meets = value == "yes",
+            "--episode" => {
+                let digits = value.trim_start_matches("0x");
+                wanted.episode =
+                    Some(u64::from_str_radix(digits, 16).map_err(|_| format!("{option}: {value} is no seed"))?);
+            }
+            "--verbose" => wanted.verbose = value == "yes",
+            "--wrong" if WRONGS.contains(&value.as_str()) => wanted.wrong = value,
+            "--wrong" => return Err(format!("--wrong: {value} is none of {}", WRONGS.join(", "))),
+            _ => return Err(format!("there is no option {option}")),
+        }
+    }
+    Ok(wanted)
+}
+
+fn main() -> ExitCode {
+    let wanted = match wanted() {
+        Ok(wanted) => wanted,
+        Err(error) => {
+            eprintln!("loop: {error}");
+            return ExitCode::from(2);
+        }
+    };
+    let (start, mut tally, mut accidents) = (Instant::now(), Tally::default(), 0);
+    for number in 0..wanted.pairs {
+        match hunt(&wanted, number, &mut tally) {
+            Ok(found) => accidents += u64::from(found),
+            Err(error) => println!("  pair {number} is left out: {}", error.lines().next().unwrap_or("")),
+        }
+    }
+    println!("{tally:?}, {:.0} s; {accidents} accidents", start.elapsed().as_secs_f64());
+    if accidents > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
