@@ -94,6 +94,7 @@ fn cells(model: &Model) -> Cells {
             ("toe leads to", leg(0)),
             ("normal leads to", leg(1)),
             ("reverse leads to", leg(2)),
+            ("toe needs no protection", reason(0)),
             ("normal needs no protection", reason(1)),
             ("reverse needs no protection", reason(2)),
         ];

@@ -170,6 +170,9 @@ pub struct Point {
     /// The longest time of its stroke, in ms [default: that of `[times]`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub throw_ms: Option<At<u32>>,
+    /// Why it is safe that nothing keeps vehicles off its toe while a route runs through its circuit on a track that is not joined to it there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub toe_unprotected: Option<At<String>>,
     /// Why it is safe that nothing keeps trains off the normal leg while a route runs over the reverse one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal_unprotected: Option<At<String>>,

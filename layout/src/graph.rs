@@ -129,10 +129,9 @@ impl Graph {
         for (number, point) in station.points.iter().enumerate() {
             let Some(circuit) = names.circuit(&point.circuit, problems) else { continue };
             let joints = [&point.toe, &point.normal, &point.reverse].map(|name| joint(&mut graph, name)).to_vec();
-            let legs = [&point.normal_unprotected, &point.reverse_unprotected];
+            let ends = [&point.toe_unprotected, &point.normal_unprotected, &point.reverse_unprotected];
             let about = format!("point {}", point.name);
-            let legs = legs.map(|given| reason(problems, &about, given.as_ref()));
-            let unprotected = [None].into_iter().chain(legs).collect();
+            let unprotected = ends.map(|given| reason(problems, &about, given.as_ref())).to_vec();
             graph.tracks.push(Track { circuit, kind: Kind::Point(number), joints, unprotected });
         }
         for (number, track) in graph.tracks.iter().enumerate() {

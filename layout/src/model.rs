@@ -183,6 +183,7 @@ impl Flank {
         let track = &model.graph.tracks[self.track];
         let joint = |end: usize| &model.graph.joints[track.joints[end]].name;
         match track.kind {
+            Kind::Point(point) if self.end == 0 => format!("the toe of point {}", model.points[point].name),
             Kind::Point(point) => format!("the {} leg of point {}", self.word(model), model.points[point].name),
             Kind::Plain => format!("the track from {} to {}", joint(0), joint(1)),
         }
@@ -191,6 +192,7 @@ impl Flank {
     /// The word for its end.
     pub fn word(&self, model: &Model) -> &'static str {
         match (model.graph.tracks[self.track].kind, self.end) {
+            (Kind::Point(_), 0) => "toe",
             (Kind::Point(_), 1) => "normal",
             (Kind::Point(_), _) => "reverse",
             (Kind::Plain, 0) => "left",

@@ -549,6 +549,36 @@ fn no_flank_of_a_crossing() {
     Description::from_toml("diamond.toml", &text).unwrap().compile().unwrap_or_else(|errors| panic!("{errors}"));
 }
 
+/// A point in a circuit of the path that is not joined to the path there: it lies across it, and is no less dangerous than a plain track.
+#[test]
+fn no_flank_of_a_point_across() {
+    let crossing = "[[circuit.crossing]]\nleft = \"k1\"\nright = \"k2\"\nleft_unprotected = \"the derail at k1 is locked by hand\"\n";
+    let point = "[[point]]\nname = \"Q\"\ncircuit = \"X\"\ntoe = \"k1\"\nnormal = \"k2\"\nreverse = \"k4\"\n";
+    let end = "[[end]]\njoint = \"k4\"\nkind = \"buffer\"\n";
+    let text = format!("{}{point}{end}", DIAMOND.replace(crossing, ""));
+    breaks(
+        &text,
+        Rule::NoFlank,
+        "route W-A runs past the toe of point Q, and a vehicle may stand in S that faces no signal there; \
+         if none can, give point Q toe_unprotected = \"the reason\"",
+    );
+    // With the reason it is a layout, and the trap point is held.
+    let text = text.replace("name = \"Q\"", "name = \"Q\"\ntoe_unprotected = \"the derail at k1 is locked by hand\"");
+    let compiled = Description::from_toml("diamond.toml", &text).unwrap().compile().unwrap();
+    let trap = "point T1 reverse as flank protection of the normal leg of point Q";
+    assert!(
+        compiled.derived.iter().any(|note| note.about == "route W-A" && note.text == trap),
+        "{:?}",
+        compiled.derived
+    );
+    // The two points of a crossover in one circuit are joined: the other one is held away, and lies beside the path.
+    let crossover = include_str!("files/crossover.toml")
+        .replace("circuit = \"P2T\"", "circuit = \"P1T\"")
+        .replace("[[circuit]]\nname = \"P2T\"\nlength_m = 60\n", "");
+    let crossover = crossover.replace("path = [\"P2T\"]", "path = [\"P1T\"]");
+    Description::from_toml("crossover.toml", &crossover).unwrap().compile().unwrap_or_else(|errors| panic!("{errors}"));
+}
+
 /// Plain line that a track crosses: no point is held for a line, so nothing but a reason or a buffer stop will do.
 #[test]
 fn no_flank_of_a_line() {

@@ -618,7 +618,9 @@ static set body(int front) {
         set more = circuits;
         for (int r = 0; r < plan.routes; r++) {
             set held = held_path(r);
+            set last = held ? one(plan.route[r].place[plan.route[r].length - 1]) : 0;
             if (held && now.route[r].tail == 0) held |= one(plan.route[r].entry);
+            if (last & now.occupied) held |= held_overlap(r);
             if (held & circuits) more |= held & now.occupied;
         }
         for (int s = 0; s < plan.segments; s++) more |= along_line(s, circuits);

@@ -110,9 +110,14 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
         }
     }
     for point in &station.points {
-        for (leg, reason) in [("normal", &point.normal_unprotected), ("reverse", &point.reverse_unprotected)] {
+        let ends = [
+            ("toe", &point.toe_unprotected),
+            ("normal leg", &point.normal_unprotected),
+            ("reverse leg", &point.reverse_unprotected),
+        ];
+        for (end, reason) in ends {
             if let Some(reason) = reason {
-                let about = format!("point {}, {leg} leg", point.name);
+                let about = format!("point {}, {end}", point.name);
                 let text = format!("no flank protection: {reason}");
                 all.push(one(Origin::Reason, &about, text, at(description, &reason.span)));
             }

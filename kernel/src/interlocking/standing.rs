@@ -8,7 +8,8 @@ use super::set::CircuitSet;
 /// What is known of where trains stand, and of the limits under them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Standing<const R: usize> {
-    /// For each held route the occupied circuits of its path, and of its entry while no place is released: one train may stand on all of them.
+    /// For each held route the occupied circuits of its path, of its entry while no place is released, and of its held overlap while its last
+    /// circuit is occupied: one train may stand on all of them.
     pub bodies: [CircuitSet; R],
     /// The occupied circuits that are neither plain line nor of the path of a held route: nobody knows which train is there.
     pub loose: CircuitSet,
@@ -42,7 +43,9 @@ impl<const R: usize> Standing<R> {
             limits = limits.and_at_most(route.speed, path);
             let within = path.and(occupied);
             let entering = state.tail == 0 && !within.is_empty();
-            *body = within.or(route.entry.and(occupied).only_if(entering));
+            let arrived = within.meets(route.last());
+            let beyond = state.overlap(route).circuits.and(occupied);
+            *body = within.or(route.entry.and(occupied).only_if(entering)).or(beyond.only_if(arrived));
         }
         for route in &plan.routes {
             limits = limits.and_at_most(route.speed, route.held_from(0).circuits.without(held));
@@ -64,7 +67,7 @@ impl<const R: usize> Standing<R> {
         front: CircuitSet,
     ) -> CircuitSet {
         //= spec/interlocking.md#atc-8-train
-        //# A train MUST be taken to stand on its front's circuit and, from there on, on every occupied circuit that is of the same held route, its entry included while no place is released, or follows on plain line; and on every occupied circuit where one of these is neither of a held route nor of plain line.
+        //# A train MUST be taken to stand on its front's circuit and, from there on, on every occupied circuit that is of the same held route, its entry included while no place is released and its held overlap while its last circuit is occupied, or follows on plain line; and on every occupied circuit where one of these is neither of a held route nor of plain line.
         let (mut train, mut longer) = (front, front);
         for _ in 0..=MAX_JOINTS {
             train = longer;

@@ -28,24 +28,42 @@ pub fn guards(graph: &Graph, signals: &Signals, path: &Path, track: usize, end: 
 }
 
 /// The ends of the tracks of a circuit from which a vehicle may come onto a path that runs over `run` there: the unused legs of its
-/// points, and the ends of the tracks that it crosses.
+/// points, and the ends of the tracks that cross it.
 pub fn beside(graph: &Graph, circuit: usize, run: &[usize], passed: &[Passed]) -> Vec<(usize, usize)> {
     let legs = passed.iter().filter_map(|passed| {
         let track = graph.of_point(passed.point)?;
         Some((track, graph.tracks[track].joints.iter().position(|joint| *joint == passed.other_leg)?))
     });
+    // A point that is joined to the path within the circuit leads to it or beside it; one that is not lies in a track across it.
+    let joined = joined(graph, circuit, run);
     let crossing = (0..graph.tracks.len()).filter(|number| {
         let track = &graph.tracks[*number];
-        track.circuit == circuit && track.kind == Kind::Plain && !run.contains(number)
+        let other = track.circuit == circuit && !run.contains(number);
+        other && (track.kind == Kind::Plain || !joined.contains(number))
     });
-    let ends = crossing.flat_map(|track| [(track, 0), (track, 1)]);
+    let ends = crossing.flat_map(|track| (0..graph.tracks[track].joints.len()).map(move |end| (track, end)));
     legs.chain(ends.filter(|(track, end)| !continues_a_leg(graph, run, *track, *end))).collect()
+}
+
+/// The tracks of a circuit that hang together, within it, with those of `run`.
+fn joined(graph: &Graph, circuit: usize, run: &[usize]) -> BTreeSet<usize> {
+    let mut found: BTreeSet<usize> = run.iter().copied().collect();
+    let mut last = 0;
+    while found.len() != last {
+        last = found.len();
+        let joints: BTreeSet<usize> = found.iter().flat_map(|track| &graph.tracks[*track].joints).copied().collect();
+        let next = joints.iter().flat_map(|joint| &graph.joints[*joint].tracks);
+        let within: Vec<usize> = next.copied().filter(|track| graph.tracks[*track].circuit == circuit).collect();
+        found.extend(within);
+    }
+    found
 }
 
 /// Whether all that comes to the other end of `track` is the unused leg of a point that the path runs over: who comes in at `end` is asked
 /// for there.
 fn continues_a_leg(graph: &Graph, run: &[usize], track: usize, end: usize) -> bool {
-    let (mut at, mut joint) = (track, graph.tracks[track].joints[1 - end]);
+    let [left, right] = graph.tracks[track].joints[..] else { return false };
+    let (mut at, mut joint) = (track, if end == 0 { right } else { left });
     let mut seen = BTreeSet::from([track]);
     loop {
         let Some(next) = graph.joints[joint].tracks.iter().copied().find(|next| *next != at) else { return false };

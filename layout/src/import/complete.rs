@@ -66,6 +66,7 @@ fn unprotected(station: &mut Station, model: &Model, form: &str, report: &mut Re
     for ((track, end), flank) in open {
         let at = &model.graph.tracks[track];
         let field = match (at.kind, end) {
+            (Kind::Point(point), 0) => Some(&mut station.points[point].toe_unprotected),
             (Kind::Point(point), 1) => Some(&mut station.points[point].normal_unprotected),
             (Kind::Point(point), _) => Some(&mut station.points[point].reverse_unprotected),
             (Kind::Plain, _) => {
@@ -83,8 +84,9 @@ fn unprotected(station: &mut Station, model: &Model, form: &str, report: &mut Re
         let word = flank.word(model);
         report.defaulted.push(match at.kind {
             Kind::Point(point) => format!(
-                "point {}: no point protects its {word} leg; signals and ATC are taken to do",
-                model.points[point].name
+                "point {}: no point protects its {word}{}; signals and ATC are taken to do",
+                model.points[point].name,
+                if end == 0 { "" } else { " leg" }
             ),
             Kind::Plain => format!(
                 "circuit {}: no point protects {word} of {}; signals and ATC are taken to do",

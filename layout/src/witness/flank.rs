@@ -40,6 +40,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
             // Onto plain line goes whoever has its direction: that is no matter of signals.
             let out = self.plan.routes[number].to != SegmentSet::EMPTY;
             for vehicle in self.intruders(&path, out) {
+                // Beside the way, over a point that is held away, it is in nobody's way.
+                if !self.tracks.onward(vehicle).any(|next| self.meets(&path, next, &mut BTreeSet::new())) {
+                    continue;
+                }
                 let against = self.tracks.ahead(vehicle) == way.exit;
                 if !against && self.stands(&path, vehicle) {
                     let at = &self.tracks.joints[self.tracks.ahead(vehicle)];
@@ -91,14 +95,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         all
     }
 
-    /// Whether a vehicle that is parked there would come under the train of the path, or into its side.
+    /// Whether a vehicle that is parked there faces no signal, and no point leads it away.
     fn stands(&self, path: &Path<'_>, vehicle: Vehicle) -> bool {
         let circuit = self.tracks.piece(vehicle).circuit;
-        let stopped = path.signals.contains(&(self.tracks.ahead(vehicle), circuit));
-        let mut onward = self.tracks.onward(vehicle);
-        !stopped
-            && !self.tracks.diverts(vehicle, &path.stand)
-            && onward.any(|next| self.meets(path, next, &mut BTreeSet::new()))
+        !path.signals.contains(&(self.tracks.ahead(vehicle), circuit)) && !self.tracks.diverts(vehicle, &path.stand)
     }
 
     /// Whether a vehicle that runs in a circuit of the path comes onto the way of the train, or onto a track that crosses it.
@@ -111,7 +111,34 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         let mut way = path.way.run.iter().map(|train| self.tracks.piece(*train));
         // A point is one track, whichever leg the train uses.
         let on_the_way = way.any(|over| over.track == piece.track);
-        on_the_way || piece.over.is_none() || self.tracks.onward(vehicle).any(|next| self.meets(path, next, seen))
+        on_the_way
+            || self.crosses(path, vehicle)
+            || self.tracks.onward(vehicle).any(|next| self.meets(path, next, seen))
+    }
+
+    /// Whether the track of a vehicle in a circuit of the path lies across the way: it is plain, or is not joined to the way within the circuit.
+    fn crosses(&self, path: &Path<'_>, vehicle: Vehicle) -> bool {
+        let piece = self.tracks.piece(vehicle);
+        let within = |number: usize| self.tracks.pieces[number].circuit == piece.circuit;
+        let mut joined: BTreeSet<usize> =
+            path.way.run.iter().map(|train| train.piece).filter(|it| within(*it)).collect();
+        loop {
+            let meets = |number: &usize| {
+                joined.iter().any(|other| {
+                    let other = self.tracks.pieces[*other];
+                    self.tracks.pieces[*number].ends.iter().any(|joint| other.ends.contains(joint))
+                })
+            };
+            let more: Vec<usize> = (0..self.tracks.pieces.len())
+                .filter(|number| within(*number) && !joined.contains(number))
+                .filter(meets)
+                .collect();
+            if more.is_empty() {
+                break;
+            }
+            joined.extend(more);
+        }
+        !path.runs_over(vehicle) && (piece.over.is_none() || !joined.contains(&vehicle.piece))
     }
 
     /// Whether the file gives a reason for the end of a plain track over which a vehicle has come onto it.
@@ -145,6 +172,20 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         }
         if !path.circuits.contains(&piece.circuit) || !seen.insert(vehicle) {
             return false;
+        }
+        // Onto a point across the way it has come over an end of it.
+        if let Some((point, position)) = piece.over
+            && self.crosses(path, vehicle)
+        {
+            let given = &self.station.points[point];
+            let reason = match (vehicle.toward, position) {
+                (1, _) => &given.toe_unprotected,
+                (_, Position::Normal) => &given.normal_unprotected,
+                (_, Position::Reverse) => &given.reverse_unprotected,
+            };
+            if reason.is_some() {
+                return true;
+            }
         }
         let mut onward = self.tracks.onward(vehicle).peekable();
         onward.peek().is_some() && onward.all(|next| self.is_declared(path, next, seen))

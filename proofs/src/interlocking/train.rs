@@ -518,7 +518,7 @@ harness! {
 }
 
 harness! {
-    /// Every two circuits on which the train stands next to each other, the entry and the path of its route, are told to the ATC as those of one
+    /// Every two circuits on which the train stands next to each other, of entry, path and overlap of its route, are told to the ATC as those of one
     /// train; and the limit of each circuit of the path under it is none above that of the route, or of a restriction.
     t_ilk_train_body(e)
     theorem "T-ATC-2";
@@ -535,12 +535,14 @@ harness! {
         Joined: "two neighbouring circuits in which the train is reported, the first of them the entry or in the path, and the second in the path, are of one body",
         Route: "the limit of a circuit of the path is not above the speed of the route, whether it holds the circuit or not",
         Restriction: "nor is that of a circuit in which the train is reported above a restriction or the speed of the line, there or at the entry",
+        Slid: "so are the last circuit and the occupied ones of the overlap, where the train has slid into it and has not left the last",
         Known: "an occupied circuit of the path counts as one that no route holds exactly if the route does not hold it; and none in which the train is reported does",
     }
     covers {
         Entry: "the train stands at the entry and in the path",
         Path: "it stands in two circuits of the path, and a place is released behind it",
         Restricted: "its tail stands in a restricted circuit",
+        Slid: "the train has slid into the overlap and stands in the last circuit, too",
     }
     {
         let Some(scene) = any_scene::<E, 1, 0, 0>(e, |_, _| Beside::NOTHING) else { return };
@@ -564,6 +566,10 @@ harness! {
             known &= !in_path || standing.loose.meets(*circuit) == loose && !(here && loose);
             before = (position, *circuit);
         }
+        let slid = informed.slid && under(ground.last) && under(ground.over);
+        let beyond = contents.occupied.and(ground.overlap);
+        e.claim(Claim::Slid as u32, !slid || standing.bodies[0].contains(ground.at(ground.last).or(beyond)));
+        e.cover(Cover::Slid as u32, slid && !beyond.is_empty());
         e.claim(Claim::Joined as u32, joined);
         e.claim(Claim::Route as u32, by_route);
         e.claim(Claim::Restriction as u32, by_restriction);

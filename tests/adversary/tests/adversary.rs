@@ -3,6 +3,8 @@
 //! The kernel of November 22 had every fault of `known::KNOWN`. That each is found with the old rule put back, and not without, is a test of
 //! the prover (`proofs/runner/tests/old_rules.rs`), which knows how to put it back. More cycles: the program `adversary` of this crate.
 
+use std::process::Command;
+
 use atc_adversary::arsenal::Arsenal;
 use atc_adversary::conditions::broken;
 use atc_adversary::hunt::{Hunt, hunt, minimise, replay};
@@ -134,5 +136,22 @@ fn a_small_scenario_is_needed_as_a_whole() {
         less.moves.remove(left_out);
         let (accident, _) = replay(&mut *kernel, &ground, &less, (&sought, small.accident.cycle));
         assert_eq!(accident, None, "move {left_out} is not needed");
+    }
+}
+
+/// Two stations with a line between them: nothing is found in the kernel's two devices, and what is put in is.
+#[test]
+fn two_stations_and_what_is_put_in() {
+    let hunt = |cycles: &str, wrong: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_two_stations"));
+        let line = ["--passing", "yes", "--pairs", "1", "--seed", "1", "--cycles", cycles, "--wrong", wrong];
+        let output = program.args(line).output().expect("it runs");
+        (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+    };
+    let (code, said) = hunt("300000", "none");
+    assert!(code == Some(0) && said.contains("broken: 0") && !said.contains("crossings: 0"), "{said}");
+    for (wrong, accident) in [("facing", "derailment"), ("slides-late", "derailment"), ("loss", "derailment")] {
+        let (code, said) = hunt("300000", wrong);
+        assert!(code == Some(1) && said.contains(accident), "{wrong}: {said}");
     }
 }

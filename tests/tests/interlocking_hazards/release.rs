@@ -1,6 +1,6 @@
 //! A circuit that is falsely occupied is taken for no train.
 
-use atc_kernel::interlocking::{Phase, Position, Refusal, Travel};
+use atc_kernel::interlocking::{Phase, Position, Refusal, SegmentSet, SpeedCode, Travel};
 
 use crate::session::{ALL, Session};
 
@@ -146,4 +146,33 @@ fn an_ordinary_train_is_not_delayed() {
     assert!(session.holds("P2T"));
     session.wait(1, &["1T"]);
     assert!(!session.holds("P2T"), "the stay time has passed since the train is wholly in 1T");
+}
+
+/// A train slides into the overlap, stands, changes ends and goes back by another route, with its tail in the overlap. Found by the fifteenth
+/// attack: a restriction there did not hold for it.
+#[test]
+fn a_train_that_goes_back_from_an_overlap_keeps_the_limit_under_its_tail() {
+    let slow = SpeedCode(1);
+    for slides in [true, false] {
+        let mut session = let_in(SECOND);
+        session.restrict(&["P2T"], slow, &["W1", "P1T"]);
+        session.wait(3, &["W1", "P1T"]);
+        session.wait(3, &["P1T", "1T"]);
+        session.wait(3, &["1T"]);
+        let stands: &[&str] = if slides { &["1T", "P2T"] } else { &["1T"] };
+        session.wait(90, stands);
+        session.consent = SegmentSet::ALL;
+        let away = session.turn("West", Travel::Away);
+        // The line's turn time begins.
+        assert!(session.ask(away, stands).is_err());
+        session.wait(600, stands);
+        assert_eq!(session.ask(away, stands), Ok(()));
+        let set = session.set("1-W");
+        assert_eq!(session.ask(set, stands), Ok(()));
+        session.wait(20, stands);
+        let telegram = session.telegram("1T");
+        assert!(telegram.is_open(), "it may go");
+        // Where its tail is not, the restriction is none of its business.
+        assert_eq!(telegram.speed == slow, slides, "{telegram:?}");
+    }
 }

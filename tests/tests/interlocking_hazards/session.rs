@@ -3,7 +3,7 @@
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
     CircuitSet, Input, Movement, Orders, Output, Phase, PointId, Position, Positions, Refusal, Request, RouteId,
-    SegmentId, SegmentSet, State, Station, Travel,
+    SegmentId, SegmentSet, SpeedCode, State, Station, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_layout::{Description, Names};
@@ -118,6 +118,12 @@ impl Session {
     /// One cycle in which these circuits are to be blocked.
     pub fn block(&mut self, blocked: &[&str], occupied: &[&str]) {
         let orders = Orders { block: self.circuits(blocked), ..Orders::default() };
+        self.step(occupied, None, orders);
+    }
+
+    /// One cycle in which these circuits are restricted to the code.
+    pub fn restrict(&mut self, restricted: &[&str], code: SpeedCode, occupied: &[&str]) {
+        let orders = Orders { restrict: self.circuits(restricted), speed: code, ..Orders::default() };
         self.step(occupied, None, orders);
     }
 

@@ -133,6 +133,9 @@ impl Witness {
             if whole && !body.is_empty() && occupied.contains(&way.entry) {
                 body.insert(way.entry);
             }
+            if path.last().is_some_and(|last| occupied.contains(last)) {
+                body.extend(held.overlap(way).iter().filter(|it| occupied.contains(it)));
+            }
             together.push(body);
         }
         for line in &sketch.segments {

@@ -1,6 +1,6 @@
 //! Hunts for accidents of two stations with a line between them: two devices, one ground, trains that run from one to the other and back.
 //!
-//! `loop [--seed N] [--cycles N] [--pairs N] [--passing yes] [--meets yes] [--wrong NAME]`
+//! `two_stations [--seed N] [--cycles N] [--pairs N] [--passing yes] [--meets yes] [--wrong NAME]`
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -394,7 +394,7 @@ fn episode(
         }
         let workers = world.truth.workers;
         // A train that slides keeps no limit of what it slides over.
-        let keeps = sliding.over() == 0 && world.trains.iter().all(|it| !it.slid || it.speed == 0);
+        let keeps = sliding.over() == 0;
         let limits = |family: &Family| matches!(family, Family::Speed | Family::Restriction);
         let judged: Vec<Family> = sought.iter().copied().filter(|it| keeps || !limits(it)).collect();
         found = world.cycle(pair, &moves, &judged);
@@ -535,7 +535,7 @@ fn main() -> ExitCode {
     let wanted = match wanted() {
         Ok(wanted) => wanted,
         Err(error) => {
-            eprintln!("loop: {error}");
+            eprintln!("two_stations: {error}");
             return ExitCode::from(2);
         }
     };
