@@ -2,7 +2,7 @@
 """Logic cycles per second of aspect acceptance through every way in, in one run, beside a reference in pure Python.
 
     cargo build --release -p atc-oracle -p atc-c
-    python python/throughput.py target/release
+    python python/bench/throughput.py target/release
 
 The module must be installed, built with ``maturin build --release``. The fastest of five runs counts, and the start of a
 program is in it. The reference is `oracle/examples/conform/aspect_acceptance.py`.
@@ -24,7 +24,7 @@ from atc import columns
 
 LINE = {"cycle_ms": 50, "aspects_km_h": [25, 45, 65, 90]}
 START = json.dumps({"start": {"protocol": 1, "machine": "aspect-acceptance", "config": LINE}})
-REFERENCE = Path(__file__).parent / "../oracle/examples/conform/aspect_acceptance.py"
+REFERENCE = Path(__file__).parent / "../../oracle/examples/conform/aspect_acceptance.py"
 
 
 def rate(cycles, run):
@@ -75,7 +75,7 @@ def main(programs):
         rows.append(("`oracle replay`, one thread", rate(1_000_000, lambda: subprocess.run(replay, capture_output=True, check=True))))
     print("| way in | cycles per second |\n|---|---|")
     for name, cycles in rows:
-        print(f"| {name} | {cycles:,.0f} |".replace(",", " "))
+        print(f"| {name} | {f'{cycles:,.0f}'.replace(',', ' ')} |")
     said = subprocess.run([f"{programs}/throughput"], capture_output=True, text=True, check=True).stdout
     print("\nthrough C, and in the kernel (c-abi/README.md):\n" + "\n".join(line for line in said.splitlines() if "aspect" in line))
 
