@@ -1,7 +1,7 @@
 """Many logic cycles at once, over NumPy arrays. A row is a cycle.
 
-Either all rows are taken or none: after an error (:class:`ValueError`, with the row) the machine is as it was before. The
-state goes on from one call to the next. The configurations are those of the protocol.
+Either all rows are taken or none: after an error (:class:`ValueError`, with the row) the machine is as it was before.
+The state goes on from one call to the next. The configurations are those of the protocol.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from . import _atc
 
 __all__ = ["BLOCK_INPUT", "BLOCK_OUTPUT", "STATUS", "Aspect", "Block", "Pattern"]
 
-#: A cycle's input of a block. ``present`` has bit i for section i, 0 at the entry. ``reset`` is the verified number of trains, or -1.
+#: A cycle's input of a block. ``present`` has bit i for section i, 0 at the entry.
+#: ``reset`` is the verified number of trains, or -1.
 BLOCK_INPUT = _np.dtype(
     [
         ("present", "<u2"),
@@ -78,7 +79,7 @@ class Pattern:
         self._columns = _atc.PatternColumns(brake_mm_s2)
 
     def run(self, distance_m, gradient_permille=0):
-        """Distances in metres and gradients in thousandths (one for all, or one each) into speeds in tenths of km/h (uint16)."""
+        """Distances in metres into speeds in tenths of km/h (uint16), with a gradient in thousandths for all, or each."""
         distance = _column(distance_m, "u2", "distance_m")
         gradient = _column(gradient_permille, "i1", "gradient_permille")
         if gradient.size == 1:

@@ -4,8 +4,8 @@
     cargo build --release -p atc-oracle -p atc-c
     python python/bench/throughput.py target/release
 
-The module must be installed, built with ``maturin build --release``. The fastest of five runs counts, and the start of a
-program is in it. The reference is `oracle/examples/conform/aspect_acceptance.py`.
+The module must be installed, built with ``maturin build --release``. The fastest of five runs counts, and the start of
+a program is in it. The reference is `oracle/examples/conform/aspect_acceptance.py`.
 """
 
 import io
@@ -72,12 +72,20 @@ def main(programs):
         with open(log, "wb") as file:
             subprocess.run(generate, stdout=file, check=True)
         replay = [oracle, "replay", "--jobs", "1", log]
-        rows.append(("`oracle replay`, one thread", rate(1_000_000, lambda: subprocess.run(replay, capture_output=True, check=True))))
+        rows.append(
+            (
+                "`oracle replay`, one thread",
+                rate(1_000_000, lambda: subprocess.run(replay, capture_output=True, check=True)),
+            )
+        )
     print("| way in | cycles per second |\n|---|---|")
     for name, cycles in rows:
         print(f"| {name} | {f'{cycles:,.0f}'.replace(',', ' ')} |")
     said = subprocess.run([f"{programs}/throughput"], capture_output=True, text=True, check=True).stdout
-    print("\nthrough C, and in the kernel (c-abi/README.md):\n" + "\n".join(line for line in said.splitlines() if "aspect" in line))
+    print(
+        "\nthrough C, and in the kernel (c-abi/README.md):\n"
+        + "\n".join(line for line in said.splitlines() if "aspect" in line)
+    )
 
 
 if __name__ == "__main__":

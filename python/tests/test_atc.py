@@ -54,7 +54,10 @@ class Columns(unittest.TestCase):
         heard = [now for _ in range(600) for now in [draw.choice((2, 2, 2, 8, 4, 0, 1, 5, 15))] * draw.randint(1, 16)]
         machine, speeds = atc.Machine("aspect-acceptance", LINE), LINE["aspects_km_h"]
         steps = ({"detected_km_h": [speed for rank, speed in enumerate(speeds) if now >> rank & 1]} for now in heard)
-        want = [-1 if shown is None else speeds.index(shown) for shown in (out["display_km_h"] for out in machine.steps(steps))]
+        want = [
+            -1 if shown is None else speeds.index(shown)
+            for shown in (out["display_km_h"] for out in machine.steps(steps))
+        ]
         aspect = columns.Aspect(LINE)
         half = len(heard) // 2
         got = np.concatenate([aspect.run(heard[:half]), aspect.run(np.array(heard[half:], dtype=np.int64))])
@@ -66,7 +69,11 @@ class Columns(unittest.TestCase):
         inputs, steps = [], []
         for cycle in range(5000):
             present, check_in, check_out = draw.randrange(8), draw.random() < 0.3, draw.random() < 0.3
-            reset, hold, entered = (draw.randrange(3) if draw.random() < 0.05 else -1), draw.randrange(3), draw.random() < 0.9
+            reset, hold, entered = (
+                (draw.randrange(3) if draw.random() < 0.05 else -1),
+                draw.randrange(3),
+                draw.random() < 0.9,
+            )
             inputs.append((present, check_in, check_out, reset, hold, entered))
             steps.append(
                 {
@@ -107,7 +114,11 @@ class Columns(unittest.TestCase):
             with self.assertRaises(ValueError):
                 aspect.run(wrong)
         block = columns.Block(BLOCK)
-        for wrong, says in (((8, 0, 0, -1, 0, 1), "present"), ((0, 2, 0, -1, 0, 1), "check_in"), ((0, 0, 0, 256, 0, 1), "reset")):
+        for wrong, says in (
+            ((8, 0, 0, -1, 0, 1), "present"),
+            ((0, 2, 0, -1, 0, 1), "check_in"),
+            ((0, 0, 0, 256, 0, 1), "reset"),
+        ):
             with self.assertRaisesRegex(ValueError, f"row 0: {says}"):
                 block.run(np.array([wrong], dtype=columns.BLOCK_INPUT))
         with self.assertRaisesRegex(ValueError, "2 distances and 3 gradients"):
