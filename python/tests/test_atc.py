@@ -1,6 +1,5 @@
 """The module against the oracle's own sessions, and its columns against its steps."""
 
-import json
 import random
 import unittest
 
