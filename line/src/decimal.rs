@@ -235,6 +235,15 @@ impl<T: JsonSchema> JsonSchema for OrNull<T> {
     }
 }
 
+/// The text, cut to a length that is fit for a message.
+pub fn shorten(text: &str) -> Cow<'_, str> {
+    const LONGEST: usize = 40;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -270,14 +279,5 @@ mod tests {
             let text = serde_json::to_string(&Decibels(parts)).expect("a number");
             assert_eq!((super::parts(&text, 2), &text), (Ok(parts), &Decibels(parts).to_string()));
         }
-    }
-}
-
-/// The text, cut to a length that is fit for a message.
-pub fn shorten(text: &str) -> Cow<'_, str> {
-    const LONGEST: usize = 40;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
-        None => Cow::Borrowed(text),
     }
 }

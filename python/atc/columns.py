@@ -79,7 +79,7 @@ class Pattern:
         self._columns = _atc.PatternColumns(brake_mm_s2)
 
     def run(self, distance_m, gradient_permille=0):
-        """Distances in metres into speeds in tenths of km/h (uint16), with a gradient in thousandths each or for all."""
+        """Distances in metres and gradients in thousandths, one each or one for all, into tenths of km/h (uint16)."""
         distance = _column(distance_m, "u2", "distance_m")
         gradient = _column(gradient_permille, "i1", "gradient_permille")
         if gradient.size == 1:
