@@ -89,7 +89,7 @@ fn unprotected(station: &mut Station, model: &Model, form: &str, report: &mut Re
                 if end == 0 { "" } else { " leg" }
             ),
             Kind::Plain => format!(
-                "circuit {}: no point protects {word} of {}; signals and ATC are taken to do",
+                "circuit {}: no point protects the {word} end of {}; signals and ATC are taken to do",
                 model.circuits[at.circuit].name,
                 flank.of(model)
             ),

@@ -22,19 +22,51 @@ fn run(command: &mut Command) -> Result<String, String> {
     Err(format!("{command:?}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr)))
 }
 
-/// The folder of a Python of our own with what building and testing take, under `target`; or why there is none.
+/// What building and testing take besides Python itself.
+const PACKAGES: [&str; 4] = ["maturin>=1.9,<2", "wheel>=0.45,<1", "numpy>=1.24,<3", "mypy>=1.18,<3"];
+
+/// The programs of a Python of our own with these packages, under `target`; or why there are none.
 fn environment(target: &Path) -> Result<PathBuf, String> {
     let place = target.join("python/environment");
-    let whole = place.join("whole");
-    if !whole.exists() {
-        // One that was begun and not ended is no good.
-        let _ = fs::remove_dir_all(&place);
-        run(Command::new("python3").args(["-m", "venv"]).arg(&place))?;
-        let packages = ["maturin>=1.9,<2", "numpy>=1.24,<3", "mypy>=1.18,<3"];
-        run(Command::new(place.join("bin/pip")).args(["install", "--quiet"]).args(packages))?;
-        fs::write(&whole, "").map_err(|error| error.to_string())?;
+    let (whole, packages) = (place.join("whole"), PACKAGES.join("\n"));
+    if fs::read_to_string(&whole).is_ok_and(|made| made == packages) {
+        return Ok(place.join("bin"));
     }
+    // One that was begun and not ended, or is for other packages, is no good.
+    let _ = fs::remove_dir_all(&place);
+    run(Command::new("python3").args(["-m", "venv"]).arg(&place))?;
+    run(Command::new(place.join("bin/pip")).args(["install", "--quiet"]).args(PACKAGES))?;
+    fs::write(&whole, packages).map_err(|error| error.to_string())?;
     Ok(place.join("bin"))
+}
+
+/// The wheel, packed as `maturin build` does it, from a library that is built as all tests are: so nothing that they use is built once more with
+/// other features.
+fn packed(target: &Path, bin: &Path) -> Result<PathBuf, String> {
+    let library = target.join("debug/lib_atc.so");
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--locked", "--workspace", "--lib", "--test", "contracts"]);
+    run(build.env("CARGO_TARGET_DIR", target).current_dir(folder()))?;
+    let (unpacked, wheels) = (target.join("python/unpacked"), target.join("python/wheels"));
+    let said = |error: std::io::Error| error.to_string();
+    for place in [&unpacked, &wheels] {
+        let _ = fs::remove_dir_all(place);
+        fs::create_dir_all(place.join("atc")).map_err(said)?;
+    }
+    fs::remove_dir(wheels.join("atc")).map_err(said)?;
+    for entry in fs::read_dir(folder().join("atc")).map_err(said)? {
+        let path = entry.map_err(said)?.path();
+        if let Some(name) = path.file_name().filter(|_| path.is_file()) {
+            fs::copy(&path, unpacked.join("atc").join(name)).map_err(said)?;
+        }
+    }
+    fs::copy(library, unpacked.join("atc/_atc.abi3.so")).map_err(said)?;
+    let mut about = Command::new(bin.join("maturin"));
+    about.args(["pep517", "write-dist-info", "--metadata-directory"]).arg(&unpacked);
+    run(about.arg("--interpreter").arg(bin.join("python")).current_dir(folder()))?;
+    run(Command::new(bin.join("wheel")).arg("pack").arg(&unpacked).arg("--dest-dir").arg(&wheels))?;
+    let mut made = fs::read_dir(&wheels).map_err(said)?;
+    Ok(made.next().ok_or("no wheel")?.map_err(said)?.path())
 }
 
 #[test]
@@ -48,16 +80,8 @@ fn the_wheel_holds_what_its_page_promises() {
             return;
         }
     };
-    let wheels = target.join("python/wheels");
-    let _ = fs::remove_dir_all(&wheels);
-    let mut build = Command::new(bin.join("maturin"));
-    build
-        .args(["build", "--quiet", "--locked", "--profile", "dev", "--manifest-path"])
-        .arg(folder().join("Cargo.toml"));
     let python = bin.join("python");
-    let made = build.arg("--target-dir").arg(&target).arg("--interpreter").arg(&python).arg("--out").arg(&wheels);
-    run(made).unwrap_or_else(|why| panic!("{why}"));
-    let wheel = fs::read_dir(&wheels).expect("a folder").next().expect("a wheel").expect("a file").path();
+    let wheel = packed(&target, &bin).unwrap_or_else(|why| panic!("{why}"));
     let install = ["install", "--quiet", "--no-index", "--no-deps", "--force-reinstall"];
     run(Command::new(bin.join("pip")).args(install).arg(&wheel)).unwrap_or_else(|why| panic!("{why}"));
     let asked = |script: &Path| run(Command::new(&python).arg("-B").arg(script)).unwrap_or_else(|why| panic!("{why}"));
@@ -67,7 +91,7 @@ fn the_wheel_holds_what_its_page_promises() {
     assert!(asked(&folder().join("examples/columns.py")).contains(" 0 per mille: [  0.   72. "));
     // The stubs say what is there.
     let stubs = bin.join("stubtest");
-    run(Command::new(stubs).args(["atc", "--ignore-disjoint-bases"]).current_dir(&wheels))
+    run(Command::new(stubs).args(["atc", "--ignore-disjoint-bases"]).current_dir(&bin))
         .unwrap_or_else(|why| panic!("{why}"));
     sessions(&python);
 }
