@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use atc_kernel::interlocking::{Route, SegmentSet};
 
 use super::routes::Way;
-use super::tracks::{Stand, Vehicle};
+use super::tracks::{Stand, Tracks, Vehicle};
 use super::{Sides, members};
 use crate::form::Position;
 use crate::problem::Problem;
@@ -23,6 +23,11 @@ impl Path<'_> {
     /// Whether the train of the path runs over the stretch of a vehicle.
     fn runs_over(&self, vehicle: Vehicle) -> bool {
         self.way.run.iter().any(|train| train.piece == vehicle.piece)
+    }
+
+    /// Whether it runs over a track. A point is one, whichever leg the train uses.
+    fn lies_on(&self, track: usize, tracks: &Tracks) -> bool {
+        self.way.run.iter().any(|train| tracks.piece(*train).track == track)
     }
 }
 
@@ -108,10 +113,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         {
             return false;
         }
-        let mut way = path.way.run.iter().map(|train| self.tracks.piece(*train));
-        // A point is one track, whichever leg the train uses.
-        let on_the_way = way.any(|over| over.track == piece.track);
-        on_the_way
+        path.lies_on(piece.track, &self.tracks)
             || self.crosses(path, vehicle)
             || self.tracks.onward(vehicle).any(|next| self.meets(path, next, seen))
     }
@@ -195,9 +197,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
     fn comes_from(&self, path: &Path<'_>, vehicle: Vehicle, seen: &mut BTreeSet<Vehicle>) -> Option<usize> {
         let circuit = self.tracks.piece(vehicle).circuit;
         let stopped = path.signals.contains(&(self.tracks.ahead(vehicle), circuit));
-        // What runs on the path is the train itself.
+        // What runs on the way is the train itself; who passes beside it, in a circuit of the path, may come back to it.
         if stopped
-            || path.circuits.contains(&circuit)
+            || path.lies_on(self.tracks.piece(vehicle).track, &self.tracks)
             || self.tracks.diverts(vehicle, &path.stand)
             || !seen.insert(vehicle)
         {

@@ -8,13 +8,14 @@
 //! * [`world`]: a cycle of all of it. [`judge`]: what an accident is. [`conditions`]: whether the numbered conditions held.
 //! * [`hunt`]: episodes, replay, and scenarios made small. [`words`]: a scenario in the words of the railway.
 //!   [`trace`]: the same for `oracle explore`, which makes a film of it.
-//! * [`joined`], [`pair`], [`sliding`]: two stations with a line between them, as one ground and one device, for the program `two_stations`.
+//! * [`joined`], [`pair`], [`between`], [`sliding`]: two stations with a line between them, as one ground and one device, for the program `two_stations`.
 //! * [`altered`]: stations whose files were altered at random, and still break no rule.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
 
 pub mod altered;
 pub mod arsenal;
 pub mod attacker;
+pub mod between;
 pub mod conditions;
 pub mod device;
 pub mod dice;
