@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The folders whose comments may quote a requirement.
-const QUOTING: &[&str] = &["kernel", "arithmetic/src", "proofs/src", "models", "oracle", "tests"];
+const QUOTING: &[&str] = &["kernel", "arithmetic/src", "proofs/src", "models", "protocol", "oracle", "tests"];
 
 /// Everything that is known without a result.
 #[derive(Clone, Debug)]

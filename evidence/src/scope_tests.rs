@@ -141,7 +141,17 @@ fn every_test_program_is_named_or_of_a_tool() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the checkout");
     let folders =
         ["arithmetic", "c-abi", "evidence", "layout", "line", "models", "proofs/runner", "simulation", "tests"];
-    let more = ["film", "film/kernel", "kernel", "oracle", "proofs", "tests/adversary", "tests/commands", "waveform"];
+    let more = [
+        "film",
+        "film/kernel",
+        "kernel",
+        "oracle",
+        "proofs",
+        "protocol",
+        "tests/adversary",
+        "tests/commands",
+        "waveform",
+    ];
     let programs =
         folders.iter().chain(&more).filter_map(|folder| std::fs::read_dir(root.join(folder).join("tests")).ok());
     let paths = programs.flatten().map(|entry| entry.expect("readable").path());

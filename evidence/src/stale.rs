@@ -13,7 +13,7 @@ fn touches(folder: &str, kind: Kind) -> bool {
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
         "waveform" => matches!(kind, Kind::Measured | Kind::Test),
-        "oracle" | "tests" | "evidence" | "layout" | "line" => kind == Kind::Test,
+        "protocol" | "oracle" | "tests" | "evidence" | "layout" | "line" => kind == Kind::Test,
         _ => false,
     }
 }

@@ -10,7 +10,7 @@ use atc_oracle::conform::report::{self, Past, Report};
 use atc_oracle::conform::run::{self, Options, Run, Verdict};
 use atc_oracle::conform::vectors::{self, Set, Vector};
 use atc_oracle::conform::walk;
-use atc_oracle::machine::{self, KINDS};
+use atc_protocol::machine::{self, KINDS};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
@@ -211,7 +211,7 @@ pub(crate) fn config(path: &Path, machines: &[String]) -> Result<Value, Failure>
     };
     let line = json!({"start": {"protocol": 1, "machine": machine, "config": config}}).to_string();
     let mut reply = Vec::new();
-    atc_oracle::Session::new().answer(line.as_bytes(), &mut reply);
+    atc_protocol::Session::new().answer(line.as_bytes(), &mut reply);
     let reply: Value = serde_json::from_slice(&reply).unwrap_or_default();
     if reply.get("started").is_some() {
         return Ok(config);

@@ -199,7 +199,7 @@ fn main() -> ExitCode {
         Command::Replay(args) => replaying::replay(&args),
         Command::Vectors(args) => conformance::vectors(&args),
         Command::Schema { of } => print(&match of {
-            SchemaOf::Protocol => atc_oracle::schema::text(),
+            SchemaOf::Protocol => atc_protocol::schema::text(),
             SchemaOf::Replay => atc_oracle::replay::report::schema(),
             SchemaOf::Report => atc_oracle::conform::report::schema(),
             SchemaOf::Vector => atc_oracle::conform::vectors::schema(),

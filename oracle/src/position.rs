@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use atc_kernel::position::{Millibels, Spacing};
 use atc_line::position::{Config, TableConfig};
-use atc_oracle::{Decibels, Metres};
+use atc_protocol::{Decibels, Metres};
 use atc_waveform::calibration::measured::{
     DEVIATIONS, Fit, FitError, Measurement, Side, Wanted, Without, picture, sides,
 };

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
 
 use memchr::memchr;
 
-use crate::session::{MAX_LINE, Session};
+use atc_protocol::{MAX_LINE, Session};
 
 /// Bytes that are read or written at once.
 const CHUNK: usize = 1 << 16;

@@ -14,9 +14,10 @@ use serde_json::value::RawValue;
 use atc_film::Film;
 
 use crate::chart::Scene;
+use crate::drawn::{self, Cycle, DRAWINGS, Drawing, Drawn};
 use crate::film::{self, Setting, Take};
-use crate::machine::{self, Cycle, KINDS, Kind, Machine};
-use crate::protocol::{self, Fault, Rejected, Stop};
+use atc_protocol::form::{self, Fault, Rejected, Stop};
+use atc_protocol::machine::{self, Machine};
 
 /// What a recorded reply that differs from the kernel's means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +59,7 @@ pub struct Trace {
 /// A recorded case.
 #[derive(Clone, Debug)]
 pub struct Record {
-    kind: &'static Kind,
+    drawing: &'static Drawing,
     line: usize,
     config: Box<RawValue>,
     steps: Vec<RecordedStep>,
@@ -66,8 +67,8 @@ pub struct Record {
 
 impl Record {
     /// The machine that it is of.
-    pub(crate) const fn kind(&self) -> &'static Kind {
-        self.kind
+    pub(crate) const fn drawing(&self) -> &'static Drawing {
+        self.drawing
     }
 }
 
@@ -133,7 +134,7 @@ impl Trace {
     /// A configuration or step that the kernel does not take, a reply that cannot be read, or, if replies must
     /// agree, the first that does not.
     pub fn scenes(&self, replies: Replies) -> Result<Vec<Scene>, TraceError> {
-        self.cases.iter().map(|record| (record.kind.chart)(record, replies)).collect()
+        self.cases.iter().map(|record| (record.drawing.chart)(record, replies)).collect()
     }
 }
 
@@ -158,7 +159,7 @@ impl Reader {
                 _ => return Err(Fault::whole("a step outside a case")),
             },
             Line::Stop(body) if self.open => {
-                let _: Stop = protocol::body(text, body)?;
+                let _: Stop = form::body(text, body)?;
                 self.open = false;
                 self.awaiting.push_back(Awaiting::Stop);
             }
@@ -187,12 +188,12 @@ impl Reader {
         if self.open {
             return Err(Fault::whole("a start inside a case"));
         }
-        let start = protocol::start(text, body)?;
-        if start.protocol != protocol::PROTOCOL {
+        let start = form::start(text, body)?;
+        if start.protocol != form::PROTOCOL {
             return Err(Fault::whole(format!("protocol {} is not spoken here", start.protocol)));
         }
-        let Some(kind) = machine::find(&start.machine) else {
-            let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
+        let Some(drawing) = drawn::find(&start.machine) else {
+            let names: Vec<_> = DRAWINGS.iter().map(|drawing| drawing.name).collect();
             return Err(Fault::whole(format!(
                 "there is no machine {:?}; there are {}",
                 start.machine,
@@ -203,7 +204,7 @@ impl Reader {
             Some(config) => config.to_owned(),
             None => RawValue::from_string("{}".to_owned()).map_err(|error| Fault::whole(error.to_string()))?,
         };
-        self.cases.push(Record { kind, line, config, steps: Vec::new() });
+        self.cases.push(Record { drawing, line, config, steps: Vec::new() });
         self.open = true;
         self.awaiting.push_back(Awaiting::Start);
         Ok(())
@@ -228,13 +229,13 @@ impl Reader {
 }
 
 /// Runs a record through the kernel, compares, and lays out the chart.
-pub(crate) fn chart<M: Machine>(record: &Record, replies: Replies) -> Result<Scene, TraceError> {
+pub(crate) fn chart<M: Drawn>(record: &Record, replies: Replies) -> Result<Scene, TraceError> {
     let Run { config, cycles, .. } = run::<M>(record, replies)?;
     Ok(M::chart(&config, &cycles))
 }
 
 /// Runs a record through the kernel, compares, and lays out the film.
-pub(crate) fn film<M: Machine>(record: &Record, setting: &Setting) -> Result<Film, TraceError> {
+pub(crate) fn film<M: Drawn>(record: &Record, setting: &Setting) -> Result<Film, TraceError> {
     let Run { config, cycles, steps } = run::<M>(record, setting.replies)?;
     let take = Take { config: &config, cycles: &cycles, steps: &steps, setting };
     film::made(&take).map_err(|what| TraceError { line: record.line, fault: Fault::whole(what) })
@@ -280,7 +281,7 @@ fn run<M: Machine>(record: &Record, replies: Replies) -> Result<Run<M>, TraceErr
                 return Err(at(recorded.line)(fault));
             }
             Some(Answer::Output(line, body)) => {
-                let said: M::Output = protocol::body("", body).map_err(|fault| {
+                let said: M::Output = form::body("", body).map_err(|fault| {
                     at(*line)(Fault::whole(format!("an output of {} cannot be read: {}", M::NAME, fault.what)))
                 })?;
                 if said != output && replies == Replies::MustAgree {
@@ -308,8 +309,8 @@ fn run<M: Machine>(record: &Record, replies: Replies) -> Result<Run<M>, TraceErr
 }
 
 fn read_step<M: Machine>(text: &str) -> Result<M::Step, Fault> {
-    match protocol::request(text)? {
-        protocol::Request::Step(body) => machine::step_of::<M>(text, body),
+    match form::request(text)? {
+        form::Request::Step(body) => machine::step_of::<M>(text, body),
         _ => Err(Fault::whole("not a step")),
     }
 }

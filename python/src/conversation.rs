@@ -1,7 +1,7 @@
 //! One case of one machine, in lines of JSON.
 
-use atc_oracle::machine::KINDS;
-use atc_oracle::{Session, schema as protocol_schema};
+use atc_protocol::machine::KINDS;
+use atc_protocol::{Session, schema as protocol_schema};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 

@@ -23,5 +23,5 @@ mod _atc {
     use super::conversation::{machines, schema};
 
     #[pymodule_export]
-    const PROTOCOL: u32 = atc_oracle::protocol::PROTOCOL;
+    const PROTOCOL: u32 = atc_protocol::form::PROTOCOL;
 }

@@ -1,6 +1,6 @@
 //! The oracle in this process: parse a step, step the kernel, write the output. Without pipes.
 
-use atc_oracle::Session;
+use atc_protocol::Session;
 use atc_tests::{reception, traffic, workload};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 

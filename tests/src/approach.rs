@@ -1,8 +1,8 @@
 //! A train that approaches a transmitter, for the chart and the benchmarks of the train's position: the level difference grows with
 //! the distance by 4.0 dB/km when the ballast is dry and by 9.0 dB/km when it is wet. All in integers: the same in every run.
 
-use atc_oracle::machine::position::{Config, Step, TableConfig};
-use atc_oracle::{Decibels, Metres};
+use atc_protocol::machine::position::{Config, Step, TableConfig};
+use atc_protocol::{Decibels, Metres};
 use serde_json::json;
 
 use crate::session;

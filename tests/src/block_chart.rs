@@ -26,7 +26,7 @@ use std::fmt::{self, Write as _};
 use std::path::Path;
 
 use atc_kernel::block::{Block, Hold, Input, SectionSet, State, Status, TrainCount, step};
-use atc_oracle::machine::block::{Config, Fault, Output};
+use atc_protocol::machine::block::{Config, Fault, Output};
 use serde_json::{Value, json};
 
 use crate::device::{Refused, converse, device};

@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 
 use atc_kernel::aspect::{AspectSet, Display, MAX_ASPECTS, State, Times, step};
-use atc_oracle::Kmh;
-use atc_oracle::machine::aspect::Config;
+use atc_protocol::Kmh;
+use atc_protocol::machine::aspect::Config;
 use serde_json::{Value, json};
 
 /// The kernel's displays for these detections, a logic cycle each, from the initial state.

@@ -2,10 +2,10 @@
 //! that reads codes alone. Six sections, a train ahead in the seventh; each section's transmitter sends a code and frames of
 //! 530 ms at a phase of its own. A driver follows the kernel's permitted speed. All in integers: the same in every run.
 
-use atc_oracle::machine::Machine as _;
-use atc_oracle::machine::permitted::{Config, LineKind, Output, Permitting, Step};
-use atc_oracle::telegrams::{MainTelegram, SubTelegram};
-use atc_oracle::{Kmh, Metres};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::permitted::{Config, LineKind, Output, Permitting, Step};
+use atc_protocol::telegrams::{MainTelegram, SubTelegram};
+use atc_protocol::{Kmh, Metres};
 use serde_json::json;
 
 use crate::session;

@@ -5,7 +5,7 @@ use atc_kernel::block::{
     Beyond, Block, Detection, Direction, Hold, Input, Line, LineInput, Metres, SectionSet, TrainCount,
 };
 use atc_kernel::time::{Millis, Ticks};
-use atc_oracle::machine::block::Config;
+use atc_protocol::machine::block::Config;
 
 /// How many cycles the input has before it begins again. At its end the line is empty; it begins with a reset.
 pub const PERIOD: usize = 8192;

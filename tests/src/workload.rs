@@ -3,8 +3,8 @@
 
 use atc_kernel::aspect::{AspectSet, Display, MAX_ASPECTS, State, Times, TimesMs, step};
 use atc_kernel::time::Millis;
-use atc_oracle::Kmh;
-use atc_oracle::machine::aspect::Config;
+use atc_protocol::Kmh;
+use atc_protocol::machine::aspect::Config;
 
 /// How many cycles the input has before it begins again.
 pub const PERIOD: usize = 4096;

@@ -4,7 +4,7 @@
 //! How to read a chart: `atc_tests::block_chart`. If nothing else is said the block has three sections, at most three trains, no
 //! tail hold, and a pass time of ten cycles.
 
-use atc_oracle::machine::block::Config;
+use atc_protocol::machine::block::Config;
 use atc_tests::block_chart::{BlockChart, check};
 use atc_tests::device;
 

@@ -5,8 +5,8 @@
 //! \[0051\] with T4 = 800 ms: T1 = 300, T2 = T3 = 400, T5 = 100 ms, and a column is 50 ms.
 
 use atc_kernel::aspect::{AspectId, Display};
-use atc_oracle::Kmh;
-use atc_oracle::machine::aspect::Config;
+use atc_protocol::Kmh;
+use atc_protocol::machine::aspect::Config;
 use atc_tests::device;
 use atc_tests::timing_chart::{ChartError, TimingChart};
 

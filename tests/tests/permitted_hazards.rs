@@ -1,9 +1,9 @@
 //! Sessions on board that ended in a hazard once, and how they end now.
 
-use atc_oracle::machine::Machine as _;
-use atc_oracle::machine::permitted::{Config, LineKind, Output, Permitting, Step};
-use atc_oracle::telegrams::MainTelegram;
-use atc_oracle::{Kmh, Metres};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::permitted::{Config, LineKind, Output, Permitting, Step};
+use atc_protocol::telegrams::MainTelegram;
+use atc_protocol::{Kmh, Metres};
 
 const CYCLE_MS: u32 = 100;
 const CODE: Kmh = Kmh(900);

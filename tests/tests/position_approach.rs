@@ -1,9 +1,9 @@
 //! The train of `atc_tests::approach`, and the example that is drawn from it.
 
 use atc_oracle::chart::{self, View};
-use atc_oracle::machine::Machine as _;
-use atc_oracle::machine::position::Positioned;
 use atc_oracle::trace::{Replies, Trace};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::position::Positioned;
 use atc_tests::approach;
 
 const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../oracle/examples/train-position.jsonl");

@@ -5,7 +5,7 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
-use atc_oracle::Session;
+use atc_protocol::Session;
 use serde_json::{Value, json};
 
 use crate::tools::{self, Scratch};

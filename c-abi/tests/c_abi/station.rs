@@ -12,8 +12,8 @@ use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
     Combined, Commands, Input, Layout, Memory, PointSet, Position, Request, Station, Travel,
 };
-use atc_oracle::machine::Machine;
-use atc_oracle::machine::interlocking::{Config, Interlocked, Step};
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::interlocking::{Config, Interlocked, Step};
 
 use crate::arrays::{Arrays, heading};
 use crate::call;

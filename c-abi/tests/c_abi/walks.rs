@@ -3,7 +3,7 @@
 
 use atc_oracle::conform::case::Expected;
 use atc_oracle::conform::walk::{Sizes, case};
-use atc_oracle::machine::{aspect, block, pattern, permitted, supervision, telegram};
+use atc_protocol::machine::{aspect, block, pattern, permitted, supervision, telegram};
 use serde_json::Value;
 
 use crate::wire::Spoken;

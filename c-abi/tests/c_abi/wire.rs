@@ -22,11 +22,11 @@ use atc_c::telegram::{
     atc_frame, atc_main_telegram, atc_sub_telegram, atc_telegram,
 };
 use atc_kernel::block::SectionSet;
-use atc_oracle::machine::permitted::{Basis, LineKind};
-use atc_oracle::machine::supervision::Brake;
-use atc_oracle::machine::{Machine, aspect, block, pattern, permitted, supervision, telegram};
-use atc_oracle::telegrams::{MainTelegram, SubTelegram, Telegram};
-use atc_oracle::{Kmh, Sections};
+use atc_protocol::machine::permitted::{Basis, LineKind};
+use atc_protocol::machine::supervision::Brake;
+use atc_protocol::machine::{Machine, aspect, block, pattern, permitted, supervision, telegram};
+use atc_protocol::telegrams::{MainTelegram, SubTelegram, Telegram};
+use atc_protocol::{Kmh, Sections};
 
 use crate::call;
 

@@ -17,6 +17,7 @@ pub const FOLDERS: &[&str] = &[
     "line",
     "proofs",
     "models",
+    "protocol",
     "oracle",
     "waveform",
     "simulation",

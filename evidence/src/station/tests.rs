@@ -84,7 +84,7 @@ fn a_broken_rule_is_named_with_its_place_and_what_follows_it_is_not_called_kept(
 fn a_layout_that_counts_on_shorter_lives_than_its_trains_have_is_refused() {
     const NOTHING: TrainLives =
         TrainLives { ahead_ms: 0, way_ms: 0, life_ms: 0, code_way_ms: 0, code_ms: 0, reaction_ms: 0 };
-    let on_board = atc_oracle::machine::permitted::Config::default();
+    let on_board = atc_protocol::machine::permitted::Config::default();
     let train = |life_ms: u32| TrainLives { ahead_ms: 530, life_ms: u64::from(life_ms + on_board.cycle_ms), ..NOTHING };
     let with =
         |text: &str, train| checked(text).with_trains("L", train).case(&[theorem("t_ilk_1", Verdict::Proved)], &[]);

@@ -4,9 +4,10 @@
 use atc_kernel::aspect::{AspectId, AspectSet, MAX_ASPECTS, Parts, Times};
 
 use super::{Lane, Mark, Scene, Sign, Signal, Tone, Unit, Values, changes, spans};
-use crate::kmh::Kmh;
-use crate::machine::aspect::{Aspect, Config};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::kmh::Kmh;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::aspect::{Aspect, Config};
 
 /// One rank after one cycle.
 #[expect(clippy::struct_excessive_bools, reason = "the kernel's own bits, taken apart")]
@@ -33,8 +34,14 @@ fn name(moment: Moment, times: Times) -> &'static str {
     }
 }
 
+impl Drawn for Aspect {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Aspect>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Aspect>]) -> Scene {
     let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let end = cycles.len() as u64;
     let mut scene = Scene {

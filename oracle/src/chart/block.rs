@@ -4,8 +4,9 @@
 use atc_kernel::block::{Parts, Status};
 
 use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans};
-use crate::machine::block::{Config, Counted, Fault, Output};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::block::{Config, Counted, Fault, Output};
 
 /// Why a section is reported as it is.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -64,8 +65,14 @@ impl Moment {
     }
 }
 
+impl Drawn for Counted {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
     let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let mut scene = Scene {
         machine: Counted::NAME,

@@ -7,8 +7,8 @@ use svg::{Document, Node};
 use super::figure::{self, Figure};
 use super::ink::{INK, dashes, join, line, paint, polyline, rectangle, round, sign_at, text, width, wrap};
 use super::{Lane, Mark, Part, Scene, Sign, Tone, View};
-use crate::protocol::Fault;
 use crate::trace::TraceError;
+use atc_protocol::form::Fault;
 
 const WIDTH: f64 = 1000.0;
 pub(super) const LEFT: f64 = 160.0;

@@ -6,11 +6,14 @@ use std::collections::BTreeSet;
 use atc_kernel::interlocking::{self as kernel, CircuitSet, Position, SegmentSet};
 
 use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::machine::interlocking::{
+use crate::drawn::{Cycle, Drawn};
+use crate::film::{self, Take};
+use atc_film::Film;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::interlocking::{
     Answer, Config, Interlocked, Output, Phase, Refused, Request, Side, State, Step, Travel,
 };
-use crate::machine::{Cycle, Machine};
-use crate::names::Named;
+use atc_protocol::names::Named;
 
 /// The device after one cycle.
 struct Moment {
@@ -28,8 +31,18 @@ enum Use {
     Free,
 }
 
+impl Drawn for Interlocked {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+
+    fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
+        film::interlocking::put(take, film).map(|()| true)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
     let mut scene = Scene {
         machine: Interlocked::NAME,
         notes: Vec::new(),

@@ -21,8 +21,8 @@ mod value;
 mod wave;
 pub mod wayside;
 
-use crate::decimal::Metres;
 use crate::trace::{Replies, Trace, TraceError};
+use atc_protocol::decimal::Metres;
 
 /// The chart of one case.
 #[derive(Clone, Debug)]

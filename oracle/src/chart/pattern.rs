@@ -3,13 +3,20 @@
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
 use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes};
-use crate::kmh::Kmh;
-use crate::machine::pattern::{Braking, Config, Output};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
 use atc_line::refusal::{brake, gradient};
+use atc_protocol::kmh::Kmh;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::pattern::{Braking, Config, Output};
+
+impl Drawn for Braking {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(*config, cycles)
+    }
+}
 
 /// Lays out a case.
-pub(crate) fn scene(config: Config, cycles: &[Cycle<Braking>]) -> Scene {
+fn scene(config: Config, cycles: &[Cycle<Braking>]) -> Scene {
     let km_h = |output: Output| f64::from(output.speed_km_h.0) / 10.0;
     let kernel: Vec<_> = cycles.iter().map(|cycle| cycle.output.speed_km_h).collect();
     let speeds = |speeds: &[Kmh]| -> Vec<(u64, Option<f64>)> {

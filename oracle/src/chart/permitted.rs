@@ -6,11 +6,12 @@ use atc_kernel::telegram::Route;
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
 use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::decimal::Metres;
-use crate::kmh::Kmh;
-use crate::machine::permitted::{Basis, Config, LineKind, Output, Permitting, RememberedSub};
-use crate::machine::{Cycle, Machine};
-use crate::names::Named as _;
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::decimal::Metres;
+use atc_protocol::kmh::Kmh;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::permitted::{Basis, Config, LineKind, Output, Permitting, RememberedSub};
+use atc_protocol::names::Named as _;
 
 fn km_h(speed: Kmh) -> f64 {
     f64::from(speed.0) / 10.0
@@ -33,8 +34,14 @@ fn uses(cycles: &[Cycle<Permitting>]) -> Vec<(bool, bool)> {
     used.collect()
 }
 
+impl Drawn for Permitting {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
     let mut scene = Scene {
         machine: Permitting::NAME,
         notes: vec![

@@ -2,9 +2,10 @@
 
 use super::record;
 use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::decimal::{Decibels, Metres};
-use crate::machine::position::{Config, Output, Positioned};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::decimal::{Decibels, Metres};
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::position::{Config, Output, Positioned};
 
 /// An interval in metres.
 type Ends = Option<(f64, f64)>;
@@ -18,8 +19,14 @@ fn ends(output: Output) -> Ends {
     output.interval_m.map(|[nearest, farthest]| (metres(nearest), metres(farthest)))
 }
 
+impl Drawn for Positioned {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
     let intervals: Vec<_> = cycles.iter().map(|cycle| ends(cycle.output)).collect();
     let truths: Vec<_> = cycles.iter().map(|cycle| cycle.step.truth_m.map(metres)).collect();
     let widths: Vec<_> =

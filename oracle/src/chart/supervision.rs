@@ -2,12 +2,19 @@
 //! is in logic cycles.
 
 use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::kmh::Kmh;
-use crate::machine::supervision::{Brake, Config, Supervised};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::kmh::Kmh;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::supervision::{Brake, Config, Supervised};
+
+impl Drawn for Supervised {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
 
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
     let end = cycles.len() as u64;
     let measured: Vec<_> = cycles.iter().map(|cycle| cycle.step.speed_km_h).collect();
     let permitted: Vec<_> = cycles.iter().map(|cycle| cycle.step.permitted_km_h).collect();

@@ -3,9 +3,10 @@
 use atc_kernel::telegram::{FRAME_BITS, Frame, Route, Telegram, decode};
 
 use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::machine::telegram::{Codec, Config, Found, Output, Step};
-use crate::machine::{Cycle, Machine};
-use crate::names::Named as _;
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::telegram::{Codec, Config, Found, Output, Step};
+use atc_protocol::names::Named as _;
 
 /// The most steps that are drawn.
 const MOST: usize = 24;
@@ -89,8 +90,10 @@ fn found(stream: &str, first: u64, telegrams: &[Found]) -> Vec<Mark> {
     for telegram in telegrams {
         let end = telegram.last_bit + 1 - first;
         let name = match telegram.telegram {
-            crate::telegrams::Telegram::Main(main) => format!("main {} of section {}", main.counter, main.section),
-            crate::telegrams::Telegram::Sub(sub) => format!("sub {} of section {}", sub.counter, sub.section),
+            atc_protocol::telegrams::Telegram::Main(main) => {
+                format!("main {} of section {}", main.counter, main.section)
+            }
+            atc_protocol::telegrams::Telegram::Sub(sub) => format!("sub {} of section {}", sub.counter, sub.section),
         };
         if end >= LENGTH {
             let whole: String =
@@ -124,8 +127,14 @@ fn shown(place: usize, step: &Step, output: &Output, heard: &mut u64) -> Shown {
     Shown { heading: format!("{place}  {heading}"), bits, fields, error }
 }
 
+impl Drawn for Codec {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(*config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(_: Config, cycles: &[Cycle<Codec>]) -> Scene {
+fn scene(_: Config, cycles: &[Cycle<Codec>]) -> Scene {
     let mut heard = 0;
     let shown: Vec<_> =
         cycles.iter().enumerate().map(|(place, cycle)| shown(place, &cycle.step, &cycle.output, &mut heard)).collect();

@@ -2,12 +2,19 @@
 
 use super::supervision::{brake_lane, brake_signal, numbers, speed_lane};
 use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::kmh::Kmh;
-use crate::machine::train::{Config, OnBoard, Step};
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::kmh::Kmh;
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::train::{Config, OnBoard, Step};
+
+impl Drawn for OnBoard {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
 
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
     let end = cycles.len() as u64;
     let measured: Vec<_> = cycles.iter().map(|cycle| cycle.step.speed_km_h).collect();
     // What stands from the end of a cycle on is drawn over the next one.

@@ -5,8 +5,8 @@ use std::io;
 use vcd::{IdCode, SimulationCommand, TimescaleUnit, VarType, Writer};
 
 use super::{Scene, Values};
-use crate::protocol::Fault;
 use crate::trace::TraceError;
+use atc_protocol::form::Fault;
 
 /// One change of one signal.
 enum Change<'a> {

@@ -4,10 +4,11 @@
 use std::collections::BTreeSet;
 
 use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::machine::interlocking::{Answer, Request};
-use crate::machine::wayside::{Config, Ground, Output, Permission, Step, Transmission};
-use crate::machine::{Cycle, Machine};
-use crate::names::Named;
+use crate::drawn::{Cycle, Drawn};
+use atc_protocol::machine::Machine;
+use atc_protocol::machine::interlocking::{Answer, Request};
+use atc_protocol::machine::wayside::{Config, Ground, Output, Permission, Step, Transmission};
+use atc_protocol::names::Named;
 
 /// The device after one cycle.
 struct Moment {
@@ -16,8 +17,14 @@ struct Moment {
     consent: BTreeSet<String>,
 }
 
+impl Drawn for Ground {
+    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
+        scene(config, cycles)
+    }
+}
+
 /// Lays out a case.
-pub(crate) fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
+fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
     let mut scene = Scene {
         machine: Ground::NAME,
         notes: Vec::new(),

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::Session;
-use crate::protocol::PROTOCOL;
+use atc_protocol::Session;
+use atc_protocol::form::PROTOCOL;
 
 /// A case of one machine, as it goes over the wire.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@
 //! * [`alike`]: which small change of the kernel gives the same replies.
 //! * [`report`]: text, JSON, JUnit, HTML, badge. [`vectors`]: cases in files.
 //!
-//! It goes through [`crate::Session`] and [`crate::chart`] as any client does; neither knows of it.
+//! It goes through [`atc_protocol::Session`] and [`crate::chart`] as any client does; neither knows of it.
 
 pub mod alike;
 pub mod case;

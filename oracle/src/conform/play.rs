@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::case::{Expected, STOP, is_rejected, step_line};
 use super::fields::{Difference, Level, compare, compare_cycles, start_difference};
 use super::profile::Profile;
-use super::side::{Broken, Side};
+use super::side::{Answers, Broken};
 
 /// How replies are compared.
 #[derive(Clone, Copy)]
@@ -94,7 +94,7 @@ impl Found {
 }
 
 struct Player<'a> {
-    side: &'a mut Side,
+    side: &'a mut dyn Answers,
     judge: Judge<'a>,
     machine: &'a str,
     replies: Vec<String>,
@@ -105,7 +105,7 @@ struct Player<'a> {
 ///
 /// # Errors
 /// The first finding.
-pub fn play(expected: &Expected, side: &mut Side, judge: Judge<'_>) -> Result<Agreed, Box<Found>> {
+pub fn play(expected: &Expected, side: &mut dyn Answers, judge: Judge<'_>) -> Result<Agreed, Box<Found>> {
     let machine = expected.case.machine.as_str();
     let mut player = Player { side, judge, machine, replies: Vec::new(), agreed: Agreed::default() };
     let played = player.play(expected);

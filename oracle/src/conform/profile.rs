@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fields::{Difference, Level, TABLES};
-use crate::machine::KINDS;
+use atc_protocol::machine::KINDS;
 
 /// What a profile file (TOML) says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

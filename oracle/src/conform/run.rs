@@ -11,10 +11,10 @@ use super::fields::Level;
 use super::play::{At, Finding, Found, Judge, play};
 use super::profile::Profile;
 use super::shrink::{Trace, shrink};
-use super::side::{Broken, Side};
+use super::side::{Answers as _, Broken, Side};
 use super::vectors::Vector;
 use super::walk::{self, Sizes};
-use crate::machine::KINDS;
+use atc_protocol::machine::KINDS;
 
 /// What is asked for.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::case::{Case, Expected};
 use super::play::{At, Found, Judge, Kind, play};
-use super::side::Side;
+use super::side::Answers;
 
 /// A trace that shows a finding, in its last case.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ const MAX_CONFIG: u64 = 1500;
 
 /// Plays candidates.
 struct Shrinker<'a> {
-    side: &'a mut Side,
+    side: &'a mut dyn Answers,
     judge: Judge<'a>,
     kind: Kind,
     until: Instant,
@@ -55,7 +55,7 @@ pub fn shrink(
     before: &[Case],
     case: Case,
     found: Found,
-    side: &mut Side,
+    side: &mut dyn Answers,
     judge: Judge<'_>,
     time: Duration,
 ) -> Option<Trace> {

@@ -72,6 +72,18 @@ impl fmt::Display for Broken {
     }
 }
 
+/// Somebody who answers requests of protocol 1.
+pub trait Answers {
+    /// The reply line to a request line.
+    ///
+    /// # Errors
+    /// What was done in place of a reply.
+    fn ask(&mut self, line: &str) -> Result<String, Broken>;
+
+    /// Forgets everything: the next request is the first one.
+    fn end(&mut self);
+}
+
 /// The command of the other side, and its process while one runs.
 pub struct Side {
     command: String,
@@ -100,41 +112,6 @@ impl Side {
     /// The other side that this command starts, given to `sh -c`; it has so long for each reply.
     pub const fn new(command: String, patience: Duration) -> Self {
         Self { command, patience, running: None, starts: 0, said: String::new() }
-    }
-
-    /// The reply line to a request line.
-    ///
-    /// # Errors
-    /// What it did in place of a reply. The process is ended then; the next request starts another one.
-    pub fn ask(&mut self, line: &str) -> Result<String, Broken> {
-        if self.running.is_none() {
-            self.running = Some(self.start()?);
-        }
-        let Some(running) = &mut self.running else { return Err(Broken::Closed) };
-        let patience = if running.answered { self.patience } else { self.patience + BEGIN };
-        let asked = running.ask(line, patience);
-        match asked {
-            Ok(reply) => {
-                running.answered = true;
-                Ok(reply)
-            }
-            Err(Failed::Gone) => Err(self.gone()),
-            Err(Failed::Slow) => {
-                self.end();
-                Err(Broken::Hung(patience.as_millis()))
-            }
-            Err(Failed::Long(line)) => {
-                self.end();
-                Err(Broken::Garbage(line))
-            }
-        }
-    }
-
-    /// Ends the process, if one runs.
-    pub fn end(&mut self) {
-        if let Some(running) = self.running.take() {
-            self.said = running.end().1;
-        }
     }
 
     /// Whether a process runs.
@@ -177,6 +154,40 @@ impl Side {
                 Broken::NotStarted(said.lines().last().unwrap_or("the shell cannot run it").to_owned())
             }
             Some(status) => Broken::Ended(how(status)),
+        }
+    }
+}
+
+impl Answers for Side {
+    /// After an error the process is ended; the next request starts another one.
+    fn ask(&mut self, line: &str) -> Result<String, Broken> {
+        if self.running.is_none() {
+            self.running = Some(self.start()?);
+        }
+        let Some(running) = &mut self.running else { return Err(Broken::Closed) };
+        let patience = if running.answered { self.patience } else { self.patience + BEGIN };
+        let asked = running.ask(line, patience);
+        match asked {
+            Ok(reply) => {
+                running.answered = true;
+                Ok(reply)
+            }
+            Err(Failed::Gone) => Err(self.gone()),
+            Err(Failed::Slow) => {
+                self.end();
+                Err(Broken::Hung(patience.as_millis()))
+            }
+            Err(Failed::Long(line)) => {
+                self.end();
+                Err(Broken::Garbage(line))
+            }
+        }
+    }
+
+    /// Ends the process, if one runs.
+    fn end(&mut self) {
+        if let Some(running) = self.running.take() {
+            self.said = running.end().1;
         }
     }
 }

@@ -9,8 +9,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use super::Take;
-use crate::machine::interlocking::{Interlocked, Phase, Reason};
-use crate::names::Named;
+use atc_protocol::machine::interlocking::{Interlocked, Phase, Reason};
+use atc_protocol::names::Named;
 
 /// Puts the kernel into a film, if there is one to put in; else the film says that it only plays.
 pub(super) fn put(take: &Take<'_, Interlocked>, machine: &Interlocked, film: &mut Film) -> Result<(), String> {

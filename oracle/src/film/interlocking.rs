@@ -5,9 +5,9 @@ use atc_film::{Class, Film, Plan};
 use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet};
 
 use super::{Take, inside, schematic, stage};
-use crate::machine::Machine as _;
-use crate::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, State, Step, Travel};
-use crate::names::Named as _;
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, State, Step, Travel};
+use atc_protocol::names::Named as _;
 
 /// A step: what was read, the state after it, and what was answered (as recorded, if it was).
 struct Moment<'a> {

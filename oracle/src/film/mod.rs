@@ -17,8 +17,9 @@ use atc_layout::Description;
 use serde_json::Value;
 
 use crate::chart::Scene;
-use crate::machine::{Cycle, Machine};
+use crate::drawn::{Cycle, Drawn};
 use crate::trace::{Record, Replies, TraceError};
+use atc_protocol::machine::Machine;
 
 pub use traced::{Traced, TracedError, read};
 
@@ -51,7 +52,7 @@ impl Default for Setting {
 /// # Errors
 /// As [`crate::trace::Trace::scenes`]; and a layout that does not fit.
 pub fn film(record: &Record, setting: &Setting) -> Result<Film, TraceError> {
-    (record.kind().film)(record, setting)
+    (record.drawing().film)(record, setting)
 }
 
 /// A case that was run through the kernel, as a film is made of it.
@@ -70,7 +71,7 @@ pub struct Take<'a, M: Machine> {
 ///
 /// # Errors
 /// A sentence: why the layout does not fit.
-pub(crate) fn made<M: Machine>(take: &Take<'_, M>) -> Result<Film, String> {
+pub(crate) fn made<M: Drawn>(take: &Take<'_, M>) -> Result<Film, String> {
     let scene: Scene = M::chart(take.config, take.cycles);
     let frames = u32::try_from(take.cycles.len()).map_err(|_| "the case has 2^32 steps or more".to_owned())?;
     let clock = Clock { unit: scene.unit.name.to_owned(), per_frame: scene.unit.per_cycle.max(1), last: None };

@@ -5,7 +5,7 @@ use atc_film::{Class, Film};
 use serde_json::Value;
 
 use super::Take;
-use crate::machine::Machine;
+use atc_protocol::machine::Machine;
 
 /// The longest text of a value.
 const LONGEST: usize = 160;

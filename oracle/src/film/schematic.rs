@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use atc_film::Plan;
 use atc_kernel::interlocking::{CircuitSet, Heading};
 
-use crate::machine::interlocking::Interlocked;
+use atc_protocol::machine::interlocking::Interlocked;
 
 /// The width of a bar, and from one to the next, in pixels.
 const BAR: usize = 110;

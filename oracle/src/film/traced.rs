@@ -132,7 +132,7 @@ pub fn read(text: &str, wanted: Option<&str>) -> Result<Traced, TracedError> {
 /// The trace as the session that it is.
 fn session(trace: ModelTrace, title: Option<String>) -> Result<Traced, TracedError> {
     let start =
-        json!({"start": {"protocol": crate::protocol::PROTOCOL, "machine": trace.machine, "config": trace.config}});
+        json!({"start": {"protocol": atc_protocol::form::PROTOCOL, "machine": trace.machine, "config": trace.config}});
     let mut lines = vec![start.to_string()];
     let mut words = Vec::new();
     for step in trace.steps {

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind, Read};
 
 use memchr::memchr;
 
-use crate::session::MAX_LINE;
+use atc_protocol::MAX_LINE;
 
 /// Bytes that are read at once. The buffer grows to hold the longest line, and no further.
 const CHUNK: usize = 1 << 18;
@@ -112,7 +112,7 @@ pub(super) fn is_start(text: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::{Lines, key};
-    use crate::session::MAX_LINE;
+    use atc_protocol::MAX_LINE;
 
     /// Offset, number, length (none: too long), whether it has its end.
     type Place = (u64, u64, Option<usize>, bool);

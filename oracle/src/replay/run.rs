@@ -18,7 +18,7 @@ use super::unit::{self, Differs, Done, MOST_STUCK, Setting, Stuck, Tally, Watche
 use crate::conform::fields::Level;
 use crate::conform::play::Judge;
 use crate::conform::profile::Profile;
-use crate::machine::KINDS;
+use atc_protocol::machine::KINDS;
 
 /// What is asked for.
 #[derive(Clone, Debug)]

@@ -3,14 +3,14 @@
 
 use std::collections::VecDeque;
 
-use crate::Session;
 use crate::conform::fields;
 use crate::conform::play::{Agreed, Finding, Judge, Opened, shorten};
 use crate::conform::side::Broken;
-use crate::machine::{self, KINDS, Kind};
-use crate::protocol::{self, Fault, PROTOCOL, Request, Stop};
-use crate::session::MAX_LINE;
 use crate::trace;
+use atc_protocol::MAX_LINE;
+use atc_protocol::Session;
+use atc_protocol::form::{self, Fault, PROTOCOL, Request, Stop};
+use atc_protocol::machine::{self, KINDS, Kind};
 
 use super::lines::{Line, key};
 
@@ -119,10 +119,10 @@ impl Play {
     /// Begins a session with its start line.
     pub(super) fn begin(line: &Line<'_>, judge: Judge<'_>) -> Result<Begun, Why> {
         let text = text(line)?;
-        let Request::Start(body) = protocol::request(text).map_err(|fault| unreadable(line, &fault))? else {
+        let Request::Start(body) = form::request(text).map_err(|fault| unreadable(line, &fault))? else {
             return Err("a start that is none".into());
         };
-        let start = protocol::start(text, body).map_err(|fault| unreadable(line, &fault))?;
+        let start = form::start(text, body).map_err(|fault| unreadable(line, &fault))?;
         if start.protocol != PROTOCOL {
             return Err(format!("protocol {} is not spoken here; protocol {PROTOCOL} is", start.protocol).into());
         }
@@ -242,10 +242,10 @@ impl Play {
 
     fn stop(&mut self, line: &Line<'_>) -> Result<(), Why> {
         let text = text(line)?;
-        let Request::Stop(body) = protocol::request(text).map_err(|fault| unreadable(line, &fault))? else {
+        let Request::Stop(body) = form::request(text).map_err(|fault| unreadable(line, &fault))? else {
             return Err(neither(line));
         };
-        let _: Stop = protocol::body(text, body).map_err(|fault| unreadable(line, &fault))?;
+        let _: Stop = form::body(text, body).map_err(|fault| unreadable(line, &fault))?;
         match self.state {
             State::Open => self.state = State::Stopped,
             // Some recorders stop what was rejected.

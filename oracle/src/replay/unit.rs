@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::conform::play::Judge;
 use crate::conform::random::Random;
-use crate::machine::{KINDS, Kind};
+use atc_protocol::machine::{KINDS, Kind};
 
 use super::lines::{Line, Lines, is_start};
 use super::logs::{Log, Unit};

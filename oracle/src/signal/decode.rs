@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use super::SignalError;
 use super::config::Config;
-use crate::kmh::Kmh;
-use crate::telegrams::{MainTelegram, SubTelegram};
+use atc_protocol::kmh::Kmh;
+use atc_protocol::telegrams::{MainTelegram, SubTelegram};
 
 /// Samples that are decoded at once.
 const BLOCK: usize = 4096;

@@ -49,7 +49,7 @@ pub(crate) fn put_in(all: &[Importer], files: &mut Files) -> Result<(), String> 
         rewrite(files, &path, |text| instrument(text, &changes))?;
     }
     let names: Vec<&str> = all.iter().map(|one| one.name.as_str()).collect();
-    rewrite(files, "layout/src/lib.rs", |text| with_cells(text, names.len(), &selector(&names)))
+    rewrite(files, "layout/src/lib.rs", |text| with_cells(text, names.len(), &selector(&names, "return Err(())")))
 }
 
 /// What became of a wrong importer.

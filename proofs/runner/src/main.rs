@@ -147,6 +147,8 @@ enum ProgramName {
     Adversary,
     /// Goes through all states of small stations.
     Models,
+    /// Looks which mutants the test vectors catch.
+    Vectors,
 }
 
 #[derive(clap::Args)]
@@ -349,9 +351,12 @@ fn with_old_rules(mutants: &[String], program: ProgramName, arguments: &[String]
     let program = match program {
         ProgramName::Adversary => Program::Adversary,
         ProgramName::Models => Program::Models,
+        ProgramName::Vectors => Program::Vectors,
     };
     let names: Vec<&str> = mutants.iter().map(String::as_str).collect();
-    let mut command = old_rules::build(&root(), &[program])?.with(program, &names)?;
+    let programs = old_rules::build(&root(), &[program])?;
+    let mut command =
+        if program == Program::Vectors { programs.vectors(&names)? } else { programs.with(program, &names)? };
     let status = command.args(arguments).status().map_err(|error| format!("{}: {error}", program.name()))?;
     Ok(status.success())
 }

@@ -31,10 +31,12 @@ pub enum Program {
     Models,
     /// What imports stations of others.
     Importers,
+    /// What holds the test vectors against the kernel.
+    Vectors,
 }
 
 impl Program {
-    const ALL: [Self; 3] = [Self::Adversary, Self::Models, Self::Importers];
+    const ALL: [Self; 4] = [Self::Adversary, Self::Models, Self::Importers, Self::Vectors];
 
     /// Its name in the checkout, the manifest that has it, and its source.
     const fn is(self) -> [&'static str; 3] {
@@ -42,6 +44,7 @@ impl Program {
             Self::Adversary => ["adversary", "tests/adversary/Cargo.toml", "tests/adversary/src/bin/adversary.rs"],
             Self::Models => ["models", "models/Cargo.toml", "models/src/main.rs"],
             Self::Importers => ["importers", "tests/adversary/Cargo.toml", "tests/adversary/src/bin/importers.rs"],
+            Self::Vectors => ["vectors", "tests/adversary/Cargo.toml", "tests/adversary/src/bin/vectors.rs"],
         }
     }
 
@@ -70,6 +73,27 @@ impl Programs {
         }
         let mut command = Command::new(self.folder.join(program.name()));
         command.env(VARIABLE, mutants.join(","));
+        Ok(command)
+    }
+
+    /// What holds the vectors against these mutants, one after the other; against all, if none is named.
+    ///
+    /// # Errors
+    /// A mutant that is not in it, or the list of them cannot be written.
+    pub fn vectors(&self, mutants: &[&str]) -> Result<Command, String> {
+        self.with(Program::Vectors, mutants)?;
+        let all = list(&self.root)?;
+        let wanted = |name: &str| self.mutants.contains(name) && (mutants.is_empty() || mutants.contains(&name));
+        let lines = all.iter().filter(|mutant| wanted(&mutant.name)).map(|mutant| {
+            let (first, rest) = mutant.file.split_once('/').unwrap_or((&mutant.file, ""));
+            let folder = if rest.is_empty() { first.trim_end_matches(".rs") } else { first };
+            format!("{}\t{folder}\n", mutant.name)
+        });
+        let path = self.root.join("target/old-rules/mutants.tsv");
+        let text: String = lines.collect();
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+        let mut command = self.with(Program::Vectors, &[])?;
+        command.arg("--mutants").arg(path);
         Ok(command)
     }
 
@@ -231,20 +255,23 @@ fn read(root: &Path, folder: &Path, files: &mut Files) -> Result<(), String> {
 
 /// Puts the mutants in, and what selects them. Their names.
 fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
-    let all = list(root)?;
-    let is_wanted = |path: &str| path.starts_with("kernel/src/interlocking/");
-    let chosen: Vec<_> =
-        all.iter().filter(|mutant| is_wanted(&mutant.path()) && !mutant.alone && is_together(root, mutant)).collect();
-    let mut changes: BTreeMap<String, Vec<Change>> = BTreeMap::new();
-    for (number, mutant) in chosen.iter().enumerate() {
-        let change = Change { number, find: &mutant.find, replace: &mutant.replace };
-        changes.entry(mutant.path()).or_default().push(change);
+    let chosen: Vec<_> = list(root)?.into_iter().filter(|mutant| !mutant.alone && is_together(root, mutant)).collect();
+    let (below, above): (Vec<_>, Vec<_>) = chosen.iter().partition(|mutant| mutant.path().starts_with("arithmetic/"));
+    for (library, rest, mutants) in [
+        ("arithmetic/src/lib.rs", "return Err(())", &below),
+        ("kernel/src/lib.rs", "return atc_arithmetic::choose(name)", &above),
+    ] {
+        let mut changes: BTreeMap<String, Vec<Change>> = BTreeMap::new();
+        for (number, mutant) in mutants.iter().enumerate() {
+            let change = Change { number, find: &mutant.find, replace: &mutant.replace };
+            changes.entry(mutant.path()).or_default().push(change);
+        }
+        for (path, changes) in changes {
+            rewrite(files, &path, |text| instrument(text, &changes))?;
+        }
+        let names: Vec<&str> = mutants.iter().map(|mutant| mutant.name.as_str()).collect();
+        rewrite(files, library, |text| with_cells(text, names.len(), &selector(&names, rest)))?;
     }
-    for (path, changes) in changes {
-        rewrite(files, &path, |text| instrument(text, &changes))?;
-    }
-    let names: Vec<&str> = chosen.iter().map(|mutant| mutant.name.as_str()).collect();
-    rewrite(files, "kernel/src/lib.rs", |text| with_cells(text, names.len(), &selector(&names)))?;
     let importers = importers::list(root)?;
     importers::put_in(&importers, files)?;
     rewrite(files, "Cargo.toml", |text| {
@@ -263,24 +290,42 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
         let library = if program == Program::Importers { "atc_layout" } else { "atc_kernel" };
         rewrite(files, main, |text| once(text, begins, &format!("{begins}    {library}::select();\n")))?;
     }
-    let all = names.into_iter().chain(importers.iter().map(|importer| importer.name.as_str()));
+    rewrite(files, "tests/adversary/src/bin/vectors.rs", |text| {
+        once(
+            text,
+            "fn choose(_name: &str) -> bool {\n    false\n}",
+            "fn choose(name: &str) -> bool {\n    atc_kernel::choose(name).is_ok()\n}",
+        )
+    })?;
+    let names = chosen.iter().map(|mutant| mutant.name.as_str());
+    let all = names.chain(importers.iter().map(|importer| importer.name.as_str()));
     Ok(all.map(ToOwned::to_owned).collect())
 }
 
-/// What a program calls before anything else.
-pub(crate) fn selector(names: &[&str]) -> String {
+/// What a program calls before anything else, and what selects one mutant alone while it runs. `rest`: what is done with another name.
+pub(crate) fn selector(names: &[&str], rest: &str) -> String {
     let mut written = format!(
         "extern crate std;
          /// Selects the mutants that the environment names.
          pub fn select() {{
              let names = std::env::var({VARIABLE:?}).unwrap_or_default();
              for name in names.split(',').filter(|name| !name.is_empty()) {{
-                 let number = match name {{\n"
+                 assert!(add(name).is_ok(), \"there is no mutant {{name}}\");
+             }}
+         }}
+         /// Selects this mutant alone; none, if the name is empty.
+         pub fn choose(name: &str) -> Result<(), ()> {{
+             unsafe {{ SELECTED = [0; {count}]; }}
+             add(name)
+         }}
+         fn add(name: &str) -> Result<(), ()> {{
+             let number = match name {{\n",
+        count = names.len()
     );
     for (number, name) in names.iter().enumerate() {
         let _ = writeln!(written, "{name:?} => {number},");
     }
-    written.push_str("_ => panic!(\"there is no mutant {name}\") };\nunsafe { SELECTED[number] = 1; }\n} }\n");
+    let _ = write!(written, "_ => {rest},\n}};\nunsafe {{ SELECTED[number] = 1; }}\nOk(()) }}\n");
     written
 }
 

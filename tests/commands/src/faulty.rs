@@ -1,7 +1,7 @@
 //! Implementations with one rule broken each, for the conformance kit to find: the kernel behind the protocol, with a wrapper that
 //! changes a configuration, a step or an output.
 
-use atc_oracle::Session;
+use atc_protocol::Session;
 use serde_json::{Value, json};
 
 /// What a wrapper remembers of a case.

@@ -5,8 +5,8 @@ use atc_kernel::interlocking::{Element, Heading, SegmentSet};
 use serde_json::{Value, json};
 
 use super::station::{circuits, points, routes};
-use crate::machine::Machine as _;
-use crate::machine::interlocking::{Config, Interlocked};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked};
 
 /// Times in cycles.
 #[derive(Clone, Copy)]

@@ -3,8 +3,8 @@
 use atc_kernel::interlocking::{CircuitSet, PointSet, RouteSet, SegmentSet};
 use serde_json::Value;
 
-use crate::machine::Machine as _;
-use crate::machine::interlocking::{Config, Interlocked};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked};
 
 /// A station as numbers and names.
 #[derive(Clone, Debug, Default)]

@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{OfMachine, Report, Unread};
-use crate::machine::KINDS;
 use crate::replay::explain::EXPLAINED;
 use crate::replay::unit::MOST_STUCK;
+use atc_protocol::machine::KINDS;
 
 /// Joins the reports of shards, each with the name that it has in messages. A shard that is missing is a place that was not read.
 ///

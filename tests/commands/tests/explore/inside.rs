@@ -7,9 +7,9 @@ use std::process::Command;
 use atc_film_kernel::{Device, OUTPUT, input_of, input_words, place, plan_of, plan_words};
 use atc_kernel::interlocking::{CircuitSet, RouteSet};
 use atc_oracle::film::{self, Setting};
-use atc_oracle::machine::Machine as _;
-use atc_oracle::machine::interlocking::{Config, Interlocked, Step};
 use atc_oracle::trace::Trace;
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked, Step};
 use atc_tests::browser::{Browser, chromium};
 use serde_json::{Value, json};
 

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use atc_kernel::block::{Block, Hold, Input, SectionSet, State, TrainCount, step};
-use atc_oracle::machine::block::{Config, Output};
+use atc_protocol::machine::block::{Config, Output};
 use atc_tests::session::{self, assert_malformed, converse};
 use atc_tests::{block_chart, device};
 use jsonschema::Validator;
@@ -209,7 +209,7 @@ fn the_outputs_of_another_implementation_are_read() {
 }
 
 static SCHEMA: LazyLock<Validator> =
-    LazyLock::new(|| jsonschema::validator_for(&atc_oracle::schema::schema()).expect("a schema"));
+    LazyLock::new(|| jsonschema::validator_for(&atc_protocol::schema::schema()).expect("a schema"));
 
 prop_compose! {
     fn case()(sections in 1..=16_u8)(

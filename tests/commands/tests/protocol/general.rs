@@ -294,7 +294,7 @@ fn bytes_that_are_not_text_are_malformed() {
 
 #[test]
 fn a_line_that_is_too_long_is_passed_over() {
-    let longest = atc_oracle::MAX_LINE;
+    let longest = atc_protocol::MAX_LINE;
     for length in [longest - 1, longest, longest + 1, longest + 2, 3 * longest] {
         let step = r#"{"step":{"detected_km_h":[25]}}"#;
         let padded = format!("{step}{}", " ".repeat(length - step.len()));

@@ -4,9 +4,9 @@
 use std::sync::LazyLock;
 
 use atc_oracle::chart::{self, View};
-use atc_oracle::machine::Machine as _;
-use atc_oracle::machine::interlocking::{Config, Interlocked, Output};
 use atc_oracle::trace::{Replies, Trace};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked, Output};
 use atc_tests::drawing::{self, titles};
 use atc_tests::session::{self, assert_malformed, converse, replies, step};
 use atc_tests::{device, session::start};
@@ -402,7 +402,7 @@ fn replies_of_other_implementations() {
 }
 
 static SCHEMA: LazyLock<Validator> =
-    LazyLock::new(|| jsonschema::validator_for(&atc_oracle::schema::schema()).expect("a schema"));
+    LazyLock::new(|| jsonschema::validator_for(&atc_protocol::schema::schema()).expect("a schema"));
 
 /// The example through the real process: the same replies as in process, and every line of both sides fits the schema.
 #[test]

@@ -8,8 +8,8 @@ use atc_kernel::aspect::{AspectSet, Times, TimesMs};
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
 use atc_kernel::supervision::{self, Brake, Speeds, Supervision};
 use atc_kernel::time::{MAX_TICKS, Millis};
-use atc_oracle::Kmh;
-use atc_oracle::machine::aspect::Config;
+use atc_protocol::Kmh;
+use atc_protocol::machine::aspect::Config;
 use atc_tests::device;
 use atc_tests::session::replies;
 use jsonschema::Validator;
@@ -20,7 +20,7 @@ static REQUEST: LazyLock<Validator> = LazyLock::new(|| part("request"));
 static REPLY: LazyLock<Validator> = LazyLock::new(|| part("reply"));
 
 fn part(name: &str) -> Validator {
-    let mut schema = atc_oracle::schema::schema();
+    let mut schema = atc_protocol::schema::schema();
     schema["anyOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
     jsonschema::validator_for(&schema).expect("a schema")
 }

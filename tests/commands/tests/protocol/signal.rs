@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use atc_oracle::machine::{permitted, position, telegram};
+use atc_protocol::machine::{permitted, position, telegram};
 use atc_tests::session::{FRAME, MAIN, SUB, converse, position_config, replies, start, step};
 use atc_tests::{approach, device, ground};
 use jsonschema::Validator;
@@ -174,7 +174,7 @@ fn the_outputs_of_another_implementation_are_read() {
 }
 
 static SCHEMA: LazyLock<Validator> =
-    LazyLock::new(|| jsonschema::validator_for(&atc_oracle::schema::schema()).expect("a schema"));
+    LazyLock::new(|| jsonschema::validator_for(&atc_protocol::schema::schema()).expect("a schema"));
 
 /// Long sessions through the real process: the same replies as in process, and every line of both sides fits the schema.
 #[test]

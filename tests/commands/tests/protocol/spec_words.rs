@@ -1,6 +1,6 @@
 //! What the specification says "for a re-implementation", by experiment.
 
-use atc_oracle::Session;
+use atc_protocol::Session;
 use serde_json::{Value, json};
 
 /// The replies to these lines.

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 const EXAMPLE: &str = include_str!("../../../../oracle/examples/wayside.jsonl");
 
 static SCHEMA: LazyLock<Validator> =
-    LazyLock::new(|| jsonschema::validator_for(&atc_oracle::schema::schema()).expect("a schema"));
+    LazyLock::new(|| jsonschema::validator_for(&atc_protocol::schema::schema()).expect("a schema"));
 
 /// The outputs of the example; number 1 is that of the first cycle.
 fn outputs() -> Vec<Value> {

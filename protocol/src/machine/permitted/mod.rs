@@ -10,8 +10,7 @@ use schemars::JsonSchema;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::decimal::{Metres, OrNull};
 use crate::kmh::{Kmh, KmhOrNull};
 use crate::names::{self, Named};
@@ -280,9 +279,5 @@ impl Machine for Permitting {
             ("fixed_life", settings.fixed_life.0),
             ("memory", settings.sequence.memory().0),
         ]
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::permitted::scene(config, cycles)
     }
 }

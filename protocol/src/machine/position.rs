@@ -6,8 +6,7 @@ pub use atc_line::position::{Config, TableConfig};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::decimal::{Decibels, Metres, OrNull};
 
 /// One cycle's measurement.
@@ -88,9 +87,5 @@ impl Machine for Positioned {
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         self.interval = position::step(&self.position, self.interval, step.measured()?);
         Ok(Output { interval_m: self.interval.map(ends) })
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::position::scene(config, cycles)
     }
 }

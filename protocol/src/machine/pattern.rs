@@ -4,8 +4,7 @@ use atc_kernel::pattern::{Deceleration, pattern};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::kmh::Kmh;
 use atc_line::refusal::{brake, gradient, metres};
 
@@ -70,9 +69,5 @@ impl Machine for Braking {
         let distance = metres("distance_m", step.distance_m)?;
         let gradient = gradient("gradient_permille", step.gradient_permille)?;
         Ok(Output { speed_km_h: Kmh(pattern(self.brake.on(gradient), distance).0.into()) })
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::pattern::scene(*config, cycles)
     }
 }

@@ -6,8 +6,7 @@ pub use atc_line::aspect::Config;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::kmh::{Kmh, KmhOrNull};
 
 /// One logic cycle's input.
@@ -120,9 +119,5 @@ impl Machine for Aspect {
             ("shortened_operate", self.times.shortened_operate().0),
             ("tolerated_interruption", self.times.tolerated_interruption().0),
         ]
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::aspect::scene(config, cycles)
     }
 }

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
 
 /// A value that is written as its name.
-pub(crate) trait Named: Copy + 'static {
+pub trait Named: Copy + 'static {
     /// What the names are of, for messages.
     const WHAT: &'static str;
     /// Every value.
@@ -15,7 +15,10 @@ pub(crate) trait Named: Copy + 'static {
 }
 
 /// Reads a name. (Derived, serde would take `{"name":null}` for the name as well.)
-pub(crate) fn read<'de, N: Named, D: Deserializer<'de>>(deserializer: D) -> Result<N, D::Error> {
+///
+/// # Errors
+/// A name that no value has.
+pub fn read<'de, N: Named, D: Deserializer<'de>>(deserializer: D) -> Result<N, D::Error> {
     let found = String::deserialize(deserializer)?;
     N::EVERY.iter().copied().find(|value| value.name() == found).ok_or_else(|| {
         let names: Vec<_> = N::EVERY.iter().map(|value| format!("{:?}", value.name())).collect();

@@ -4,8 +4,8 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
+use crate::form::{Malformed, PROTOCOL, Rejected, Stop, Stopped};
 use crate::machine::{KINDS, Kind};
-use crate::protocol::{Malformed, PROTOCOL, Rejected, Stop, Stopped};
 
 /// The schema: a line is a request or a reply. `#/$defs/request` and `#/$defs/reply` are the two alone.
 ///

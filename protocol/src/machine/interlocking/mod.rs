@@ -9,7 +9,6 @@ mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use atc_film::Film;
 use atc_kernel::interlocking::{
     self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
     SegmentSet, SpeedCode, Station,
@@ -22,10 +21,8 @@ pub use config::{Config, Found, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
 pub use words::{Heading, Phase, Reason, Side, Travel};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::decimal::shorten;
-use crate::film::{self, Take};
 
 /// The state of the kernel's machine, with room for every station.
 pub type State = kernel::State<64, 8>;
@@ -200,12 +197,12 @@ impl Interlocked {
     }
 
     /// The speed of a code; of one that the layout does not have, that of the next lower one.
-    pub(crate) fn speed(&self, code: SpeedCode) -> u16 {
+    pub fn speed(&self, code: SpeedCode) -> u16 {
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
     /// The circuits that count as occupied, from the shared table of this cycle.
-    pub(crate) fn occupied(table: &kernel::Table<64>, epoch: Epoch) -> CircuitSet {
+    pub fn occupied(table: &kernel::Table<64>, epoch: Epoch) -> CircuitSet {
         table.read(epoch).map_or(CircuitSet::ALL, |contents| contents.occupied)
     }
 
@@ -257,13 +254,5 @@ impl Machine for Interlocked {
     fn cycles(&self) -> Vec<(&'static str, u16)> {
         let plan = self.layout.plan();
         vec![("clear", plan.clear.into()), ("turn", plan.turn.0)]
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::interlocking::scene(config, cycles)
-    }
-
-    fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
-        film::interlocking::put(take, film).map(|()| true)
     }
 }

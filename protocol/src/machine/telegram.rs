@@ -7,8 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::names::{self, Named};
 use crate::telegrams::Telegram;
 
@@ -208,9 +207,5 @@ impl Machine for Codec {
                 Ok(Output::Telegrams { telegrams })
             }
         }
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::telegram::scene(*config, cycles)
     }
 }

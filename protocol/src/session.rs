@@ -2,8 +2,8 @@
 
 use serde_json::value::RawValue;
 
+use crate::form::{self, Fault, Malformed, PROTOCOL, Rejected, Request, Stop, Stopped};
 use crate::machine::{self, Case, KINDS, Kind, Refusal};
-use crate::protocol::{self, Fault, Malformed, PROTOCOL, Rejected, Request, Stop, Stopped};
 
 /// The longest line that is read, in bytes without its newline.
 pub const MAX_LINE: usize = 1 << 20;
@@ -48,7 +48,7 @@ impl Session {
     }
 
     /// Answers a line that was too long to be kept.
-    pub(crate) fn answer_overlong(&mut self, reply: &mut Vec<u8>) {
+    pub fn answer_overlong(&mut self, reply: &mut Vec<u8>) {
         self.line += 1;
         self.malformed(&overlong(), reply);
         reply.push(b'\n');
@@ -56,8 +56,11 @@ impl Session {
 
     /// Answers a line that is text: appends one line of JSON without its newline, or says why there is none. What was appended before a
     /// fault is for the caller to take away.
-    pub(crate) fn request(&mut self, line: &str, reply: &mut Vec<u8>) -> Result<(), Fault> {
-        match protocol::request(line)? {
+    ///
+    /// # Errors
+    /// What in it is not understood.
+    pub fn request(&mut self, line: &str, reply: &mut Vec<u8>) -> Result<(), Fault> {
+        match form::request(line)? {
             Request::Step(body) => {
                 let Some(open) = &mut self.open else {
                     return Err(Fault::whole(r#"a step before a start; begin with {"start":{…}}"#));
@@ -69,7 +72,7 @@ impl Session {
             }
             Request::Start(body) => self.start(line, body, reply)?,
             Request::Stop(body) => {
-                let _: Stop = protocol::body(line, body)?;
+                let _: Stop = form::body(line, body)?;
                 let Some(open) = self.open.take() else {
                     return Err(Fault::whole(r#"a stop without a start; begin with {"start":{…}}"#));
                 };
@@ -86,7 +89,7 @@ impl Session {
                 r#"a start inside a case of {name}, which goes on; end it with {{"stop":{{}}}} first"#
             )));
         }
-        let start = protocol::start(line, body).map_err(|fault| Fault {
+        let start = form::start(line, body).map_err(|fault| Fault {
             what: format!(r#"{}; a start is {{"start":{{"protocol":1,"machine":"…","config":{{…}}}}}}"#, fault.what),
             ..fault
         })?;

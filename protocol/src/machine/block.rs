@@ -8,8 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::sections::Sections;
 
 fn default_entered() -> bool {
@@ -227,9 +226,5 @@ impl Machine for Counted {
 
     fn cycles(&self) -> Vec<(&'static str, u16)> {
         vec![("pass", self.block.pass().0)]
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::block::scene(config, cycles)
     }
 }

@@ -13,8 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::permitted::{Basis, LineKind};
 use super::supervision::Brake;
-use super::{Cycle, Machine, position, telegram};
-use crate::chart::{self, Scene};
+use super::{Machine, position, telegram};
 use crate::decimal::{Decibels, Hertz, Metres, OrNull};
 use crate::kmh::{Kmh, KmhOrNull};
 use crate::telegrams::Telegram;
@@ -181,9 +180,5 @@ impl Machine for OnBoard {
             // The age of the oldest evidence by which anything can be permitted.
             ("oldest", self.train.oldest().0),
         ]
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::train::scene(config, cycles)
     }
 }

@@ -1,4 +1,4 @@
-//! The machines that the oracle speaks for: each is one file here, and one line in [`KINDS`].
+//! The machines that are behind the protocol: each is one file here, and one line in [`KINDS`].
 
 pub mod aspect;
 pub mod block;
@@ -11,15 +11,12 @@ pub mod telegram;
 pub mod train;
 pub mod wayside;
 
-use atc_film::Film;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::value::RawValue;
 
-use crate::chart::Scene;
-use crate::film::Take;
-use crate::protocol::{self, Fault, PROTOCOL};
+use crate::form::{self, Fault, PROTOCOL};
 
 /// A machine behind the protocol: a kernel machine, its state, and the forms of its messages.
 pub trait Machine: Sized + Send + Sync + 'static {
@@ -53,28 +50,6 @@ pub trait Machine: Sized + Send + Sync + 'static {
     fn cycles(&self) -> Vec<(&'static str, u16)> {
         Vec::new()
     }
-
-    /// The timing chart of a case.
-    fn chart(config: &Self::Config, cycles: &[Cycle<Self>]) -> Scene;
-
-    /// Puts into a film what the machine shows besides the rows of its chart; false: nothing, and the film tells the
-    /// values of each step as they stand on the wire.
-    ///
-    /// # Errors
-    /// Why what the film is to be made with does not fit.
-    fn film(_: &Take<'_, Self>, _: &mut Film) -> Result<bool, String> {
-        Ok(false)
-    }
-}
-
-/// One logic cycle of a recorded case.
-pub struct Cycle<M: Machine> {
-    /// What was read.
-    pub step: M::Step,
-    /// What the kernel puts out.
-    pub output: M::Output,
-    /// What the record says was put out, if it says anything.
-    pub recorded: Option<M::Output>,
 }
 
 /// The body of a started reply.
@@ -112,7 +87,7 @@ pub struct Opened {
     pub started: String,
 }
 
-/// A machine, as the session, the schema and the chart know it.
+/// A machine, as the session and the schema know it.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// Its name.
@@ -125,13 +100,9 @@ pub struct Kind {
     pub step: fn(&mut SchemaGenerator) -> Schema,
     /// The schema of its output.
     pub output: fn(&mut SchemaGenerator) -> Schema,
-    /// Checks a recorded case against the kernel and draws it.
-    pub chart: fn(&crate::trace::Record, crate::trace::Replies) -> Result<Scene, crate::trace::TraceError>,
-    /// Checks a recorded case against the kernel and makes its film.
-    pub film: fn(&crate::trace::Record, &crate::film::Setting) -> Result<Film, crate::trace::TraceError>,
 }
 
-/// Every machine of this oracle.
+/// Every machine.
 pub const KINDS: &[Kind] = &[
     kind::<aspect::Aspect>(),
     kind::<supervision::Supervised>(),
@@ -157,8 +128,6 @@ const fn kind<M: Machine>() -> Kind {
         config: SchemaGenerator::subschema_for::<M::Config>,
         step: SchemaGenerator::subschema_for::<M::Step>,
         output: SchemaGenerator::subschema_for::<M::Output>,
-        chart: crate::trace::chart::<M>,
-        film: crate::trace::film::<M>,
     }
 }
 
@@ -172,14 +141,20 @@ fn open<M: Machine>(line: &str, config: &RawValue) -> Result<Opened, Refusal> {
 }
 
 /// Reads a configuration; a fault says what would be right.
-pub(crate) fn config_of<M: Machine>(line: &str, body: &RawValue) -> Result<M::Config, Fault> {
-    protocol::body(line, body)
+///
+/// # Errors
+/// It is none of this machine.
+pub fn config_of<M: Machine>(line: &str, body: &RawValue) -> Result<M::Config, Fault> {
+    form::body(line, body)
         .map_err(|fault| Fault { what: format!("{}; a config of {} is {}", fault.what, M::NAME, M::CONFIG), ..fault })
 }
 
 /// Reads a step; a fault says what would be right.
-pub(crate) fn step_of<M: Machine>(line: &str, body: &RawValue) -> Result<M::Step, Fault> {
-    protocol::body(line, body)
+///
+/// # Errors
+/// It is none of this machine.
+pub fn step_of<M: Machine>(line: &str, body: &RawValue) -> Result<M::Step, Fault> {
+    form::body(line, body)
         .map_err(|fault| Fault { what: format!("{}; a step of {} is {}", fault.what, M::NAME, M::STEP), ..fault })
 }
 

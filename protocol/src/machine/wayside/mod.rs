@@ -15,9 +15,8 @@ use atc_kernel::interlocking::{CircuitSet, SegmentSet};
 use atc_kernel::telegram::{self, Frame, decode};
 use atc_kernel::wayside as kernel;
 
+use super::Machine;
 use super::interlocking::{self, Interlocked};
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
 use crate::decimal::Hertz;
 use device::{Device, Done, Read, device};
 
@@ -124,7 +123,10 @@ impl Ground {
     }
 
     /// The circuits that the interlocking is told to be occupied in a cycle, and those of segments that it is permitted to send trains to, by name.
-    pub(crate) fn told(&mut self, step: &Step) -> Result<(Output, BTreeSet<String>, BTreeSet<String>), String> {
+    ///
+    /// # Errors
+    /// As [`Machine::step`].
+    pub fn told(&mut self, step: &Step) -> Result<(Output, BTreeSet<String>, BTreeSet<String>), String> {
         let done = self.run(step)?;
         let consent = self.station.names().segments.iter().enumerate();
         let consent = consent.filter(|(number, _)| done.told.consent.meets(SegmentSet::nth(*number)));
@@ -190,9 +192,5 @@ impl Machine for Ground {
         let mut cycles = self.station.cycles();
         cycles.push(("life", self.device.oldest().0));
         cycles
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::wayside::scene(config, cycles)
     }
 }

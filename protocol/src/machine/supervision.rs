@@ -8,8 +8,7 @@ use schemars::JsonSchema;
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-use super::{Cycle, Machine};
-use crate::chart::{self, Scene};
+use super::Machine;
 use crate::kmh::{Kmh, KmhOrNull};
 
 /// The brake command.
@@ -127,9 +126,5 @@ impl Machine for Supervised {
         let speeds = Speeds { measured: raw(step.speed_km_h), permitted: raw(step.permitted_km_h) };
         self.previous = supervision::step(self.parameters, previous, speeds);
         Ok(Output { brake: self.previous.into() })
-    }
-
-    fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        chart::supervision::scene(config, cycles)
     }
 }

@@ -1,0 +1,21 @@
+//! Protocol 1: the machines of the kernel as values on a wire.
+//!
+//! * [`form`]: the forms of a line, requests and replies.
+//! * [`machine`]: what each machine reads and puts out, and how that becomes the kernel's own types.
+//! * [`Session`]: request lines in, reply lines out, one for one.
+//! * [`schema`]: the JSON Schema of all of it, generated from the types.
+//!
+//! Nothing here reads a file, a clock or a socket: it also runs where there is none of them, in a browser.
+
+pub mod form;
+pub mod machine;
+pub mod names;
+pub mod schema;
+mod sections;
+mod session;
+pub mod telegrams;
+
+pub use atc_line::decimal::{self, Decibels, Metres};
+pub use atc_line::kmh::{self, Kmh, KmhError};
+pub use sections::Sections;
+pub use session::{MAX_LINE, Session};
