@@ -330,9 +330,7 @@ fn trains((description, neighbour): (&Description, &str), its: &Description, wro
         (length(&given.station.longest_train_m), length(&given.station.shortest_train_m))
     };
     let ((longest, shortest), (its_longest, its_shortest)) = (lengths(description), lengths(its));
-    if let (Some(longest), Some(theirs)) = (longest, its_longest)
-        && longest < theirs
-    {
+    if let Some((longest, theirs)) = longest.zip(its_longest).filter(|(longest, theirs)| longest < theirs) {
         let what = format!("trains of {neighbour} are up to {theirs} m long, and {station} counts on {longest} m");
         wrong(what, format!("longest_train_m of {station} must be at least {theirs}"));
     }

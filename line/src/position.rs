@@ -168,7 +168,8 @@ impl Calibration {
     fn width(&self, knot: usize) -> Option<f64> {
         use atc_kernel::position::{Measured, Moved, step};
         let table = self.position.table();
-        let middle = i16::midpoint(table.lowest()[knot].0, table.highest()[knot].0);
+        let middle = (i32::from(table.lowest()[knot].0) + i32::from(table.highest()[knot].0)) / 2;
+        let middle = i16::try_from(middle).ok()?;
         let floor = self.position.floor().0;
         let second = if middle < 0 { floor.saturating_sub(middle) } else { floor };
         let first = second.saturating_add(middle);

@@ -154,19 +154,20 @@ impl Signal {
         let refused = |rule, field: &str, what: String| Err(Refusal::new(rule, format!("signal.{field}"), what));
         let settings = self.permitted.settings();
         let memory = self.ms(settings.sequence.memory());
-        let (frame, reaction) = (self.frame, self.reaction);
-        if frame == 0 {
+        let (period, reaction) = (self.period(), self.reaction);
+        if period == 0 {
             return refused(Rule::Tel7, "frame_ms", "frame_ms is 0; a telegram takes time to send".to_owned());
         }
-        if memory <= frame {
+        if memory <= period {
             let what = format!(
-                "the memory must exceed the time of one telegram ({frame} ms), or none is ever used; it is {memory} ms"
+                "the memory must exceed the time from one telegram of a direction to the next ({period} ms: both directions are sent in \
+                 turn), or none is ever used; it is {memory} ms"
             );
             return refused(Rule::Tel7, "memory_ms", what);
         }
         let parts = |life: Ticks| {
             format!(
-                "content taken ahead {frame} ms, its way {} ms, its life {} ms, the reaction {reaction} ms",
+                "content taken ahead {period} ms, its way {} ms, its life {} ms, the reaction {reaction} ms",
                 self.delay,
                 self.past(life)
             )
@@ -213,6 +214,11 @@ impl Signal {
         self.frame
     }
 
+    /// From one telegram for a train to the next, ms: frames for both directions are sent in turn (WAY-7).
+    const fn period(&self) -> u64 {
+        2 * self.frame
+    }
+
     /// From the last bit of a telegram in the rail to its arrival in the logic, ms.
     pub const fn delay_ms(&self) -> u64 {
         self.delay
@@ -239,7 +245,7 @@ impl Signal {
 
     /// A silence under this cannot take a counter round.
     fn wrap(&self) -> u64 {
-        u64::from(256 - u16::from(self.permitted.settings().sequence.window())) * self.frame
+        u64::from(256 - u16::from(self.permitted.settings().sequence.window())) * self.period()
     }
 
     /// The most by which a telegram may be older than the last one and is known to be.
@@ -250,7 +256,8 @@ impl Signal {
     /// What a train of this line does with main telegrams. Of codes it says nothing.
     pub(crate) fn lives(&self) -> TrainLives {
         TrainLives {
-            ahead_ms: self.frame,
+            // Those of both directions are taken together, and one of them is sent after the other.
+            ahead_ms: self.period(),
             way_ms: self.delay,
             life_ms: self.past(self.permitted.settings().life),
             code_way_ms: 0,
@@ -266,7 +273,7 @@ impl Signal {
 
     /// The same for a sub telegram.
     fn believed(&self) -> u64 {
-        self.frame + self.delay + self.past(self.permitted.settings().fixed_life) + self.reaction
+        self.period() + self.delay + self.past(self.permitted.settings().fixed_life) + self.reaction
     }
 
     fn top(&self) -> KmhTenths {
@@ -281,7 +288,7 @@ impl Signal {
     /// How many main telegrams may be lost in a row while the last one stays fresh; nothing if it does not without a loss.
     fn may_be_lost(&self) -> Option<u64> {
         let settings = self.permitted.settings();
-        let gap = self.frame.div_ceil(u64::from(self.cycle.0));
+        let gap = self.period().div_ceil(u64::from(self.cycle.0));
         // Of age `gap` when it comes, and older by a gap for each one that is lost and the one that comes.
         let fresh = ((u64::from(settings.fresh.0) + 1) / gap).checked_sub(2)?;
         let memory = (u64::from(settings.sequence.memory().0).saturating_sub(1) / gap).checked_sub(1)?;
@@ -322,7 +329,7 @@ impl Signal {
             ),
             row(
                 "A telegram that is late is refused, while its stream is remembered, by up to",
-                format!("{} telegrams, {} ms", self.reach(), u64::from(self.reach()) * self.frame),
+                format!("{} telegrams, {} ms", self.reach(), u64::from(self.reach()) * self.period()),
                 "255 less the window; beyond it, after a silence and in another section: the condition counter-reach",
                 "T-TEL-6",
             ),
@@ -405,7 +412,7 @@ impl Signal {
         let memory = self.ms(self.permitted.settings().sequence.memory());
         let met = |rule, scope: String| DataCheck::new(rule, scope, Outcome::Met);
         let mut checks = vec![
-            met(Rule::Tel7, format!("memory {memory} ms, telegram {} ms", self.frame)),
+            met(Rule::Tel7, format!("memory {memory} ms, a telegram of a direction every {} ms", self.period())),
             met(Rule::Per9, "the parameters of `[signal]`".to_owned()),
             met(
                 Rule::Per8,

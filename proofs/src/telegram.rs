@@ -9,7 +9,7 @@ use atc_kernel::distance::Metres;
 use atc_kernel::telegram::{Counter, Frame, Gradient, Length, Main, Route, SectionId, Sub, Telegram};
 
 pub(crate) use counter::{any_bits_of_stream, any_sequence};
-pub use counter::{t_tel_6, t_tel_6_repeated, tel_7, tel_sequence, tel_total};
+pub use counter::{t_tel_6, t_tel_6_repeated, t_tel_8, tel_7, tel_sequence, tel_total};
 pub use framing::{
     t_tel_1, t_tel_2, t_tel_3, t_tel_3_few, t_tel_3_linear, t_tel_3_shift, t_tel_4, t_tel_5, t_tel_5_apart,
 };
@@ -28,6 +28,7 @@ pub const ALL: &[Harness] = &[
     t_tel_5_apart::HARNESS,
     t_tel_6::HARNESS,
     t_tel_6_repeated::HARNESS,
+    t_tel_8::HARNESS,
     tel_7::HARNESS,
     tel_sequence::HARNESS,
     tel_total::HARNESS,

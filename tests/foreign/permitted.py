@@ -23,29 +23,31 @@ def pattern(brake, gradient, metres):
 
 
 class Stream:
-    """TEL-6: the telegrams of one carrier."""
+    """TEL-6, TEL-8: the telegrams of one carrier."""
 
     def __init__(self, window, run, memory):
         self.window, self.run, self.memory = window, run, memory
         self.last = None  # section and counter of the last telegram
         self.silence = 0  # cycles since it
-        self.proper = 0  # proper advances in a row
+        self.ordered = 0  # telegrams in order, up to the last one; the first of a section is one
 
     def pass_time(self):
         if self.last is not None:
             self.silence += 1
             if self.silence >= self.memory + (1 if FAULT == 2 else 0):
-                self.last, self.proper = None, 0
+                self.last, self.ordered = None, 0
 
     def hear(self, section, counter):
         """Whether the telegram is used, and how old it may be: the time since the one before it."""
-        proper = False
-        if self.last is not None and (self.last[0] == section or FAULT == 3):
-            proper = 1 <= (counter - self.last[1]) % 256 <= self.window + (1 if FAULT == 4 else 0)
-        self.proper = min(self.proper + 1, self.run) if proper else 0
+        if self.last is None or (self.last[0] != section and FAULT != 3):
+            self.ordered = 1
+        elif 1 <= (counter - self.last[1]) % 256 <= self.window + (1 if FAULT == 4 else 0):
+            self.ordered += 1
+        else:
+            self.ordered = 1 if FAULT == 19 else 0
         since, self.silence = self.silence, 0
         self.last = (section, counter)
-        return self.proper >= self.run, since if FAULT != 5 else 0
+        return self.ordered > self.run, since if FAULT != 5 else 0
 
 
 class Target:

@@ -80,3 +80,36 @@ fn the_reach_of_the_counter_is_what_the_condition_says() {
     assert!((reach + 1..256).all(accepted));
     assert!((256..300).all(|late| !accepted(late)));
 }
+
+/// TEL-8: a transmitter freezes, and telegrams that it sent before come late, as many in a row as the run: the frozen one was used again.
+#[test]
+fn a_late_telegram_does_not_make_a_frozen_one_new() {
+    for run in 1..=3 {
+        for (pause, back) in [(0, 0), (1, 0), (7, 0), (0, 1), (1, 1), (3, 40)] {
+            let mut train = Permitting::open(&Config { cycle_ms: CYCLE_MS, run, ..Config::default() }).expect("valid");
+            let digital = Some(LineKind::Digital);
+            for counter in 100..=110 {
+                hear(&mut train, digital, Some(counter));
+            }
+            assert!(hear(&mut train, digital, None).state.expect("told").to_stop_m.is_some());
+            // Two minutes of the last one alone.
+            for _ in 0..1200 {
+                hear(&mut train, digital, Some(110));
+            }
+            for late in (1..=run).rev() {
+                hear(&mut train, digital, Some(110 - back - late));
+                (0..pause).for_each(|_| drop(hear(&mut train, digital, None)));
+            }
+            for _ in 0..3 {
+                let output = hear(&mut train, digital, Some(110));
+                assert_eq!(output.state.expect("told").to_stop_m, None, "run {run}, {pause} cycles between");
+            }
+            // One that was sent afterwards is used again, with the run and one more.
+            let used = (111..=112 + run).filter(|counter| {
+                let output = hear(&mut train, digital, Some(*counter));
+                output.state.expect("told").to_stop_m.is_some()
+            });
+            assert_eq!(used.count(), 2, "run {run}");
+        }
+    }
+}

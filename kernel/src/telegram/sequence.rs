@@ -68,7 +68,8 @@ pub enum Judgement {
 pub struct Stream {
     /// The last telegram heard, used or not; `None` if there is none, or it is forgotten.
     pub last: Option<Header>,
-    /// How many telegrams in a row advanced the counter as they should, up to the last one; at most the run.
+    /// How many telegrams in a row are in order, up to the last one: the first of the stream is one, and one out of order none; at most
+    /// the run and one.
     pub in_order: u8,
     /// Cycles since the last telegram.
     pub age: Ticks,
@@ -87,7 +88,7 @@ impl Stream {
     pub const fn is_valid(&self, sequence: &Sequence) -> bool {
         match self.last {
             None => self.in_order == 0 && self.age.0 == 0,
-            Some(_) => self.in_order <= sequence.run && self.age.0 < sequence.memory.0,
+            Some(_) => self.in_order <= sequence.run + 1 && self.age.0 < sequence.memory.0,
         }
     }
 }
@@ -154,16 +155,18 @@ impl Machine for Sequence {
             let kept = if stream.last.is_some() { stream } else { Stream::EMPTY };
             return (kept, Judgement::Nothing);
         };
-        let advanced = match stream.last {
+        let more = if stream.in_order < self.run { stream.in_order + 1 } else { self.run + 1 };
+        let in_order = match stream.last {
             Some(last) if last.section.0 == header.section.0 => {
                 let ahead = header.counter.0.wrapping_sub(last.counter.0);
-                ahead >= 1 && ahead <= self.window
+                let advanced = ahead >= 1 && ahead <= self.window;
+                //= spec/telegram.md#tel-8-after-a-telegram-out-of-order
+                //# A telegram that does not advance the counter as it should, of the section of the one before and less than the memory after it, MUST NOT count as the first one of a run.
+                if advanced { more } else { 0 }
             }
-            _ => false,
+            _ => 1,
         };
-        let more = if stream.in_order < self.run { stream.in_order + 1 } else { self.run };
-        let in_order = if advanced { more } else { 0 };
-        let judgement = if in_order >= self.run { Judgement::Accepted } else { Judgement::Refused };
+        let judgement = if in_order > self.run { Judgement::Accepted } else { Judgement::Refused };
         (Stream { last: Some(header), in_order, age: Ticks(0) }, judgement)
     }
 }

@@ -91,9 +91,8 @@ fn speeds(station: &Station, model: &mut Model, problems: &mut Vec<Problem>) {
         };
         let kmh = |other: &Route| model.values.speeds_kmh[usize::from(other.speed.0)];
         let mut speed = route.approach_kmh;
-        if let Some(fastest) = model.routes.iter().filter(leads).max_by_key(|other| kmh(other))
-            && kmh(fastest) > speed
-        {
+        let fastest = model.routes.iter().filter(leads).max_by_key(|other| kmh(other));
+        if let Some(fastest) = fastest.filter(|fastest| kmh(fastest) > speed) {
             let (name, fast) = (&route.name, kmh(fastest));
             if let Some(approach) = &station.routes[number].approach_kmh {
                 let what = format!(

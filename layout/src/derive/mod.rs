@@ -156,16 +156,14 @@ fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Ve
         }
         let own = given.circuits.len().saturating_sub(given.shared.len());
         let outermost = given.circuits.iter().skip(own).map(|name| &name.value);
-        if let Some(first) = given.shared.first()
-            && !given.shared.iter().map(|name| &name.value).eq(outermost)
-        {
+        let is_outermost = given.shared.iter().map(|name| &name.value).eq(outermost);
+        if let Some(first) = given.shared.first().filter(|_| !is_outermost) {
             let what = format!("segment {}: the shared circuits are not its outermost ones, in its order", given.name);
             let right = "name the last of its circuits, as far as the neighbour's device sees them too";
             problems.push(Problem::new(Rule::SharedWithin, &first.span, what, right));
         }
-        if let Some(line) = &given.line
-            && segments.iter().any(|other: &Segment| other.line.as_ref() == Some(&line.value))
-        {
+        let twice = |line: &str| segments.iter().any(|other: &Segment| other.line.as_deref() == Some(line));
+        if let Some(line) = given.line.as_ref().filter(|line| twice(&line.value)) {
             let what = format!("two segments are of the line {line}");
             problems.push(Problem::new(
                 Rule::NameTwice,

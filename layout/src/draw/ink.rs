@@ -151,7 +151,7 @@ impl Ink {
             y - 20,
             right - left
         );
-        self.label("name", "segment", (i32::midpoint(left, right), height + 25), name);
+        self.label("name", "segment", ((left + right) / 2, height + 25), name);
     }
 
     /// A platform below its track.
@@ -164,7 +164,7 @@ impl Ink {
             x + 10,
             y + 8
         );
-        self.label("name", "", (i32::midpoint(left, right), height + 18), name);
+        self.label("name", "", ((left + right) / 2, height + 18), name);
     }
 
     /// The drawing.

@@ -96,7 +96,7 @@ fn labels(ink: &mut Ink, model: &Model, placed: &Placed) {
         if track.kind == Kind::Plain {
             with_plain.insert(track.circuit);
         }
-        let label = ((one - other).abs(), i32::midpoint(one, other), y);
+        let label = ((one - other).abs(), (one + other) / 2, y);
         let known = longest.entry(track.circuit).or_insert(label);
         if label.0 > known.0 {
             *known = label;

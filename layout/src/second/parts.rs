@@ -48,9 +48,8 @@ pub fn differences(file: &File<'_>, model: &Model, source: &Source) -> Vec<Diffe
                 );
             }
         }
-        if let Some(shortest) = shortest(file, &borders)
-            && f64::from(circuit.length.0) > shortest + SLACK
-        {
+        let is_less = |shortest: &f64| f64::from(circuit.length.0) > shortest + SLACK;
+        if let Some(shortest) = shortest(file, &borders).filter(is_less) {
             let what =
                 format!("circuit {} is {} m long, and in the file {shortest:.1} m", circuit.name, circuit.length.0);
             differs(id, what, &over);

@@ -125,9 +125,8 @@ impl<'a> Search<'a, '_> {
         }
         for ((next, at_its_end), relation) in onward {
             let branch = self.file.branches.get(relation).copied();
-            if let Some(asked) = branch.and_then(|branch| self.asked.get(branch.switch))
-                && !asked.contains(&relation)
-            {
+            let asked = branch.and_then(|branch| self.asked.get(branch.switch));
+            if asked.is_some_and(|asked| !asked.contains(&relation)) {
                 continue;
             }
             let mut further = here.clone();

@@ -161,9 +161,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
         let passed = |point: usize| {
             path.way.run.iter().filter_map(|train| self.tracks.piece(*train).over).find(|(other, _)| *other == point)
         };
-        if let Some((point, position)) = piece.over
-            && let Some((_, needs)) = passed(point)
-        {
+        let over = piece.over.and_then(|(point, position)| Some((point, position, passed(point)?.1)));
+        if let Some((point, position, needs)) = over {
             let given = &self.station.points[point];
             let reason =
                 if position == Position::Normal { &given.normal_unprotected } else { &given.reverse_unprotected };
@@ -176,9 +175,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
             return false;
         }
         // Onto a point across the way it has come over an end of it.
-        if let Some((point, position)) = piece.over
-            && self.crosses(path, vehicle)
-        {
+        if let Some((point, position)) = piece.over.filter(|_| self.crosses(path, vehicle)) {
             let given = &self.station.points[point];
             let reason = match (vehicle.toward, position) {
                 (1, _) => &given.toe_unprotected,

@@ -30,9 +30,9 @@ fn the_example_has_the_known_figures() {
     let value = |name: &str| value(EXAMPLE, name);
     assert_eq!(value("Telegrams that may be lost"), "1");
     assert_eq!(value("A digital line without telegrams"), "5010 ms");
-    // 530 + 120 + 5010 + 1500 ms; at 90 km/h that is 179 m.
-    assert_eq!(value("A withdrawn stopping point"), "7160 ms, 179 m at the highest speed");
-    assert_eq!(value("A restriction is not known"), "12160 ms");
+    // 1060 + 120 + 5010 + 1500 ms; at 90 km/h that is 193 m.
+    assert_eq!(value("A withdrawn stopping point"), "7690 ms, 193 m at the highest speed");
+    assert_eq!(value("A restriction is not known"), "12690 ms");
     // 800 − 35 · 9.84375 mm/s²: 455 over 100 m is 34.3 km/h, and the lowest limit 25.
     assert_eq!(value("Permitted 100 m before"), "25.0 km/h");
     assert_eq!(line.sections().len(), 2);
@@ -50,31 +50,31 @@ fn a_broken_rule_is_named_with_its_place() {
         ("window = 3", "window = 128", "window is 128; the counter may advance by at least 1 and at most 127"),
         ("run = 1", "run = 0", "TEL-7 is broken: run is 0; 1 to 15 telegrams"),
         ("run = 1", "run = 16", "run is 16; 1 to 15 telegrams in a row"),
-        ("memory_ms = 2000", "memory_ms = 9", "TEL-7 is broken: memory_ms is 9 ms, less than one cycle"),
+        ("memory_ms = 2200", "memory_ms = 9", "TEL-7 is broken: memory_ms is 9 ms, less than one cycle"),
         (
-            "memory_ms = 2000",
-            "memory_ms = 530",
-            "must exceed the time of one telegram (530 ms), or none is ever used; it is 530 ms",
+            "memory_ms = 2200",
+            "memory_ms = 1060",
+            "one telegram of a direction to the next (1060 ms: both directions are sent in turn), or none is ever used; it is 1060 ms",
         ),
-        ("memory_ms = 2000", "memory_ms = 5010", "PER-9 is broken: memory_ms is 5010 ms, longer than life_ms, 5000 ms"),
+        ("memory_ms = 2200", "memory_ms = 5010", "PER-9 is broken: memory_ms is 5010 ms, longer than life_ms, 5000 ms"),
         (
-            "memory_ms = 2000",
+            "memory_ms = 2200",
             "memory_ms = 600010",
             "TEL-7 is broken: memory_ms is 600010 ms; it must be at most 60000 cycles",
         ),
-        ("fresh_ms = 1600", "fresh_ms = 9", "PER-9 is broken: fresh_ms is 9 ms, less than one cycle"),
-        ("life_ms = 5000", "life_ms = 1500", "PER-9 is broken: life_ms is 1500 ms and fresh_ms 1600 ms"),
+        ("fresh_ms = 3200", "fresh_ms = 9", "PER-9 is broken: fresh_ms is 9 ms, less than one cycle"),
+        ("life_ms = 5000", "life_ms = 1500", "PER-9 is broken: life_ms is 1500 ms and fresh_ms 3200 ms"),
         ("fixed_life_ms = 10000", "fixed_life_ms = 0", "PER-9 is broken: fixed_life_ms is 0 ms, less than one cycle"),
         (
             "fixed_life_ms = 10000",
             "fixed_life_ms = 600010",
             "PER-9 is broken: fixed_life_ms is 600010 ms; it must be at most 60000 cycles",
         ),
-        ("release_ms = 30000", "release_ms = 7159", "PER-8 is broken: a withdrawn stretch must stay free for 7160 ms"),
+        ("release_ms = 30000", "release_ms = 7689", "PER-8 is broken: a withdrawn stretch must stay free for 7690 ms"),
         (
             "restriction_lead_ms = 60000",
-            "restriction_lead_ms = 12159",
-            "PER-8 is broken: a restriction must be sent 12160 ms",
+            "restriction_lead_ms = 12689",
+            "PER-8 is broken: a restriction must be sent 12690 ms",
         ),
         ("margin_m = 30", "margin_m = 12", "PER-4 is broken: the margin must be at least 13 m"),
         ("brake_mm_s2 = 800", "brake_mm_s2 = 0", "PAT-3 is broken: brake_mm_s2 is 0; it must be 1 to 4095 mm/s²"),
@@ -129,17 +129,17 @@ fn sections_need_the_table_and_the_table_no_sections() {
 #[test]
 fn what_the_user_should_look_at_is_said() {
     assert!(notes("limit_km_h = 90", "limit_km_h = 45").contains("Section 2 has a lower limit than section 1"));
-    assert!(notes("fresh_ms = 1600", "fresh_ms = 1570").contains("A single main telegram that is lost is missed"));
-    assert!(!notes("fresh_ms = 1600", "fresh_ms = 1580").contains("is missed"));
-    assert!(notes("fresh_ms = 1600", "fresh_ms = 1040").contains("Without any loss a telegram is stale"));
-    let long = EXAMPLE.replace("_ms = 5000", "_ms = 200000").replace("fixed_life_ms = 10000", "fixed_life_ms = 200000");
+    assert!(notes("fresh_ms = 3200", "fresh_ms = 3160").contains("A single main telegram that is lost is missed"));
+    assert!(!notes("fresh_ms = 3200", "fresh_ms = 3170").contains("is missed"));
+    assert!(notes("fresh_ms = 3200", "fresh_ms = 2100").contains("Without any loss a telegram is stale"));
+    let long = EXAMPLE.replace("_ms = 5000", "_ms = 300000").replace("fixed_life_ms = 10000", "fixed_life_ms = 300000");
     let long = long
-        .replace("release_ms = 30000", "release_ms = 300000")
-        .replace("restriction_lead_ms = 60000", "restriction_lead_ms = 300000");
-    for (memory, said) in [(134_080, false), (134_090, true)] {
-        let text = long.replace("memory_ms = 2000", &format!("memory_ms = {memory}"));
+        .replace("release_ms = 30000", "release_ms = 400000")
+        .replace("restriction_lead_ms = 60000", "restriction_lead_ms = 400000");
+    for (memory, said) in [(268_170, false), (268_180, true)] {
+        let text = long.replace("memory_ms = 2200", &format!("memory_ms = {memory}"));
         let notes = parse("l.toml", &text).expect("good").notes().join("\n");
-        assert_eq!(notes.contains("as long as a counter takes to go round (134090 ms)"), said, "{memory}");
+        assert_eq!(notes.contains("as long as a counter takes to go round (268180 ms)"), said, "{memory}");
     }
     assert!(notes("brake_mm_s2 = 800", "brake_mm_s2 = 300").contains("does not slow down"));
     assert!(notes("brake_mm_s2 = 800", "brake_mm_s2 = 800").contains("8 speeds; the theorems are proved with 4"));
@@ -148,10 +148,10 @@ fn what_the_user_should_look_at_is_said() {
 #[test]
 fn the_limits_are_exact() {
     for (from, to) in [
-        ("memory_ms = 2000", "memory_ms = 540"),
-        ("memory_ms = 2000", "memory_ms = 5000"),
-        ("release_ms = 30000", "release_ms = 7160"),
-        ("restriction_lead_ms = 60000", "restriction_lead_ms = 12160"),
+        ("memory_ms = 2200", "memory_ms = 1070"),
+        ("memory_ms = 2200", "memory_ms = 5000"),
+        ("release_ms = 30000", "release_ms = 7690"),
+        ("restriction_lead_ms = 60000", "restriction_lead_ms = 12690"),
         ("margin_m = 30", "margin_m = 13"),
         ("gradient_permille = -12", "gradient_permille = -35"),
     ] {

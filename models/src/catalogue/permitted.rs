@@ -53,7 +53,7 @@ const NOT_TOLD: Conditions = (&without(7), &["line-is-told"]);
 
 const DISTANCE: &[&str] = &["PER-1", "PER-4", "PER-8"];
 const WORST: &[&str] = &["PER-1", "PER-5", "PER-8"];
-const AGE: &[&str] = &["PER-6", "PER-8", "PER-12", "TEL-6"];
+const AGE: &[&str] = &["PER-6", "PER-8", "PER-12", "TEL-6", "TEL-8"];
 
 fn about(
     name: &'static str,

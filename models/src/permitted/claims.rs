@@ -2,9 +2,10 @@
 
 use super::device::Device;
 use super::layout::SPEEDS;
-use super::ride::{Cycle, Ghosts, Ride, Shown, State, Told, Train};
+use super::ride::{Cycle, Ghosts, Ride, Shown, State, Told, Train, Transmitter};
 use crate::check::Claim;
 use atc_kernel::permitted::{Basis, LineKind};
+use atc_kernel::telegram::Main;
 
 /// What a model is there to show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +89,17 @@ impl<D: Device> Ride<D> {
             informed,
             starved: before.starved || starving && before.in_a_row > 0 || starving && state.train.place > 0,
             crossed,
+            current: match cycle.heard.main {
+                Some(main) => here(main.section.0) && !self.is_late(cycle, main),
+                None => before.current && same,
+            },
         }
+    }
+
+    /// Whether it is the telegram before the one with which the transmitter has frozen.
+    fn is_late(&self, cycle: &Cycle, main: Main) -> bool {
+        let frozen = self.environment.transmitter == Transmitter::FreezesAndLate && cycle.ground.repeats > 0;
+        frozen && main.counter.0 != 0
     }
 
     /// Whether more is permitted than the ground allows, by telegrams.
@@ -164,7 +175,7 @@ impl<D: Device> Ride<D> {
     /// Whether a telegram that is repeated has just been used, as many cycles after the one before, or more.
     fn uses_repeated(&self, state: &State, cycles: u16) -> bool {
         let kernel = &state.kept.0;
-        let just_used = kernel.main_stream.age.0 == 0 && kernel.main_stream.in_order >= self.small.run;
+        let just_used = kernel.main_stream.age.0 == 0 && kernel.main_stream.in_order > self.small.run;
         just_used && state.ground.repeats > 0 && kernel.target.is_some_and(|target| target.age.0 >= cycles)
     }
 

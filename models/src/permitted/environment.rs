@@ -121,6 +121,8 @@ pub enum Transmitter {
     Loops(u8),
     /// It repeats the last one; this begins only after more than a window of telegrams was lost.
     FreezesUnheard,
+    /// It repeats the last one, and the one before that is late: it may arrive again and again, but not twice in a row.
+    FreezesAndLate,
 }
 
 /// Whether the train is told of the kind of line.

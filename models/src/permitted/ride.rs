@@ -108,6 +108,7 @@ impl<D: Device> Ride<D> {
         let (length, may_begin) = match self.environment.transmitter {
             Transmitter::Sound => return vec![(ground, true)],
             Transmitter::Loops(length) => (length, true),
+            Transmitter::FreezesAndLate => (1, true),
             Transmitter::FreezesUnheard => {
                 let lost = state.ghosts.silent * u16::from(self.environment.in_a_cycle);
                 (1, lost > u16::from(self.small.window))
@@ -157,6 +158,18 @@ impl<D: Device> Ride<D> {
             restriction: rank(u8::from(!(here.restrictable && before.restricted))),
         };
         (Main { section: id, counter, route, speed: rank(self.layout.rank_with(point)) }, sub)
+    }
+
+    /// The main telegram of `section` that was sent before the one with which the transmitter has frozen, if it may arrive now.
+    fn late(&self, section: usize, state: &State, ground: &Ground) -> Option<Main> {
+        let known = state.ghosts.silent + 1 < self.small.memory;
+        let may = self.environment.transmitter == Transmitter::FreezesAndLate && ground.repeats > 0;
+        let before = Ground { point: ground.sent[1], ..*ground };
+        let sent = || Main {
+            counter: Counter(0_u8.wrapping_sub(self.environment.in_a_cycle)),
+            ..self.telegrams(section, &before, &before, true).0
+        };
+        (may && known && state.ghosts.current).then(sent)
     }
 
     /// The sections whose telegrams may be used in a cycle in which the nose comes to `to`.
@@ -279,7 +292,14 @@ impl<D: Device> Subject for Ride<D> {
             ground: Ground { point: last, point_age, restricted: false, free_age: 0, sent: [last; POINTS], repeats: 0 },
             kept: self.rebased(self.permitted.initial(), false),
             shown: Shown { speed: None, basis: Basis::Nothing, code: false },
-            ghosts: Ghosts { silent: self.most_silent(), in_a_row: 0, informed: digital, starved: false, crossed: 0 },
+            ghosts: Ghosts {
+                silent: self.most_silent(),
+                in_a_row: 0,
+                informed: digital,
+                starved: false,
+                crossed: 0,
+                current: false,
+            },
         }]
     }
 
@@ -295,7 +315,8 @@ impl<D: Device> Subject for Ride<D> {
             let audible = self.audible(&state.train, place);
             for (ground, counted) in self.grounds(state) {
                 let sent = |section: &usize| self.telegrams(*section, &state.ground, &ground, counted);
-                let mains = lossy(self.environment.main, audible.iter().map(|section| sent(section).0));
+                let late = audible.iter().filter_map(|section| self.late(*section, state, &ground));
+                let mains = lossy(self.environment.main, audible.iter().map(|section| sent(section).0).chain(late));
                 let subs = lossy(self.environment.sub, audible.iter().map(|section| sent(section).1));
                 for main in &mains {
                     for sub in &subs {

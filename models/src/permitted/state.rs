@@ -77,6 +77,8 @@ pub struct Ghosts {
     pub starved: bool,
     /// It was on an analog line, then on a digital one; and on an analog one again.
     pub crossed: u8,
+    /// Main telegrams of the section where the nose is have arrived since it came there, and the last of them is not late.
+    pub current: bool,
 }
 
 /// Train, ground, device and what was seen.

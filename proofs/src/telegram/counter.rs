@@ -23,7 +23,7 @@ pub(crate) fn any_heard<E: Engine + ?Sized>(e: &mut E) -> Option<Header> {
 /// An arbitrary state of a stream, valid or not.
 pub(crate) fn any_bits_of_stream<E: Engine + ?Sized>(e: &mut E) -> Stream {
     let last = any_heard(e);
-    let in_order = any_byte(e, "advances in a row", 0..=2);
+    let in_order = any_byte(e, "telegrams in order", 0..=3);
     let age = Ticks(e.word("age (cycles)", 0..=3));
     // What is likely is valid: without a last telegram the rest is 0.
     match last {
@@ -40,19 +40,20 @@ fn any_stream<E: Engine + ?Sized>(e: &mut E, sequence: Sequence) -> Stream {
 }
 
 harness! {
-    /// A telegram is used if and only if it and as many before it as the run each advanced the counter by 1 to the window, in
-    /// one section and without a silence as long as the memory. The history is the observer's.
+    /// A telegram is used if and only if it is the last of more in order than the run: the first one of a section or after a silence as
+    /// long as the memory, and then each that advances the counter by 1 to the window. After one out of order it is as many and one more.
+    /// The history is the observer's.
     t_tel_6(e)
     theorem "T-TEL-6";
-    requirements ["TEL-6", "GEN-1"];
+    requirements ["TEL-6", "TEL-8", "GEN-1"];
     assumptions [];
     bound "";
     cases 1;
     unwind 17 = 1 + size_of::<u128>();
     claims {
-        Used: "used if and only if the observer counts as many proper advances in a row as the run",
+        Used: "used if and only if the observer counts more telegrams in order than the run",
         Nothing: "nothing is judged if and only if nothing came",
-        Observer: "the state is what the observer knows: the last telegram, its age, and its advances up to the run",
+        Observer: "the state is what the observer knows: the last telegram, its age, and how many are in order, up to the run and one",
         Valid: "a valid state leads to a valid one",
     }
     covers {
@@ -65,35 +66,37 @@ harness! {
     {
         let Some(sequence) = any_sequence(e) else { return };
         let before = any_stream(e, sequence);
-        // Ghosts: the observer's count of proper advances in a row, and the time since the last telegram.
-        let advances = e.word("advances in a row, all of them", 0..=3);
+        // Ghosts: the observer's count of telegrams in order, and the time since the last telegram.
+        let row = e.word("telegrams in order, all of them", 0..=4);
         let silent = e.word("cycles since the last telegram", 0..=6);
         let run = u16::from(sequence.run());
-        let up_to_run = |advances: u16| if advances < run { advances } else { run };
-        let knows = |stream: &Stream, advances: u16, silent: u16| match stream.last {
-            Some(_) => u16::from(stream.in_order) == up_to_run(advances) && stream.age.0 == silent && silent < sequence.memory().0,
+        let up_to = |row: u16| if row < run { row } else if row == run { run } else { run + 1 };
+        let knows = |stream: &Stream, row: u16, silent: u16| match stream.last {
+            Some(_) => u16::from(stream.in_order) == up_to(row) && stream.age.0 == silent && silent < sequence.memory().0,
             None => silent >= sequence.memory().0,
         };
-        e.assume(knows(&before, advances, silent));
+        e.assume(knows(&before, row, silent));
         let heard = any_heard(e);
         let (after, judgement) = sequence.step(before, heard);
 
         // Everything from the greatest number on is alike.
         let now = silent.saturating_add(1);
-        let (mut advances_after, mut silent_after) = (advances, now);
+        let (mut row_after, mut silent_after) = (row, now);
         let mut proper = false;
         if let Some(header) = heard {
+            let mut first = true;
             if let (Some(last), true) = (before.last, now < sequence.memory().0) {
                 let ahead = (i32::from(header.counter.0) - i32::from(last.counter.0)).rem_euclid(256);
-                proper = header.section == last.section && 1 <= ahead && ahead <= i32::from(sequence.window());
+                first = header.section != last.section;
+                proper = !first && 1 <= ahead && ahead <= i32::from(sequence.window());
             }
-            advances_after = if proper { advances.saturating_add(1) } else { 0 };
+            row_after = if proper { row.saturating_add(1) } else { u16::from(first) };
             silent_after = 0;
         }
-        e.claim(Claim::Used as u32, (judgement == Judgement::Accepted) == (heard.is_some() && advances_after >= run));
+        e.claim(Claim::Used as u32, (judgement == Judgement::Accepted) == (heard.is_some() && row_after > run));
         e.claim(Claim::Nothing as u32, (judgement == Judgement::Nothing) == heard.is_none());
         let last = if heard.is_some() { heard } else { before.last.filter(|_| now < sequence.memory().0) };
-        e.claim(Claim::Observer as u32, knows(&after, advances_after, silent_after) && after.last == last);
+        e.claim(Claim::Observer as u32, knows(&after, row_after, silent_after) && after.last == last);
         e.claim(Claim::Valid as u32, after.is_valid(&sequence));
         e.cover(Cover::Used as u32, judgement == Judgement::Accepted);
         let wrapped = matches!((before.last, heard), (Some(last), Some(header)) if last.counter.0 == 255 && header.counter.0 == 0);
@@ -107,9 +110,9 @@ harness! {
 
 harness! {
     /// The reach of the counter. The ghosts are the whole numbers of the telegrams, without an end. While the stream is remembered, a
-    /// telegram that was sent before the last one, by fewer than 256 less the window, is not used, and after it as many advances
-    /// as the run are needed again. So a transmitter that repeats one telegram, or a delayed one, is not listened to. One that was sent
-    /// earlier is taken for a new one where its number, modulo 256, says so: that is a condition.
+    /// telegram that was sent before the last one, by fewer than 256 less the window, is not used, and nothing is in order behind it. One
+    /// that was sent earlier is taken for a new one where its number, modulo 256, says so: that is a condition. What late ones and a
+    /// transmitter that has frozen can do together is `t_tel_8`.
     t_tel_6_repeated(e)
     theorem "T-TEL-6";
     requirements ["TEL-6"];
@@ -121,8 +124,8 @@ harness! {
     claims {
         Repeated: "a telegram of the section that was sent 0 to 255 less the window before the last one is refused",
         Beyond: "one that was sent exactly 256 less any advance within the window before it counts as that advance: no counter of 8 bits tells them apart",
-        Again: "no advance counts after it",
-        First: "the first telegram of a section, and the first one after a silence as long as the memory, are refused",
+        Again: "nothing is in order after it",
+        First: "the first telegram of a section, and the first one after a silence as long as the memory, are refused, and in order",
     }
     covers {
         Same: "the same counter again",
@@ -149,12 +152,97 @@ harness! {
         e.claim(Claim::Repeated as u32, !repeated || judgement == Judgement::Refused);
         let more = u32::from(before.in_order) + 1;
         let run = u32::from(sequence.run());
-        e.claim(Claim::Beyond as u32, !beyond || u32::from(after.in_order) == if more < run { more } else { run });
-        e.claim(Claim::Again as u32, !(repeated || first) || after.in_order == 0);
-        e.claim(Claim::First as u32, !first || judgement == Judgement::Refused);
+        e.claim(Claim::Beyond as u32, !beyond || u32::from(after.in_order) == if more < run { more } else if more == run { run } else { run + 1 });
+        e.claim(Claim::Again as u32, !repeated || first || after.in_order == 0);
+        e.claim(Claim::First as u32, !first || judgement == Judgement::Refused && after.in_order == 1);
         e.cover(Cover::Same as u32, same);
         e.cover(Cover::Older as u32, repeated && !same);
         e.cover(Cover::Recorded as u32, beyond && earlier == 255 && judgement == Judgement::Accepted);
+    }
+}
+
+/// What an observer who sees the numbers without an end knows of the telegrams that one train has received of one section.
+#[derive(Clone, Copy)]
+struct Received {
+    /// The newest of them.
+    newest: u32,
+    /// The last one.
+    last: u32,
+    /// How many in a row, up to the last one, are late: were sent before the newest.
+    late: u32,
+}
+
+impl Received {
+    /// Whether the stream can be what it is after these: the last one is remembered. It is the newest, or else late, and then fewer than
+    /// the late ones are in order.
+    fn explains(self, stream: &Stream, sequence: &Sequence) -> bool {
+        let Some(last) = stream.last else { return false };
+        let numbered = u32::from(last.counter.0) == self.last % 256;
+        let reach = 256 - u32::from(sequence.window());
+        let is_late = self.last < self.newest && self.newest - self.last < reach;
+        let late = is_late && self.late <= u32::from(sequence.run()) && u32::from(stream.in_order) < self.late;
+        numbered && (self.last == self.newest && self.late == 0 || late)
+    }
+}
+
+harness! {
+    /// No late telegram, and no transmitter that has frozen, makes an old one new: a telegram that is used was sent after every one that the
+    /// train has received of its section before. The transmitter may go on with its last telegram alone at any time, telegrams are lost,
+    /// and late ones come between, as many in a row as the run; the ground's device may start anew, and counts from anywhere then.
+    t_tel_8(e)
+    theorem "T-TEL-6";
+    requirements ["TEL-8"];
+    assumptions ["counter-reach", "telegrams-numbered", "transmitter-does-not-loop"];
+    built_in &[("transmitter-does-not-loop", "what is sent twice is the newest telegram alone")];
+    bound "";
+    cases 1;
+    unwind 17 = 1 + size_of::<u128>();
+    claims {
+        Newer: "one that is used was sent after all that were received before it",
+        Explained: "what is remembered is explained by what was received, one cycle on",
+    }
+    covers {
+        Used: "a telegram is used",
+        Late: "a late one as the last of as many as the run",
+        Frozen: "the newest again, behind a late one and in order",
+        Anew: "the first one that is used after a start of the ground's device follows",
+    }
+    {
+        let Some(sequence) = any_sequence(e) else { return };
+        let before = any_stream(e, sequence);
+        let (newest, last, late) = (any_u32(e, "newest number", 0..=600), any_u32(e, "last number", 0..=600), any_u32(e, "late ones", 0..=2));
+        let received = Received { newest, last, late };
+        // Nothing is remembered of a section that the train has come into, or after a silence.
+        let known = before.last.is_some();
+        e.assume(!known || received.explains(&before, &sequence));
+        let heard = any_heard(e);
+        let number = any_u32(e, "number of the telegram", 0..=900);
+        let (after, judgement) = sequence.step(before, heard);
+
+        let remembered = known && u32::from(before.age.0) + 1 < u32::from(sequence.memory().0);
+        let same = matches!((before.last, heard), (Some(last), Some(header)) if last.section == header.section);
+        let anew = any_flag(e, "the ground's device has started (odd: yes)");
+        let is_late = remembered && same && !anew && number < received.newest;
+        let mut next = received;
+        if let Some(header) = heard {
+            e.suppose("telegrams-numbered", u32::from(header.counter.0) == number % 256);
+            let reach = 256 - u32::from(sequence.window());
+            let in_reach = received.late < u32::from(sequence.run()) && (!is_late || received.newest - number < reach);
+            e.suppose("counter-reach", !is_late || in_reach);
+            next = match (remembered && same && !anew, is_late) {
+                (true, true) => Received { last: number, late: received.late + 1, ..received },
+                // Sent after all others; or the newest, once more.
+                _ => Received { newest: number, last: number, late: 0 },
+            };
+        }
+        let newer = remembered && same && (anew || number > received.newest);
+        e.claim(Claim::Newer as u32, judgement != Judgement::Accepted || newer);
+        e.claim(Claim::Explained as u32, after.last.is_none() || next.explains(&after, &sequence));
+        e.cover(Cover::Used as u32, judgement == Judgement::Accepted && !anew);
+        e.cover(Cover::Late as u32, is_late && next.late == u32::from(sequence.run()));
+        let frozen = same && remembered && !anew && received.late > 0 && number == received.newest;
+        e.cover(Cover::Frozen as u32, frozen && after.in_order == sequence.run());
+        e.cover(Cover::Anew as u32, anew && judgement == Judgement::Accepted);
     }
 }
 
@@ -218,7 +306,7 @@ harness! {
         let start = sequence.initial();
         let heard = any_heard(e);
         let (after, judgement) = sequence.step(start, heard);
-        let first = judgement != Judgement::Accepted && after.last == heard && after.in_order == 0;
+        let first = judgement != Judgement::Accepted && after.last == heard && after.in_order == u8::from(heard.is_some());
         e.claim(Claim::Start as u32, start == Stream::EMPTY && start.is_valid(&sequence) && first);
         let order = Judgement::Nothing < Judgement::Refused && Judgement::Refused < Judgement::Accepted;
         e.claim(Claim::Order as u32, order && Sequence::SAFE == Judgement::Nothing);

@@ -474,10 +474,10 @@ impl<'a> Reader<'a, '_> {
             let ahead = ahead.min_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
             let behind = cuts.filter(|(_, cut)| (-OFFSET..-NEAR).contains(&beyond(cut)));
             let behind = behind.max_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
-            if let (0, Some((place, cut))) = (step, behind)
-                && let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place))
-            {
-                found.push(Near { joint, rear, ahead, beside: beyond(cut).abs(), behind: true });
+            if let Some((place, cut)) = behind.filter(|_| step == 0) {
+                if let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place)) {
+                    found.push(Near { joint, rear, ahead, beside: beyond(cut).abs(), behind: true });
+                }
             }
             if let Some((place, cut)) = ahead {
                 if let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place)) {

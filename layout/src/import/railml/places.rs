@@ -109,9 +109,7 @@ fn share_by(linear: Node<'_, '_>, measures: &Measures<'_>) -> Option<f64> {
     let system = linear.attribute("positioningSystemRef").unwrap_or_default();
     let measure = number(linear, "measure")?;
     let mut same: Vec<(f64, f64)> = measures.iter().filter(|at| at.0 == system).map(|at| (at.1, at.2)).collect();
-    if let [.., (_, begin), (_, end)] = same[..]
-        && begin > end
-    {
+    if matches!(same[..], [.., (_, begin), (_, end)] if begin > end) {
         // Downwards: looked at from the other side.
         same.reverse();
     }

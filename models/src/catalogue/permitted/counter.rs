@@ -9,6 +9,7 @@ use crate::permitted::{Purpose, Sight};
 /// Frozen and looping transmitters, and a loss as long as the counter's range.
 pub(super) fn entries() -> Vec<Entry> {
     let mut entries = frozen();
+    entries.push(frozen_and_late());
     entries.extend(in_turn());
     entries.extend(wrapped());
     entries
@@ -73,6 +74,22 @@ fn frozen() -> Vec<Entry> {
             Purpose::Hazard(&["stop-point-life"]),
         ),
     ]
+}
+
+fn frozen_and_late() -> Entry {
+    model(
+        (
+            "permitted-frozen-and-late",
+            "A transmitter repeats its last telegram for ever, and the one before that arrives late, as often as one likes but not twice in \
+             a row: the frozen one is used once at most, and never after its life.",
+            "main telegrams are lost in any cycle; the transmitter freezes in any; run 1; a withdrawn stretch is kept for the life",
+        ),
+        &moving(),
+        RUN_1,
+        Environment { transmitter: Transmitter::FreezesAndLate, ..looping(1, Small::USUAL.life) },
+        SOUND,
+        Purpose::Safe(&[Sight::Pattern, Sight::OldPoint, Sight::Repeated]),
+    )
 }
 
 fn in_turn() -> Vec<Entry> {

@@ -103,17 +103,17 @@ const PERMITTED: Table = Table {
             Danger::Higher,
             &[
                 "PER-1", "PER-2", "PER-3", "PER-4", "PER-5", "PER-6", "PER-7", "PER-8", "PER-10", "PER-11", "PER-12",
-                "PER-13", "PER-14", "PER-15", "TEL-6", "PAT-1", "PAT-2",
+                "PER-13", "PER-14", "PER-15", "TEL-6", "TEL-8", "PAT-1", "PAT-2",
             ],
         ),
         Field {
             level: Level::Reason,
-            ..output("basis", Danger::No, &["PER-1", "PER-3", "PER-6", "PER-8", "PER-13", "PER-14", "TEL-6"])
+            ..output("basis", Danger::No, &["PER-1", "PER-3", "PER-6", "PER-8", "PER-13", "PER-14", "TEL-6", "TEL-8"])
         },
         Field {
             level: Level::State,
             absent: Absent::NotCompared,
-            ..output("state", Danger::No, &["PER-4", "PER-8", "PER-10", "PER-11", "PER-12", "TEL-6"])
+            ..output("state", Danger::No, &["PER-4", "PER-8", "PER-10", "PER-11", "PER-12", "TEL-6", "TEL-8"])
         },
     ],
 };

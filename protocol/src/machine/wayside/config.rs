@@ -189,9 +189,8 @@ impl Config {
         }
         // Blocks that hold less report the end of the longest train free.
         let longest = said.and_then(|said| said.longest_train_m);
-        if let (Some(line), Some(longest)) = (&self.counted, longest)
-            && line.train_m < longest.into()
-        {
+        let counted = self.counted.as_ref().zip(longest);
+        if let Some((line, longest)) = counted.filter(|(line, longest)| line.train_m < u32::from(*longest)) {
             return Err(format!(
                 "counted.train_m is {} m; it must be at least the layout's longest_train_m, {longest} m",
                 line.train_m

@@ -55,7 +55,7 @@ fn a_line_without_stations_is_told_what_is_not_held_against_it() {
 
 #[test]
 fn a_rule_between_line_and_station_is_told_with_both_places() {
-    let folder = changed("life_ms = 2500", "life_ms = 2850");
+    let folder = changed("life_ms = 3300", "life_ms = 3320");
     let output = check(folder.path(), &["line.toml"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stdout).starts_with("line.toml: 1 broken rule; 46 checks met\n"), "{}", text(&output.stdout));

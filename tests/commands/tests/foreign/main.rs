@@ -2,6 +2,7 @@
 //! their seeded faults is found. Seeds are fixed.
 
 mod draw;
+mod javascript;
 mod side;
 mod small;
 mod station;
@@ -43,7 +44,7 @@ fn telegram_codec() {
 
 #[test]
 fn permitted_speed() {
-    in_python("permitted", 18, &small::permitted(1, 50_000));
+    in_python("permitted", 19, &small::permitted(1, 50_000));
 }
 
 #[test]

@@ -21,6 +21,25 @@ pub fn oracle() -> Command {
     command
 }
 
+/// What a command printed. What a failure printed, if it fails.
+pub fn run(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| format!("{}: {error}", command.get_program().display()))?;
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    if output.status.success() {
+        return Ok(said);
+    }
+    Err(format!("{command:?}: {}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr)))
+}
+
+/// The sessions of the oracle's examples.
+pub fn examples() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../oracle/examples");
+    let paths = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let sessions: Vec<_> = paths.filter(|path| path.extension().is_some_and(|end| end == "jsonl")).collect();
+    assert!(sessions.len() >= 10, "only {} sessions", sessions.len());
+    sessions
+}
+
 /// Compiles `NAME.c` without a warning.
 pub fn compiled(name: &str, into: &TempDir) -> PathBuf {
     let program = into.path().join(name);
