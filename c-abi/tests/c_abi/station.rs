@@ -84,7 +84,7 @@ fn place(arrays: &Arrays) -> (atc_status, atc_place) {
 #[test]
 fn interlockings() {
     let mut unsafe_plans = 0;
-    let (cases, rejected, steps) = walked(Interlocked::NAME, 40, |expected, refused| {
+    let (cases, rejected, steps) = walked(Interlocked::NAME, 140, |expected, refused| {
         if refused {
             // A layout that cannot be compiled has no arrays.
             return 0;

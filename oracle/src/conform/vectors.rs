@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest as _, Sha256};
 
 use super::case::{Case, Expected};
+use super::directed;
 use super::fields::{self, Level, TABLES};
 use super::walk::{self, Sizes};
 
@@ -175,7 +176,7 @@ const fn count(machine: &str, set: Set) -> u64 {
     }
 }
 
-/// The vectors of a machine: configurations to be rejected, the committed examples, and walks.
+/// The vectors of a machine: the committed examples, directed ones, configurations to be rejected, and walks.
 pub fn vectors(machine: &str, set: Set) -> Vec<Vector> {
     let mut seen = HashSet::new();
     let mut all = Vec::new();
@@ -188,6 +189,11 @@ pub fn vectors(machine: &str, set: Set) -> Vec<Vector> {
         // A step that is not taken is not part of a vector.
         if let Ok(expected) = case.expected() {
             add(Vector::of(&expected, format!("the example {name}")));
+        }
+    }
+    for directed in directed::all().into_iter().filter(|directed| directed.machine == machine) {
+        if let Ok(expected) = directed.case().expected() {
+            add(Vector::of(&expected, format!("catches {}", directed.catches.join(", "))));
         }
     }
     let wrong = walk::source(machine).map_or(0, walk::Source::wrong_count) as u64;

@@ -70,7 +70,7 @@ harness! {
         let row = e.word("telegrams in order, all of them", 0..=4);
         let silent = e.word("cycles since the last telegram", 0..=6);
         let run = u16::from(sequence.run());
-        let up_to = |row: u16| if row < run { row } else if row == run { run } else { run + 1 };
+        let up_to = |row: u16| row.min(run + 1);
         let knows = |stream: &Stream, row: u16, silent: u16| match stream.last {
             Some(_) => u16::from(stream.in_order) == up_to(row) && stream.age.0 == silent && silent < sequence.memory().0,
             None => silent >= sequence.memory().0,
@@ -152,7 +152,7 @@ harness! {
         e.claim(Claim::Repeated as u32, !repeated || judgement == Judgement::Refused);
         let more = u32::from(before.in_order) + 1;
         let run = u32::from(sequence.run());
-        e.claim(Claim::Beyond as u32, !beyond || u32::from(after.in_order) == if more < run { more } else if more == run { run } else { run + 1 });
+        e.claim(Claim::Beyond as u32, !beyond || u32::from(after.in_order) == more.min(run + 1));
         e.claim(Claim::Again as u32, !repeated || first || after.in_order == 0);
         e.claim(Claim::First as u32, !first || judgement == Judgement::Refused && after.in_order == 1);
         e.cover(Cover::Same as u32, same);
@@ -175,7 +175,7 @@ struct Received {
 impl Received {
     /// Whether the stream can be what it is after these: the last one is remembered. It is the newest, or else late, and then fewer than
     /// the late ones are in order.
-    fn explains(self, stream: &Stream, sequence: &Sequence) -> bool {
+    fn explains(self, stream: &Stream, sequence: Sequence) -> bool {
         let Some(last) = stream.last else { return false };
         let numbered = u32::from(last.counter.0) == self.last % 256;
         let reach = 256 - u32::from(sequence.window());
@@ -214,7 +214,7 @@ harness! {
         let received = Received { newest, last, late };
         // Nothing is remembered of a section that the train has come into, or after a silence.
         let known = before.last.is_some();
-        e.assume(!known || received.explains(&before, &sequence));
+        e.assume(!known || received.explains(&before, sequence));
         let heard = any_heard(e);
         let number = any_u32(e, "number of the telegram", 0..=900);
         let (after, judgement) = sequence.step(before, heard);
@@ -237,7 +237,7 @@ harness! {
         }
         let newer = remembered && same && (anew || number > received.newest);
         e.claim(Claim::Newer as u32, judgement != Judgement::Accepted || newer);
-        e.claim(Claim::Explained as u32, after.last.is_none() || next.explains(&after, &sequence));
+        e.claim(Claim::Explained as u32, after.last.is_none() || next.explains(&after, sequence));
         e.cover(Cover::Used as u32, judgement == Judgement::Accepted && !anew);
         e.cover(Cover::Late as u32, is_late && next.late == u32::from(sequence.run()));
         let frozen = same && remembered && !anew && received.late > 0 && number == received.newest;

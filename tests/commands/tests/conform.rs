@@ -275,7 +275,7 @@ fn walks_are_taken_and_reach_the_limits() {
     use atc_oracle::conform::walk::{SOURCES, Sizes, case};
     for source in SOURCES {
         let mut words = std::collections::BTreeSet::new();
-        for number in 0..40 {
+        for number in 0..80 {
             let expected = case(source.machine, 3, number, Sizes::Small, None).expect("a case");
             assert!(!expected.start.starts_with(r#"{"malformed""#), "{}: {}", source.machine, expected.start);
             let again = expected.case.clone().expected().expect("a case that the kernel takes");

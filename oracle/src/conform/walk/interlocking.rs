@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
 use super::station::Station;
-use super::{Source, Walk};
+use super::{Source, Walk, wrong_plans};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
@@ -32,7 +32,7 @@ const SHORTEST: Times = Times {
 };
 
 /// A station of three circuits in a row and two routes, with one point: where most differences show within a few steps.
-fn fork() -> Value {
+pub(super) fn fork() -> Value {
     let circuits = ["W", "A", "B", "C", "E"].map(|name| json!({"name": name, "length_m": 600}));
     let route = |name: &str, side: &str, last: &str, overlap: &[&str]| {
         json!({
@@ -56,6 +56,7 @@ fn small() -> Vec<Value> {
     let loop_ = layout(PASSING_LOOP);
     vec![
         fork(),
+        wrong_plans::with_line(fork()),
         with_times(&loop_, SHORTEST),
         with_times(
             &loop_,
@@ -82,23 +83,7 @@ fn large() -> Vec<Value> {
 }
 
 fn wrong() -> Vec<Value> {
-    let change = |name: &str, value: Value| {
-        let mut plan = fork();
-        plan["plan"][name] = value;
-        plan
-    };
-    let mut no_path = fork();
-    no_path["plan"]["routes"][0]["path"] = json!([]);
-    let mut unpositioned = fork();
-    unpositioned["plan"]["routes"][0]["path"][0]["points"] = json!({});
-    // A layout whose point has no time to move.
-    vec![
-        change("cycle_ms", 0.into()),
-        change("clear_cycles", 0.into()),
-        change("speeds_km_h", json!([45, 90])),
-        no_path,
-        unpositioned,
-    ]
+    wrong_plans::wrong(&fork())
 }
 
 /// A train: the circuits that it stands on, its front first, and those that it may go on to.

@@ -14,7 +14,9 @@ mod position;
 mod station;
 mod supervision;
 mod telegram;
+mod train;
 mod wayside;
+mod wrong_plans;
 
 use std::sync::OnceLock;
 
@@ -58,6 +60,7 @@ pub const SOURCES: &[Source] = &[
     permitted::SOURCE,
     position::SOURCE,
     interlocking::SOURCE,
+    train::SOURCE,
     wayside::SOURCE,
 ];
 

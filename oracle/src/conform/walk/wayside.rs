@@ -13,6 +13,9 @@ pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wro
 /// The circuits of the station in the direction of travel.
 const TRACK: [&str; 6] = ["W2", "W1", "A", "B", "E1", "E2"];
 
+/// The same, where the line has a third circuit.
+const LONGER: [&str; 7] = ["W3", "W2", "W1", "A", "B", "E1", "E2"];
+
 /// The example's configuration.
 fn example() -> Value {
     examples("wayside").into_iter().next().map(|(_, case)| case.config).unwrap_or_default()
@@ -39,6 +42,25 @@ fn away(mut config: Value) -> Value {
     config
 }
 
+/// With three counted blocks of one circuit each.
+fn three(mut config: Value) -> Value {
+    let plan = &mut config["layout"]["plan"];
+    for (list, more) in [
+        ("/circuits", json!({"name": "W3", "length_m": 270})),
+        ("/segments/0/circuits", "W3".into()),
+        ("/routes/0/approach", "W3".into()),
+    ] {
+        if let Some(list) = plan.pointer_mut(list).and_then(Value::as_array_mut) {
+            list.push(more);
+        }
+    }
+    let side = |section: u32| json!({"section": section, "gradient_permille": 5, "curve_km_h": 75});
+    config["signals"]["circuits"]["W3"] = json!({"left": side(106), "right": side(206)});
+    let block = |name: &str| json!({"circuits": [name], "max_trains": 2, "tail_hold_sections": 1, "pass_ms": 3000});
+    config["counted"]["blocks"] = json!([block("W3"), block("W2"), block("W1")]);
+    config
+}
+
 /// Without a counted line.
 fn plain(mut config: Value) -> Value {
     config["counted"] = Value::Null;
@@ -52,6 +74,7 @@ fn small() -> Vec<Value> {
         timed(example.clone(), 3, 4, 2, 1),
         timed(away(example.clone()), 2, 3, 1, 0),
         timed(plain(example.clone()), 2, 5, 1, 2),
+        timed(three(example.clone()), 2, 3, 1, 0),
     ]
 }
 
@@ -79,6 +102,17 @@ fn wrong() -> Vec<Value> {
         change(|config| config["signals"]["codes"]["pairs"][3]["speed_km_h"] = 74.into()),
         change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 203.into()),
         change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 100.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 200.into()),
+        change(|config| config["signals"]["circuits"]["B"]["right"]["section"] = 100.into()),
+        change(|config| config["signals"]["circuits"]["B"]["right"]["section"] = 200.into()),
+        change(|config| config["signals"]["speeds_km_h"] = json!([5, 15, 25, 45, 75])),
+        change(|config| config["signals"]["speeds_km_h"] = json!([0, 25, 25, 45, 75])),
+        change(|config| config["layout"]["plan"]["residual_cycles"] = 2.into()),
+        change(|config| config["layout"]["plan"]["braking_m"] = json!([0, 100, 300, 700, 900])),
+        against(),
+        change(|config| {
+            config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("A"));
+        }),
         change(|config| {
             config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("E2"));
         }),
@@ -91,6 +125,14 @@ fn wrong() -> Vec<Value> {
 fn away_with(train_m: u64) -> Value {
     let mut config = away(example());
     config["counted"]["train_m"] = train_m.into();
+    config
+}
+
+/// A counted line against which the route leads.
+fn against() -> Value {
+    let mut config = away(example());
+    config["counted"]["travel"] = "toward".into();
+    config["counted"]["direction"] = "up".into();
     config
 }
 
@@ -108,6 +150,8 @@ struct Block {
 }
 
 struct Ground {
+    /// The circuits of the station in the direction of travel.
+    track: &'static [&'static str],
     blocks: Vec<Block>,
     /// Whether the low end of the blocks is their entry.
     up: bool,
@@ -131,13 +175,16 @@ struct Ground {
 }
 
 fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
+    let track: &'static [&'static str] =
+        if config["signals"]["circuits"].get("W3").is_some() { &LONGER } else { &TRACK };
     let blocks = config["counted"]["blocks"].as_array().into_iter().flatten().map(|block| {
         let circuits = block["circuits"].as_array().into_iter().flatten();
-        let place = |circuit: &Value| TRACK.iter().position(|name| circuit == name);
+        let place = |circuit: &Value| track.iter().position(|name| circuit == name);
         Block { places: circuits.filter_map(place).collect() }
     });
     let life = cycles(started, "life");
     Box::new(Ground {
+        track,
         blocks: blocks.collect(),
         up: config["counted"]["direction"] != "down",
         life,
@@ -166,7 +213,7 @@ impl Ground {
         let dwell = random.between(0, 3);
         match &mut self.train {
             None if random.one_in(6) => {
-                let first = if random.one_in(4) { random.below(TRACK.len()) } else { 0 };
+                let first = if random.one_in(4) { random.below(self.track.len()) } else { 0 };
                 self.train = Some((first, dwell));
                 self.entered = Some(first);
             }
@@ -176,7 +223,7 @@ impl Ground {
                 self.tail = Some(*place);
                 (*place, *left) = (*place + 1, dwell);
                 self.entered = Some(*place);
-                if *place >= TRACK.len() {
+                if *place >= self.track.len() {
                     self.train = None;
                 }
             }
@@ -211,11 +258,11 @@ impl Ground {
     fn occupied(&self, random: &mut Random) -> Vec<&'static str> {
         let counted: Vec<_> = self.blocks.iter().flat_map(|block| block.places.iter().copied()).collect();
         let at = |place: usize| self.train.map(|(head, _)| head) == Some(place) || self.tail == Some(place);
-        let places = (0..TRACK.len()).filter(|place| {
+        let places = (0..self.track.len()).filter(|place| {
             let its = !counted.contains(place) && at(*place);
             its != (self.wrong > 0 && random.one_in(4 * self.wrong))
         });
-        places.map(|place| TRACK[place]).collect()
+        places.map(|place| self.track[place]).collect()
     }
 
     /// What the neighbours say in this cycle.
@@ -265,14 +312,14 @@ impl Ground {
     fn orders(&mut self, random: &mut Random) -> Option<Value> {
         if !self.begun {
             self.begun = true;
-            return Some(json!({"unblock": TRACK, "lift": TRACK}));
+            return Some(json!({"unblock": self.track, "lift": self.track}));
         }
-        let one = TRACK[random.below(TRACK.len())];
+        let one = self.track[random.below(self.track.len())];
         match random.below(40) {
             0 => Some(json!({"block": [one]})),
-            1 | 2 => Some(json!({"unblock": TRACK})),
+            1 | 2 => Some(json!({"unblock": self.track})),
             3 => Some(json!({"restrict": {one: random.one_of(&[0, 24, 25, 26, 45, 75, 65_535])}})),
-            4 => Some(json!({"lift": TRACK})),
+            4 => Some(json!({"lift": self.track})),
             _ => None,
         }
     }
@@ -298,7 +345,9 @@ impl Walk for Ground {
             step["orders"] = orders;
         }
         if random.one_in(4) {
-            let some = |random: &mut Random| -> Vec<&str> { TRACK.into_iter().filter(|_| random.one_in(2)).collect() };
+            let some = |random: &mut Random| -> Vec<&str> {
+                self.track.iter().copied().filter(|_| random.one_in(2)).collect()
+            };
             step["framed"] = json!({"main": some(random), "sub": some(random)});
         }
         if random.one_in(48) {

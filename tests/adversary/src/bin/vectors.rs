@@ -1,6 +1,10 @@
 //! Looks which mutants of the kernel the test vectors catch, and searches for a short trace for each that they do not.
 //!
-//! In the checkout it finds none: it is compiled from the copy of the sources that has the mutants in it (`atc-prover vectors`).
+//! `vectors --directed yes`: whether each directed vector catches the mutants that it names. `vectors --mutants FILE [--set thorough]
+//! [--seconds N] [--seed N]`: of each mutant, a name and a folder in a line of the file, whether a vector catches it; if none does, it searches
+//! for so long on each machine that may show it.
+//!
+//! In the checkout there are no mutants: it is compiled from the copy of the sources that has them (`atc-prover old-rules --program vectors`).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -122,10 +126,11 @@ struct Options {
     set: Set,
     seed: u64,
     seconds: u64,
+    directed: bool,
 }
 
 fn options() -> Result<Options, String> {
-    let mut options = Options { mutants: Vec::new(), set: Set::Minimal, seed: 1, seconds: 0 };
+    let mut options = Options { mutants: Vec::new(), set: Set::Minimal, seed: 1, seconds: 0, directed: false };
     let mut words = std::env::args().skip(1);
     while let Some(option) = words.next() {
         let value = words.next().ok_or_else(|| format!("{option} needs a value"))?;
@@ -137,12 +142,36 @@ fn options() -> Result<Options, String> {
                 options.mutants = pairs.map(|(name, folder)| (name.to_owned(), folder.to_owned())).collect();
             }
             "--set" => options.set = if value == "thorough" { Set::Thorough } else { Set::Minimal },
+            "--directed" => options.directed = value == "yes",
             "--seed" => options.seed = number()?,
             "--seconds" => options.seconds = number()?,
             _ => return Err(format!("there is no option {option}")),
         }
     }
     Ok(options)
+}
+
+/// Holds each directed vector against the mutants that it names: how many pairs there are, and which do not differ.
+fn directed() -> bool {
+    let profile = Profile::default();
+    let judge = Judge { level: Level::Output, profile: &profile };
+    let (mut pairs, mut missed) = (0, 0);
+    for directed in atc_oracle::conform::directed::all() {
+        let Ok(expected) = directed.case().expected() else { return false };
+        let lines = Lines::of(&expected);
+        let agrees = !lines.catch("", judge);
+        for mutant in &directed.catches {
+            pairs += 1;
+            let catches = choose(mutant) && agrees && lines.catch(mutant, judge);
+            choose("");
+            if !catches {
+                missed += 1;
+                println!("{mutant}: not caught by its directed vector of {}", directed.machine);
+            }
+        }
+    }
+    println!("{} of {pairs} mutants are caught by the directed vectors that name them", pairs - missed);
+    missed == 0
 }
 
 fn run(options: &Options) {
@@ -376,6 +405,9 @@ fn main() -> ExitCode {
     match options() {
         Ok(options) => {
             std::panic::set_hook(Box::new(|_| {}));
+            if options.directed {
+                return if directed() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+            }
             run(&options);
             ExitCode::SUCCESS
         }
