@@ -759,6 +759,8 @@ typedef struct atc_route {
   uint8_t to;
   /// The highest speed code on the route: 1 to 7.
   uint8_t speed_code;
+  /// The highest speed code on its overlap, 0 to 7: for a train that has slid there and goes back. 0 lets none of these leave.
+  uint8_t overlap_speed_code;
   /// 1: every train that uses the route acts on telegrams alone, and not on what a driver sees. 0: some do not.
   uint8_t cab_signalled;
 } atc_route;

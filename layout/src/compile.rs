@@ -237,6 +237,7 @@ fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
         release: route.release,
         stay: route.stay,
         speed: route.speed,
+        overlap_speed: route.overlap_speed,
         ..Route::NONE
     };
     for (element, place) in made.path.iter_mut().zip(&route.path) {

@@ -265,6 +265,8 @@ pub struct Route {
     pub stay: Ticks,
     /// The speed code.
     pub speed: SpeedCode,
+    /// The speed code of the overlap: for a train that has slid there and goes back.
+    pub overlap_speed: SpeedCode,
     /// The protection of the legs that the path does not use, and of the tracks that it crosses.
     pub flanks: Vec<Flank>,
     /// Where it is named.
@@ -297,6 +299,7 @@ impl Default for Route {
             release: Ticks(0),
             stay: Ticks(0),
             speed: SpeedCode::STOP,
+            overlap_speed: SpeedCode::STOP,
             flanks: Vec::new(),
             span: 0..0,
         }

@@ -215,7 +215,7 @@ impl Signal {
     }
 
     /// From one telegram for a train to the next, ms: frames for both directions are sent in turn (WAY-7).
-    const fn period(&self) -> u64 {
+    pub(crate) const fn period(&self) -> u64 {
         2 * self.frame
     }
 

@@ -23,7 +23,7 @@ struct route {
     int place[PLACES];
     struct needs needs[PLACES], overlap_needs;
     int64_t drive, release, stay;
-    int code;
+    int code, overlap_code;
 };
 
 struct segment {
@@ -141,7 +141,8 @@ static int lowest(set circuits) {
 
 static bool read_route(const struct json *value, struct route *route) {
     set entry, from, to, circuits;
-    int64_t code = 0;
+    int64_t code = 0, beyond = -1;
+    const struct json *beside = json_field(value, "overlap_speed_code");
     const struct json *path = json_field(value, "path"), *overlap = json_field(value, "overlap"), *cab = json_field(value, "cab_signalled");
     if (!one_of(json_field(value, "heading"), "left", "right", &route->right) ||
         !names(json_field(value, "entry"), find_circuit, &entry) || !names(json_field(value, "approach"), find_circuit, &route->approach) ||
@@ -151,6 +152,7 @@ static bool read_route(const struct json *value, struct route *route) {
         !names(json_field(value, "to"), find_segment, &to) || !json_whole(json_field(value, "drive_cycles"), 65535, &route->drive) ||
         !json_whole(json_field(value, "release_cycles"), 65535, &route->release) ||
         !json_whole(json_field(value, "stay_cycles"), 65535, &route->stay) || !json_whole(json_field(value, "speed_code"), 7, &code) ||
+        (beside && beside->kind != J_NULL && !json_whole(beside, 7, &beyond)) ||
         (cab && !json_bool(cab, &route->cab)) || !path || path->kind != J_ARRAY || path->size < 1 || path->size > PLACES || !overlap ||
         !element(overlap, &route->overlap, &route->overlap_needs) || !entry)
         return false;
@@ -158,6 +160,7 @@ static bool read_route(const struct json *value, struct route *route) {
     route->from = from ? lowest(from) : -1;
     route->to = to ? lowest(to) : -1;
     route->code = (int)code;
+    route->overlap_code = beyond < 0 ? (int)code : (int)beyond;
     for (const struct json *item = json_first(path); item; item = json_next(item)) {
         if (!element(item, &circuits, &route->needs[route->length]) || !circuits) return false;
         route->place[route->length++] = lowest(circuits);
@@ -581,6 +584,7 @@ static int circuit_limit(int circuit) {
     bool is_held = false;
     for (int r = 0; r < plan.routes; r++) {
         if (plan.route[r].path & one(circuit) && plan.route[r].code < over && !FAULTY(26)) over = plan.route[r].code;
+        if (plan.route[r].overlap & one(circuit) && plan.route[r].overlap_code < over && !FAULTY(39)) over = plan.route[r].overlap_code;
         if (held_path(r) & one(circuit)) {
             is_held = true;
             if (plan.route[r].code < held) held = plan.route[r].code;

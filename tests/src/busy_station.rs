@@ -56,6 +56,7 @@ fn way(row: usize, entry: usize, rightward: bool) -> Way {
         release: 600,
         stay: 300,
         speed: 5,
+        overlap_speed: 5,
         ..Way::default()
     }
 }

@@ -65,6 +65,8 @@ pub struct Way {
     pub stay: u16,
     /// The speed code.
     pub speed: u8,
+    /// That of the overlap.
+    pub overlap_speed: u8,
     /// Whether its trains act on telegrams alone.
     pub cab: bool,
 }
@@ -202,6 +204,7 @@ fn route<const P: usize>(way: &Way) -> Route<P> {
         release: Ticks(way.release),
         stay: Ticks(way.stay),
         speed: SpeedCode(way.speed),
+        overlap_speed: SpeedCode(way.overlap_speed),
         cab_signalled: way.cab,
     }
 }

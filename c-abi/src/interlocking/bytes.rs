@@ -89,6 +89,7 @@ fn put_route(route: &Route<16>, to: &mut Writer<'_>) {
         to.u16(time.0);
     }
     to.u8(route.speed.0);
+    to.u8(route.overlap_speed.0);
     to.flag(route.cab_signalled);
 }
 
@@ -104,6 +105,7 @@ fn take_route(route: &mut Route<16>, from: &mut Reader<'_>) -> Option<()> {
     (route.from, route.to) = (segments(from)?, segments(from)?);
     (route.drive, route.release, route.stay) = (ticks(from)?, ticks(from)?, ticks(from)?);
     route.speed = SpeedCode(from.u8()?);
+    route.overlap_speed = SpeedCode(from.u8()?);
     route.cab_signalled = from.flag()?;
     Some(())
 }

@@ -163,6 +163,8 @@ pub struct atc_route {
     pub to: u8,
     /// The highest speed code on the route: 1 to 7.
     pub speed_code: u8,
+    /// The highest speed code on its overlap, 0 to 7: for a train that has slid there and goes back. 0 lets none of these leave.
+    pub overlap_speed_code: u8,
     /// 1: every train that uses the route acts on telegrams alone, and not on what a driver sees. 0: some do not.
     pub cab_signalled: u8,
 }

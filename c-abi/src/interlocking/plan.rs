@@ -149,6 +149,7 @@ fn route(counts: Counts, given: &atc_route, elements: &[atc_element], kept: &mut
     kept.release = Ticks(given.release_cycles);
     kept.stay = Ticks(given.stay_cycles);
     kept.speed = code_of(given.speed_code)?;
+    kept.overlap_speed = code_of(given.overlap_speed_code)?;
     kept.cab_signalled = flag(given.cab_signalled)?;
     Ok(())
 }

@@ -56,6 +56,7 @@ impl Arrays {
                 from: route.from.bits(),
                 to: route.to.bits(),
                 speed_code: route.speed.0,
+                overlap_speed_code: route.overlap_speed.0,
                 cab_signalled: route.cab_signalled.into(),
             });
         }

@@ -108,7 +108,8 @@ fn route_words(words: &mut Vec<u64>, route: &Route<16>) {
     words.extend([route.beyond.bits(), route.continuing.bits(), route.conflicts.bits()]);
     words.extend([u64::from(route.from.bits()), u64::from(route.to.bits())]);
     words.extend([route.drive, route.release, route.stay].map(|ticks| u64::from(ticks.0)));
-    words.extend([u64::from(route.speed.0), u64::from(route.cab_signalled)]);
+    words.extend([route.speed, route.overlap_speed].map(|code| u64::from(code.0)));
+    words.push(u64::from(route.cab_signalled));
 }
 
 /// The plan of these words.
@@ -172,6 +173,7 @@ fn route_of(reader: &mut Reader<'_>, length: u8) -> Route<16> {
     route.release = Ticks(reader.short());
     route.stay = Ticks(reader.short());
     route.speed = SpeedCode(reader.byte());
+    route.overlap_speed = SpeedCode(reader.byte());
     route.cab_signalled = reader.word() == 1;
     route
 }

@@ -74,6 +74,8 @@ pub struct Route<const P: usize> {
     pub stay: Ticks,
     /// The highest speed code on the route.
     pub speed: SpeedCode,
+    /// The highest speed code on its overlap, for a train that has slid there and goes back.
+    pub overlap_speed: SpeedCode,
     /// Whether every train that uses the route acts on telegrams alone, and not on what a driver sees of the signal.
     pub cab_signalled: bool,
 }
@@ -96,6 +98,7 @@ impl<const P: usize> Route<P> {
         release: Ticks(0),
         stay: Ticks(0),
         speed: SpeedCode::STOP,
+        overlap_speed: SpeedCode::STOP,
         cab_signalled: false,
     };
 

@@ -14,7 +14,7 @@ pub struct Standing<const R: usize> {
     /// The occupied circuits that are neither plain line nor of the path of a held route: nobody knows which train is there.
     pub loose: CircuitSet,
     /// The highest code on each circuit: of the line, of temporary restrictions, of the route that holds it and, where none does, of every
-    /// route over it.
+    /// route and overlap over it.
     pub limits: SpeedLimits,
 }
 
@@ -32,7 +32,7 @@ impl<const R: usize> Standing<R> {
         restrictions: SpeedLimits,
     ) -> Self {
         //= spec/interlocking.md#atc-9-limits
-        //# The limit of a circuit MUST NOT be above its line speed, a temporary restriction, the speed of the route that holds it or, where none does, of any route over it.
+        //# The limit of a circuit MUST NOT be above its line speed, a temporary restriction, the speed of the route that holds it or, where none does, of any route or overlap over it.
         let plan = layout.plan();
         let mut bodies = [CircuitSet::EMPTY; R];
         let mut held = CircuitSet::EMPTY;
@@ -49,6 +49,7 @@ impl<const R: usize> Standing<R> {
         }
         for route in &plan.routes {
             limits = limits.and_at_most(route.speed, route.held_from(0).circuits.without(held));
+            limits = limits.and_at_most(route.overlap_speed, route.overlap.circuits.without(held));
         }
         let mut known = held;
         for segment in &plan.segments {

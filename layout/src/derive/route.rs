@@ -185,6 +185,10 @@ fn route_speed(station: &Station, given: &form::Route, model: &Model, route: &mu
         route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.position == form::Position::Reverse);
     let default = if over_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(&slowest) } else { straight };
     route.speed = values::code(&model.values, given.speed_kmh.as_ref().unwrap_or(default), problems);
+    // A speed of the route's own is one of its path.
+    let beyond_reverse = route.overlap_passed.iter().any(|passed| passed.position == form::Position::Reverse);
+    let beyond = if beyond_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(&slowest) } else { straight };
+    route.overlap_speed = values::code(&model.values, beyond, problems);
     let approach = given.approach_kmh.as_ref().unwrap_or(&line);
     for (field, speed) in [("approach_kmh", &given.approach_kmh), ("speed_kmh", &given.speed_kmh)] {
         let what = format!("route {}: {field}", given.name);

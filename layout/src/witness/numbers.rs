@@ -114,6 +114,14 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
                 let what = format!("its trains run at {} km/h, and the file allows {most}", self.kmh(route.speed));
                 found.push(self.differs(number, &what));
             }
+            let beyond = if route.overlap.positions.reverse.is_empty() { straight } else { over_points };
+            if self.kmh(route.overlap_speed) > beyond {
+                let what = format!(
+                    "trains that have slid into its overlap leave it at {} km/h, and the file allows {beyond}",
+                    self.kmh(route.overlap_speed)
+                );
+                found.push(self.differs(number, &what));
+            }
             self.approach(number, way, ways, found);
         }
     }

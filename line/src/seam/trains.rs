@@ -115,7 +115,17 @@ fn lives(line: &Line, one: Sound<'_>, trains: TrainLives) -> Vec<Finding> {
         let what = format!("{}: {}", one.name(), problem.what);
         finding(one.station.at(&problem.span), line.places().at(against), what, problem.right)
     });
-    told.into_iter().collect()
+    let cycle = one.model.values.cycle_ms;
+    let slow = line.signal().filter(|signal| !trains.is_of_codes() && u64::from(cycle) > signal.period()).map(|signal| {
+        let period = signal.period();
+        let what = format!(
+            "{}: the ground has new telegrams every {cycle} ms, and trains count on one every {period} ms, in the time of two frames",
+            one.name()
+        );
+        let at = one.station.at(&one.station.description().station.times.cycle_ms.span);
+        finding(at, line.places().at("signal.frame_ms"), what, format!("cycle_ms must be at most {period}"))
+    });
+    told.into_iter().chain(slow).collect()
 }
 
 fn releases(line: &Line, one: Sound<'_>, signal: &Signal) -> Vec<Finding> {

@@ -159,6 +159,7 @@ impl Pair {
             release: Ticks(1),
             stay: Ticks(1),
             speed: SpeedCode(1),
+            overlap_speed: SpeedCode(1),
             ..Route::NONE
         }];
         plan.segments = [Segment { circuits: [circuits(1)], length: 1, ..Segment::NONE }];

@@ -100,6 +100,7 @@ fn route(entry: u8, path: &[(u8, Positions)], beyond: u8) -> Route<PLACES> {
         release: Ticks(2),
         stay: Ticks(1),
         speed: SpeedCode(2),
+        overlap_speed: SpeedCode(2),
         ..Route::NONE
     };
     for (place, (circuit, positions)) in route.path.iter_mut().zip(path) {

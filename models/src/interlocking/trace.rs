@@ -160,6 +160,7 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                     "release_cycles": route.release.0,
                     "stay_cycles": route.stay.0,
                     "speed_code": route.speed.0,
+                    "overlap_speed_code": route.overlap_speed.0,
                     "cab_signalled": route.cab_signalled,
                     "heading": heading_word(route.heading),
                 })

@@ -91,7 +91,7 @@ impl<D: Device> Ride<D> {
             crossed,
             current: match cycle.heard.main {
                 Some(main) => here(main.section.0) && !self.is_late(cycle, main),
-                None => before.current && same,
+                None => before.current && same && !cycle.counted,
             },
         }
     }

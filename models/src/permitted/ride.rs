@@ -169,7 +169,8 @@ impl<D: Device> Ride<D> {
             counter: Counter(0_u8.wrapping_sub(self.environment.in_a_cycle)),
             ..self.telegrams(section, &before, &before, true).0
         };
-        (may && known && state.ghosts.current).then(sent)
+        let here = section == self.layout.section_at(state.train.place);
+        (may && known && here && state.ghosts.current).then(sent)
     }
 
     /// The sections whose telegrams may be used in a cycle in which the nose comes to `to`.

@@ -77,7 +77,8 @@ pub struct Ghosts {
     pub starved: bool,
     /// It was on an analog line, then on a digital one; and on an analog one again.
     pub crossed: u8,
-    /// Main telegrams of the section where the nose is have arrived since it came there, and the last of them is not late.
+    /// A main telegram of the section where the nose is has arrived since it came there, and no newer one has been sent since; nor has a late one
+    /// arrived.
     pub current: bool,
 }
 

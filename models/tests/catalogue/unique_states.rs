@@ -94,7 +94,7 @@ pub const UNIQUE_STATES: &[(&str, usize)] = &[
     ("permitted-position", 19_414),
     ("permitted-frozen", 17_075),
     ("permitted-frozen-at-once", 16_371),
-    ("permitted-frozen-and-late", 26_784),
+    ("permitted-frozen-and-late", 175_242),
     ("permitted-alternating", 47_044),
     ("permitted-alternating-life-alone", 39_698),
     ("permitted-alternating-run-1", 79_316),

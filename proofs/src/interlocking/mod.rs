@@ -180,6 +180,7 @@ fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Rout
         release: Ticks(e.word("release time (cycles)", 1..=3)),
         stay: Ticks(e.word("stay time (cycles)", 1..=3)),
         speed: SpeedCode(any_byte(e, "speed code", 0..=3)),
+        overlap_speed: SpeedCode(any_byte(e, "speed code of the overlap", 0..=3)),
         cab_signalled: any_flag(e, "all trains are cab-signalled (odd: yes)"),
     }
 }

@@ -519,7 +519,8 @@ harness! {
 
 harness! {
     /// Every two circuits on which the train stands next to each other, of entry, path and overlap of its route, are told to the ATC as those of one
-    /// train; and the limit of each circuit of the path under it is none above that of the route, or of a restriction.
+    /// train; and the limit of each circuit under it is none above that of the route over its path, that of the overlap over that, or of a
+    /// restriction.
     t_ilk_train_body(e)
     theorem "T-ATC-2";
     requirements ["ATC-8", "ATC-9"];
@@ -535,6 +536,7 @@ harness! {
         Joined: "two neighbouring circuits in which the train is reported, the first of them the entry or in the path, and the second in the path, are of one body",
         Route: "the limit of a circuit of the path is not above the speed of the route, whether it holds the circuit or not",
         Restriction: "nor is that of a circuit in which the train is reported above a restriction or the speed of the line, there or at the entry",
+        Overlap: "the limit of a circuit of the overlap, and not of the path, is not above the speed of the overlap, whether it is held or not",
         Slid: "so are the last circuit and the occupied ones of the overlap, where the train has slid into it and has not left the last",
         Known: "an occupied circuit of the path counts as one that no route holds exactly if the route does not hold it; and none in which the train is reported does",
     }
@@ -566,6 +568,9 @@ harness! {
             known &= !in_path || standing.loose.meets(*circuit) == loose && !(here && loose);
             before = (position, *circuit);
         }
+        let over = ground.overlap.without(route.held_from(0).circuits);
+        let by_overlap = over.is_empty() || standing.limits.over(over).0 <= route.overlap_speed.0;
+        e.claim(Claim::Overlap as u32, by_overlap);
         let slid = informed.slid && under(ground.last) && under(ground.over);
         let beyond = contents.occupied.and(ground.overlap);
         e.claim(Claim::Slid as u32, !slid || standing.bodies[0].contains(ground.at(ground.last).or(beyond)));

@@ -15,7 +15,7 @@ use crate::{compare, input};
 /// ```
 fn station() -> Sketch {
     let (normal, reverse) = (vec![(0, Position::Normal)], vec![(0, Position::Reverse)]);
-    let short = Way { drive: 2, release: 2, stay: 2, speed: 1, ..Way::default() };
+    let short = Way { drive: 2, release: 2, stay: 2, speed: 1, overlap_speed: 1, ..Way::default() };
     Sketch {
         lengths: vec![100; 4],
         points: vec![vec![0]],

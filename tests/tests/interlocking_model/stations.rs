@@ -220,6 +220,7 @@ impl Station {
             release: dice.between(1, 8),
             stay: dice.between(1, 5),
             speed: u8::try_from(1 + dice.below(self.sketch.braking.len() - 1)).expect("small"),
+            overlap_speed: u8::try_from(1 + dice.below(self.sketch.braking.len() - 1)).expect("small"),
             cab,
             ..Way::default()
         }

@@ -82,11 +82,12 @@ fn frozen_and_late() -> Entry {
             "permitted-frozen-and-late",
             "A transmitter repeats its last telegram for ever, and the one before that arrives late, as often as one likes but not twice in \
              a row: the frozen one is used once at most, and never after its life.",
-            "main telegrams are lost in any cycle; the transmitter freezes in any; run 1; a withdrawn stretch is kept for the life",
+            "main telegrams are lost in any cycle; the transmitter freezes in any; run 1; life and memory 5 cycles; a withdrawn stretch is kept \
+             for the life",
         ),
         &moving(),
-        RUN_1,
-        Environment { transmitter: Transmitter::FreezesAndLate, ..looping(1, Small::USUAL.life) },
+        Small { life: 5, fixed_life: 6, memory: 5, ..RUN_1 },
+        Environment { transmitter: Transmitter::FreezesAndLate, ..looping(1, 5) },
         SOUND,
         Purpose::Safe(&[Sight::Pattern, Sight::OldPoint, Sight::Repeated]),
     )

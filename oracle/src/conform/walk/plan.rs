@@ -80,7 +80,7 @@ fn plan(machine: &Interlocked, times: Times) -> Value {
             "conflicts": named(&names.routes, routes(route.conflicts)),
             "from": segments_of(route.from), "to": segments_of(route.to),
             "drive_cycles": times.drive, "release_cycles": times.release, "stay_cycles": times.stay,
-            "speed_code": route.speed.0, "cab_signalled": route.cab_signalled,
+            "speed_code": route.speed.0, "overlap_speed_code": route.overlap_speed.0, "cab_signalled": route.cab_signalled,
         })).collect::<Vec<_>>(),
     }})
 }

@@ -142,6 +142,10 @@ pub struct RouteForm {
     /// The highest speed code.
     #[schemars(range(max = 7))]
     pub speed_code: u8,
+    /// The highest speed code on its overlap; null or absent: that of the route.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 7))]
+    pub overlap_speed_code: Option<u8>,
     /// Whether every train that uses it acts on telegrams alone, not on what a driver sees of the signal.
     #[serde(default)]
     pub cab_signalled: bool,
@@ -271,8 +275,11 @@ fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> 
 }
 
 fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String> {
-    if form.speed_code > SpeedCode::MOST.0 {
-        return Err(format!("speed_code is {}; it is 0 to {}", form.speed_code, SpeedCode::MOST.0));
+    let overlap_speed = form.overlap_speed_code.unwrap_or(form.speed_code);
+    for (field, code) in [("speed_code", form.speed_code), ("overlap_speed_code", overlap_speed)] {
+        if code > SpeedCode::MOST.0 {
+            return Err(format!("{field} is {code}; it is 0 to {}", SpeedCode::MOST.0));
+        }
     }
     let mut made = kernel::Route {
         heading: form.heading.0,
@@ -289,6 +296,7 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
         release: Ticks(form.release_cycles),
         stay: Ticks(form.stay_cycles),
         speed: SpeedCode(form.speed_code),
+        overlap_speed: SpeedCode(overlap_speed),
         cab_signalled: form.cab_signalled,
         ..kernel::Route::NONE
     };

@@ -50,5 +50,5 @@ fn permitted_speed() {
 #[test]
 fn interlocking() {
     let (requests, replies) = station::interlocking(1, 90_000, side::oracle());
-    in_c("interlocking", 38, &requests, &replies);
+    in_c("interlocking", 39, &requests, &replies);
 }

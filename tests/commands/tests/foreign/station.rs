@@ -56,7 +56,7 @@ impl Route<'_> {
             "path": path, "overlap": overlap, "beyond": [self.beyond], "continuing": self.continuing,
             "conflicts": self.conflicts, "from": self.from, "to": self.to, "cab_signalled": cab,
             "drive_cycles": draw.from(1, 7), "release_cycles": draw.one(&[1, 2, 4, 8, 20]), "stay_cycles": draw.from(1, 5),
-            "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]),
+            "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]), "overlap_speed_code": draw.one(&[json!(null), json!(1), json!(4), json!(7)]),
         })
     }
 }

@@ -490,3 +490,26 @@ fn a_difference_is_refused_or_drawn() {
     assert!(bars.contains(&"proceed []: 16000 to 17000 ms".to_owned()), "{bars:#?}");
     assert!(bars.iter().any(|bar| bar.starts_with("telegrams {") && bar.ends_with(": 30000 to 31000 ms")), "{bars:#?}");
 }
+
+/// A train slides over a point in reverse into a sand drag, changes ends and goes back, with its tail there. Found by the seventeenth attack: it
+/// was told the speed of the routes over that point, which lay for the other way then.
+#[test]
+fn a_train_that_goes_back_from_a_sand_drag_keeps_the_speed_of_its_point() {
+    let mut session = atc_protocol::Session::new();
+    let (mut open, mut reply) = (0, Vec::new());
+    for line in include_str!("sand-drag.jsonl").lines() {
+        reply.clear();
+        session.answer(line.as_bytes(), &mut reply);
+        let step: Value = serde_json::from_str(line).expect("JSON");
+        let output: Value = serde_json::from_slice(&reply).expect("JSON");
+        let telegrams = output["output"]["telegrams"].as_object().into_iter().flatten();
+        for (circuit, telegram) in telegrams.filter(|(_, telegram)| telegram["heading"] == "left") {
+            let tail = step["step"]["occupied"].as_array().into_iter().flatten().any(|name| name == "P2T");
+            if tail && telegram["open"] == true {
+                open += 1;
+                assert_eq!(telegram["speed_km_h"], 25, "{circuit}: {telegram}");
+            }
+        }
+    }
+    assert!(open >= 3, "it may go");
+}

@@ -1,7 +1,7 @@
 //! What trains are told: the grants of routes and plain line, linked up to the stop circuit.
 
 use atc_kernel::interlocking::Travel;
-use atc_tests::sketch::{Need, Sketch};
+use atc_tests::sketch::{Need, Sketch, Way};
 
 use super::{Leave, Place, Set, Stage, Telegram, Witness};
 
@@ -113,11 +113,13 @@ impl Witness {
         Some(Telegram { stop: here, leftward, speed, hold })
     }
 
-    /// The limit of a circuit: that of staff, and that of the route that holds it or, if none does, the lowest of all over it.
+    /// The limit of a circuit: that of staff, and that of the route that holds it or, if none does, the lowest of all routes and overlaps over it.
     fn limit(&self, sketch: &Sketch, circuit: usize) -> u8 {
         let routes = || self.routes.iter().zip(&sketch.routes);
         let holding = routes().filter(|(held, way)| held.path(way).contains(&circuit)).map(|(_, way)| way.speed).min();
         let over = sketch.routes.iter().filter(|way| way.circuits().contains(&circuit)).map(|way| way.speed).min();
+        let slid = |way: &&Way| way.overlap.0.contains(&circuit);
+        let over = over.into_iter().chain(sketch.routes.iter().filter(slid).map(|way| way.overlap_speed)).min();
         holding.or(over).into_iter().chain([self.limits[circuit]]).min().unwrap_or(7)
     }
 
