@@ -109,7 +109,7 @@
 #define ATC_RECEPTION_NOTHING 2
 
 /// The size of an interlocking in bytes.
-#define ATC_INTERLOCKING_SIZE 23224
+#define ATC_INTERLOCKING_SIZE 23288
 
 /// The alignment of an interlocking in bytes.
 #define ATC_INTERLOCKING_ALIGN 8
@@ -828,7 +828,7 @@ typedef struct atc_place {
 /// An interlocking with its plan and its state. Its bytes are the library's; it may be moved and copied as a whole.
 typedef struct atc_interlocking {
   /// Not to be read or written.
-  uint64_t opaque[2903];
+  uint64_t opaque[2911];
 } atc_interlocking;
 
 /// One logic cycle's input. A set has bit `i` for the thing of number `i`.

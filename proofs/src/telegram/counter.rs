@@ -3,7 +3,7 @@
 use super::{any_bits, any_header};
 use crate::{Engine, any_byte, any_flag, any_u32};
 use atc_kernel::Machine;
-use atc_kernel::telegram::{Deframer, Header, Judgement, Reception, Sequence, SequenceError, Stream, Window};
+use atc_kernel::telegram::{Counter, Deframer, Header, Judgement, Reception, Sequence, SequenceError, Stream, Window};
 use atc_kernel::time::Ticks;
 
 /// Arbitrary parameters.
@@ -193,7 +193,10 @@ harness! {
     theorem "T-TEL-6";
     requirements ["TEL-8"];
     assumptions ["counter-reach", "telegrams-numbered", "transmitter-does-not-loop"];
-    built_in &[("transmitter-does-not-loop", "what is sent twice is the newest telegram alone")];
+    built_in &[
+        ("transmitter-does-not-loop", "what is sent twice is the newest telegram alone"),
+        ("telegrams-numbered", "the counter is the number modulo 256"),
+    ];
     bound "";
     cases 1;
     unwind 17 = 1 + size_of::<u128>();
@@ -209,14 +212,24 @@ harness! {
     }
     {
         let Some(sequence) = any_sequence(e) else { return };
-        let before = any_stream(e, sequence);
-        let (newest, last, late) = (any_u32(e, "newest number", 0..=600), any_u32(e, "last number", 0..=600), any_u32(e, "late ones", 0..=2));
-        let received = Received { newest, last, late };
+        let mut before = any_stream(e, sequence);
+        // The numbers that are sent are those without an end, modulo 256.
+        let numbered = |number: u32| Counter((number & 0xff) as u8);
+        let (last, since, late) = (any_u32(e, "last number", 0..=600), any_u32(e, "the newest is so many later", 0..=3), any_u32(e, "late ones", 0..=2));
+        let received = Received { newest: last.saturating_add(since), last, late };
+        if let Some(header) = &mut before.last {
+            header.counter = numbered(last);
+        }
         // Nothing is remembered of a section that the train has come into, or after a silence.
         let known = before.last.is_some();
         e.assume(!known || received.explains(&before, sequence));
-        let heard = any_heard(e);
-        let number = any_u32(e, "number of the telegram", 0..=900);
+        // The newest again, one close to the last, or any other: which of them is no matter but for drawn values.
+        let number = match any_byte(e, "the number is the newest (0), some more than the last (1), or any", 0..=2) {
+            0 => received.newest,
+            1 => last.saturating_add(any_u32(e, "more than the last", 0..=4)),
+            _ => any_u32(e, "number of the telegram", 0..=900),
+        };
+        let heard = any_heard(e).map(|header| Header { counter: numbered(number), ..header });
         let (after, judgement) = sequence.step(before, heard);
 
         let remembered = known && u32::from(before.age.0) + 1 < u32::from(sequence.memory().0);
@@ -224,8 +237,7 @@ harness! {
         let anew = any_flag(e, "the ground's device has started (odd: yes)");
         let is_late = remembered && same && !anew && number < received.newest;
         let mut next = received;
-        if let Some(header) = heard {
-            e.suppose("telegrams-numbered", u32::from(header.counter.0) == number % 256);
+        if heard.is_some() {
             let reach = 256 - u32::from(sequence.window());
             let in_reach = received.late < u32::from(sequence.run()) && (!is_late || received.newest - number < reach);
             e.suppose("counter-reach", !is_late || in_reach);
