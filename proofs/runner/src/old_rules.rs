@@ -280,6 +280,10 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
         let begins = "[workspace.package]\nversion = \"";
         once(text, begins, &format!("{begins}{VERSION}"))
     })?;
+    // What is a library of C has no version in the name of its file either.
+    rewrite(files, "film/kernel/Cargo.toml", |text| {
+        once(text, "crate-type = [\"cdylib\", \"rlib\"]", "crate-type = [\"rlib\"]")
+    })?;
     for program in Program::ALL {
         let [name, manifest, main] = program.is();
         let new = program.name();
