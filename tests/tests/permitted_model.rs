@@ -50,8 +50,16 @@ impl Witness {
                 && (1..=i32::from(sequence.window())).contains(&ahead)
                 && cycle - before < usize::from(sequence.memory().0)
         };
+        // What a chain may begin with: the first telegram of a section or behind a silence, or one of an older chain.
+        let begins = |at: usize| {
+            let news = |at: usize| {
+                let ((before, section, _), (cycle, next_section, _)) = (stream[at - 1], stream[at]);
+                section != next_section || cycle - before >= usize::from(sequence.memory().0)
+            };
+            at == 0 || news(at) || follows(at)
+        };
         let run = usize::from(sequence.run());
-        (0..stream.len()).map(|at| at >= run && (at - run + 1..=at).all(follows)).collect()
+        (0..stream.len()).map(|at| at >= run && (at - run + 1..=at).all(follows) && begins(at - run)).collect()
     }
 
     fn used_mains(&self) -> Vec<(usize, Main)> {

@@ -142,7 +142,7 @@ pub struct RouteForm {
     /// The highest speed code.
     #[schemars(range(max = 7))]
     pub speed_code: u8,
-    /// The highest speed code on its overlap; null or absent: that of the route.
+    /// The highest speed code on its overlap; absent: that of the route.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 7))]
     pub overlap_speed_code: Option<u8>,

@@ -51,13 +51,18 @@ impl Route<'_> {
     fn json(&self, draw: &mut Draw, cab: bool, overlaps: bool) -> Value {
         let path: Vec<Value> = self.path.iter().map(|(circuit, points)| element((circuit, points))).collect();
         let overlap = if overlaps { element((self.overlap.0, &self.overlap.1)) } else { element(("", "")) };
-        json!({
+        let mut route = json!({
             "name": self.name, "heading": self.heading, "entry": [self.approach[0]], "approach": self.approach,
             "path": path, "overlap": overlap, "beyond": [self.beyond], "continuing": self.continuing,
             "conflicts": self.conflicts, "from": self.from, "to": self.to, "cab_signalled": cab,
             "drive_cycles": draw.from(1, 7), "release_cycles": draw.one(&[1, 2, 4, 8, 20]), "stay_cycles": draw.from(1, 5),
-            "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]), "overlap_speed_code": draw.one(&[json!(null), json!(1), json!(4), json!(7)]),
-        })
+            "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]),
+        });
+        // Absent, it is that of the route.
+        if let Some(code) = draw.one(&[None, Some(1), Some(4), Some(7)]) {
+            route["overlap_speed_code"] = code.into();
+        }
+        route
     }
 }
 
