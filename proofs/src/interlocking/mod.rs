@@ -179,10 +179,15 @@ fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u16) -> Rout
         drive: Ticks(e.word("drive time (cycles)", 1..=3)),
         release: Ticks(e.word("release time (cycles)", 1..=3)),
         stay: Ticks(e.word("stay time (cycles)", 1..=3)),
-        speed: SpeedCode(any_byte(e, "speed code", 0..=3)),
-        overlap_speed: SpeedCode(any_byte(e, "speed code of the overlap", 0..=3)),
-        cab_signalled: any_flag(e, "all trains are cab-signalled (odd: yes)"),
+        ..any_speeds(e)
     }
+}
+
+/// Any speeds of a route and of its overlap, from one value, and any trains.
+fn any_speeds<E: Engine + ?Sized, const P: usize>(e: &mut E) -> Route<P> {
+    let [route, overlap] = e.word("speed code, and 256 times that of the overlap", 0..=3).to_le_bytes();
+    let cab_signalled = any_flag(e, "all trains are cab-signalled (odd: yes)");
+    Route { speed: SpeedCode(route), overlap_speed: SpeedCode(overlap), cab_signalled, ..Route::NONE }
 }
 
 /// Any plan, as far as the interlocking looks at it.
