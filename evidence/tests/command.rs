@@ -252,7 +252,8 @@ fn a_line_with_stations_is_held_against_them() {
     assert!(outcomes(&out).is_empty());
 
     let text_of = std::fs::read_to_string(config).expect("there");
-    std::fs::write(config, text_of.replace("life_ms = 2500", "life_ms = 2970")).expect("written");
+    assert_eq!(text_of.matches("life_ms = 3300").count(), 1, "the example's life of a telegram");
+    std::fs::write(config, text_of.replace("life_ms = 3300", "life_ms = 3320")).expect("written");
     let run = bare(&out, &["--config", config]);
     assert_eq!(run.status.code(), Some(1), "{}", text(&run));
     let found = outcomes(&out);
