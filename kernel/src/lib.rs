@@ -39,6 +39,7 @@ pub mod block;
 pub mod code;
 pub mod distance;
 pub mod duplex;
+pub mod heading;
 pub mod interlocking;
 pub mod pattern;
 pub mod permitted;

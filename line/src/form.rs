@@ -206,8 +206,8 @@ pub enum End {
 pub struct Telegram {
     pub station: String,
     pub circuit: String,
-    /// To trains that travel to the left of the layout.
+    /// To trains that travel to the left of the layout: an odd number.
     pub left: Option<u16>,
-    /// To those that travel to the right.
+    /// To those that travel to the right: an even number.
     pub right: Option<u16>,
 }

@@ -89,6 +89,7 @@ rules! {
     SpeedPlausible, "speed-plausible", Engineering, "No speed of a station is implausible to a train.";
     TelegramCircuit, "telegram-circuit", Form, "A telegram section belongs to a circuit of a station.";
     TelegramTwice, "telegram-twice", Engineering, "A section number is sent in one circuit, for one direction of travel.";
+    TelegramDirection, "telegram-direction", Engineering, "A section number is odd for trains that travel to the left, and even for those to the right: so trains know whom it is for.";
     TelegramDiffers, "telegram-differs", Engineering, "A circuit that two stations see has the same section numbers in both.";
     TelegramMissing, "telegram-missing", Engineering, "A circuit in which trains run has a section number for their direction of travel.";
     TelegramSection, "telegram-section", Engineering, "A section number is that of a described section.";

@@ -121,6 +121,8 @@ impl Device {
             moved: Some(Moved::STANDING),
             speed: Some(speed),
             line: (!device.told).then_some(LineKind::Analog),
+            // No telegram is sent on a line of codes.
+            facing: None,
         };
         device.told = true;
         let (state, cab) = self.train.step(device.state, antennas);

@@ -7,6 +7,7 @@ use atc_kernel::aspect::{self, Acceptance, AspectId, AspectSet, AspectTable, Tim
 use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES, Millihertz};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::duplex::{Duplex, output};
+use atc_kernel::heading::Heading;
 use atc_kernel::pattern::Deceleration;
 use atc_kernel::permitted::{self, Basis, Fixed, Heard, LineKind, Permitted, Settings, Target};
 use atc_kernel::position::{self, Correction, Interval, Measured, Millibels, Moved, Position, Spacing, Table};
@@ -94,9 +95,15 @@ enum Wrong {
     Zero,
     /// The permission of the cycle before is supervised.
     Late,
+    /// Telegrams for the other direction of travel count.
+    Against,
+    /// Telegrams count before the direction of travel is known.
+    Unknown,
+    /// What was known is kept when the train changes ends.
+    Kept,
 }
 
-const WRONG: [Wrong; 10] = [
+const WRONG: [Wrong; 13] = [
     Wrong::Unaccepted,
     Wrong::OtherTable,
     Wrong::Carrier,
@@ -107,6 +114,9 @@ const WRONG: [Wrong; 10] = [
     Wrong::Standing,
     Wrong::Zero,
     Wrong::Late,
+    Wrong::Against,
+    Wrong::Unknown,
+    Wrong::Kept,
 ];
 
 /// One cycle of the parts, in the order of the picture in `spec/train.md`; `last` is what was permitted before.
@@ -119,6 +129,9 @@ fn glue(
 ) -> (State<5>, Cab) {
     let table = parts.permitted.settings().speeds;
     let is = |kind| wrong == Some(kind);
+    // TRN-12.
+    let kept = state.facing == seen.facing || is(Wrong::Kept);
+    let state = if kept { state } else { State::INITIAL };
     // TRN-1, TRN-2: a pair names a speed, the speed has a rank, the rank is detected; what is displayed has a speed again.
     let pair = match (seen.main.code, seen.sub.code) {
         (Some(main), Some(sub)) => (parts.codes.main().identify(main), parts.codes.sub().identify(sub)),
@@ -148,8 +161,14 @@ fn glue(
             _ => {}
         }
     }
-    let main = main.filter(|main| main.speed.rank() < 5);
-    let sub = sub.filter(|sub| sub.curve.rank() < 5 && sub.restriction.rank() < 5);
+    // TRN-11: odd is left.
+    let ahead = |section: SectionId| match seen.facing {
+        Some(Heading::Left) => section.0 & 1 == 1 || is(Wrong::Against),
+        Some(Heading::Right) => section.0 & 1 == 0 || is(Wrong::Against),
+        None => is(Wrong::Unknown),
+    };
+    let main = main.filter(|main| main.speed.rank() < 5 && ahead(main.section));
+    let sub = sub.filter(|sub| sub.curve.rank() < 5 && sub.restriction.rank() < 5 && ahead(sub.section));
 
     // TRN-5, TRN-6, TRN-4, TRN-9.
     let anything = if is(Wrong::Standing) { Moved::STANDING } else { Moved::new(i16::MIN, i16::MAX).unwrap() };
@@ -178,7 +197,11 @@ fn glue(
     };
     let given = Speeds { measured: seen.speed, permitted: permitted_speed.map(RawKmhTenths) };
     let brake = supervision::step(parts.supervision, state.brake, given);
-    (State { acceptance, permitted, position: place, brake }, Cab { display, permission, position: place, brake })
+    let facing = seen.facing;
+    (
+        State { acceptance, permitted, position: place, brake, facing },
+        Cab { display, permission, position: place, brake },
+    )
 }
 
 /// Numbers that look random, always the same ones.
@@ -209,11 +232,14 @@ struct Ride {
     /// Until this cycle no code is heard.
     uncoded: u64,
     code: usize,
+    /// How the train faces, as far as it is known.
+    facing: Option<Heading>,
 }
 
 impl Ride {
     fn new(seed: u64) -> Self {
-        Self { dice: Dice(seed), place: 0, speed: 12_000, cycle: 0, counters: [0; 2], silent: 0, uncoded: 0, code: 4 }
+        let (dice, facing) = (Dice(seed), Some(Heading::Left));
+        Self { dice, place: 0, speed: 12_000, cycle: 0, counters: [0; 2], silent: 0, uncoded: 0, code: 4, facing }
     }
 
     /// One cycle of 100 ms.
@@ -223,7 +249,13 @@ impl Ride {
         self.speed = (self.speed + i64::try_from(dice.below(801)).unwrap() - 400).clamp(-2000, 25_000);
         let by = self.speed / 10;
         self.place += by;
-        let section = SectionId(u16::try_from(self.place.div_euclid(SECTION_MM).rem_euclid(50)).unwrap() + 1);
+        if dice.one_in(if self.facing.is_some() { 400 } else { 40 }) {
+            self.facing = [Some(Heading::Left), Some(Heading::Right), None][usize::try_from(dice.below(3)).unwrap()];
+        }
+        // The ground speaks to trains of both directions; now and then this one hears what is for the other.
+        let left = (self.facing != Some(Heading::Right)) != dice.one_in(12);
+        let number = u16::try_from(self.place.div_euclid(SECTION_MM).rem_euclid(50)).unwrap();
+        let section = SectionId(2 * number + u16::from(left));
         let to_exit = SECTION_MM - self.place.rem_euclid(SECTION_MM);
         if dice.one_in(300) {
             self.silent = self.cycle + dice.below(60);
@@ -297,6 +329,7 @@ impl Ride {
                 Some(RawKmhTenths(i32::try_from(self.speed * 36 / 1000).unwrap()))
             },
             line: dice.one_in(90).then_some(told),
+            facing: self.facing,
         }
     }
 }
@@ -530,6 +563,8 @@ fn flips(state: State<5>) -> Vec<State<5>> {
     }
     let brakes = [Brake::Release, Brake::Service, Brake::Emergency].into_iter().filter(|brake| *brake != state.brake);
     all.extend(brakes.map(|brake| State { brake, ..state }));
+    let ways = [None, Some(Heading::Left), Some(Heading::Right)].into_iter().filter(|facing| *facing != state.facing);
+    all.extend(ways.map(|facing| State { facing, ..state }));
     all
 }
 

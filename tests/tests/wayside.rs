@@ -79,7 +79,7 @@ fn signals() -> SignalPlan {
     let facing = |section, gradient| Facing { section: SectionId(section), gradient: Gradient(gradient), curve };
     let mut circuits = [None; MAX_CIRCUITS];
     for (number, circuit) in (0_u16..6).zip(&mut circuits) {
-        *circuit = Some(Fixed { left: facing(100 + number, -3), right: facing(200 + number, 5) });
+        *circuit = Some(Fixed { left: facing(101 + 2 * number, -3), right: facing(200 + 2 * number, 5) });
     }
     let mut speeds = [None; 8];
     for (code, speed) in SPEEDS.into_iter().enumerate() {
@@ -316,8 +316,8 @@ impl<'a> Glue<'a> {
             let lengths = self.station.plan().lengths.iter().enumerate();
             let beyond: u16 = lengths.filter(|it| movement.hold.meets(CircuitSet::nth(it.0))).map(|it| it.1.0).sum();
             let rank = |speed: u16| aspects().aspect(KmhTenths(speed)).expect("a rank");
-            let base = if heading == Heading::Left { 100 } else { 200 };
-            let section = SectionId(base + u16::try_from(number).expect("small"));
+            let base = if heading == Heading::Left { 101 } else { 200 };
+            let section = SectionId(base + 2 * u16::try_from(number).expect("small"));
             let main = Main {
                 section,
                 counter: Counter(self.counters[number].0),
@@ -539,4 +539,9 @@ fn a_list_in_the_wrong_order_is_refused() {
         it.signals.circuits[5] = fixed;
     });
     assert!(matches!(twice, WaysideError::SectionNumberTwice(_)), "{twice:?}");
+    let other = refused(&|it| {
+        let Fixed { left, right } = it.signals.circuits[5].expect("described");
+        it.signals.circuits[5] = Some(Fixed { left: right, right: left });
+    });
+    assert!(matches!(other, WaysideError::SectionNumberOfOther(_)), "{other:?}");
 }

@@ -1,11 +1,12 @@
 //! ATC: from the shared table to the stop circuit, the speed code and the telegram of each circuit.
 
 use super::code::SpeedCode;
-use super::layout::{Heading, Layout};
+use super::layout::Layout;
 use super::set::{CircuitId, CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::table::Contents;
 use crate::distance::Metres;
+use crate::heading::Heading;
 
 /// How many grants in a row one telegram looks over: a train learns at most so many routes or segments ahead.
 pub const MAX_LINKS: usize = 4;

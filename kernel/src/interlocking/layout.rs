@@ -4,6 +4,7 @@ use super::code::{MAX_CODES, SpeedCode};
 use super::limits::SpeedLimits;
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
 use crate::distance::Metres;
+use crate::heading::Heading;
 use crate::time::Ticks;
 
 /// The most track circuits of a station.
@@ -11,26 +12,6 @@ pub const MAX_CIRCUITS: usize = 64;
 
 /// The most points of a station.
 pub const MAX_POINTS: usize = 32;
-
-/// A direction of travel: towards the ends of circuits that the layout calls left, or right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Heading {
-    /// Towards the left.
-    Left,
-    /// Towards the right.
-    Right,
-}
-
-impl Heading {
-    /// The other direction.
-    #[must_use]
-    pub const fn opposite(self) -> Self {
-        match self {
-            Self::Left => Self::Right,
-            Self::Right => Self::Left,
-        }
-    }
-}
 
 /// One place of a route's path, or its overlap: what is held there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

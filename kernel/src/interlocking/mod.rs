@@ -29,12 +29,13 @@ mod track;
 mod unswept;
 mod works;
 
+pub use crate::heading::Heading;
 pub use atc::{MAX_LINKS, Movement, begins, connect, movement, silent, telegram};
 pub use check::{Broken, Place, Rule};
 pub use code::{MAX_CODES, SpeedCode};
 pub use combined::{Combined, Commands, Memory};
 pub use direction::{Directions, Needs, Travel};
-pub use layout::{Element, Heading, Layout, MAX_CIRCUITS, MAX_POINTS, Plan, Point, Route, Segment, Station};
+pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_POINTS, Plan, Point, Route, Segment, Station};
 pub use limits::SpeedLimits;
 pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_again, refuse_point, refuse_route};

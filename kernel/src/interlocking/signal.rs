@@ -1,9 +1,10 @@
 //! Signals and grants: which routes show proceed, and which circuits each route grants to which train.
 
 use super::code::SpeedCode;
-use super::layout::{Heading, Layout, Route};
+use super::layout::{Layout, Route};
 use super::route::{Phase, RouteState};
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
+use crate::heading::Heading;
 
 /// What the signals look at, at the end of the interlocking's part of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

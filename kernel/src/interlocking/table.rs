@@ -1,9 +1,9 @@
 //! The table that interlocking and ATC share: written once a cycle by the one, read by the other.
 
-use super::layout::Heading;
 use super::set::{CircuitSet, SegmentSet};
 use super::signal::Grant;
 use super::standing::Standing;
+use crate::heading::Heading;
 
 /// The number of a cycle, modulo 2^32: at 100 ms the same comes again after 13 years, at 10 ms after 497 days.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -19,10 +19,21 @@ pub use sequence::{Header, Judgement, Sequence, SequenceError, Stream};
 
 use crate::aspect::AspectId;
 use crate::distance::Metres;
+use crate::heading::Heading;
 
-/// The number of a track section, unique on the line: 0 to 65 535.
+/// The number of a track section for one direction of travel, unique on the line: 0 to 65 535.
+///
+/// An odd number is for trains that travel towards the left, an even one for those towards the right. So what a telegram
+/// is for is in its frame, under its check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SectionId(pub u16);
+
+impl SectionId {
+    /// The direction of travel of the trains that the number is for.
+    pub const fn heading(self) -> Heading {
+        if self.0 & 1 == 1 { Heading::Left } else { Heading::Right }
+    }
+}
 
 /// The running number of a telegram of its stream, modulo 256.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

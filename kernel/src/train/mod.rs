@@ -4,8 +4,8 @@
 //! ([`crate::permitted`]), position and supervision. Here they are put together once, so that nobody has to do it again: no
 //! code is used that was not accepted, no rank without its table, no distance in another section than its own.
 //!
-//! Requirements: `spec/train.md`, TRN-1 to TRN-10. Read in this order: [`Parts`] and [`Train`] (parameters), [`Antennas`],
-//! [`Cab`], [`State`] with its `is_valid`, and the step: [`Train::receive`], then [`Train::act`].
+//! Requirements: `spec/train.md`, TRN-1 to TRN-12. Read in this order: [`Parts`] and [`Train`] (parameters), [`Antennas`],
+//! [`Cab`], [`State`] with its `is_valid`, and the step: [`State::facing`], [`Train::receive`], then [`Train::act`].
 
 mod parameters;
 
@@ -15,6 +15,7 @@ use crate::Machine;
 use crate::aspect::{self, AspectSet, Display};
 use crate::code::Millihertz;
 use crate::distance::Millimetres;
+use crate::heading::Heading;
 use crate::permitted::{self, Heard, LineKind, Permission, Permitted};
 use crate::position::{self, Interval, Measured, Millibels, Moved};
 use crate::speed::{KmhTenths, RawKmhTenths};
@@ -47,6 +48,9 @@ pub struct Antennas {
     pub speed: Option<RawKmhTenths>,
     /// The kind of line that begins here, if the train is told of one in this cycle.
     pub line: Option<LineKind>,
+    /// The direction of travel in which the train faces, by the cab that is taken and by how the train stands on the line;
+    /// `None`: it is not known.
+    pub facing: Option<Heading>,
 }
 
 /// What was received, in the terms of the line: [`Antennas`] as [`Train::receive`] reads them. Nothing of it is accepted yet.
@@ -95,6 +99,8 @@ pub struct State<const N: usize> {
     pub position: Option<Interval>,
     /// Of the supervision: the last brake command.
     pub brake: Brake,
+    /// The direction of travel that all this is of.
+    pub facing: Option<Heading>,
 }
 
 impl<const N: usize> State<N> {
@@ -104,7 +110,16 @@ impl<const N: usize> State<N> {
         permitted: permitted::State::INITIAL,
         position: None,
         brake: Brake::Emergency,
+        facing: None,
     };
+
+    /// What is remembered by a train that now faces so: nothing, if it faced otherwise.
+    #[must_use]
+    pub fn facing(self, facing: Option<Heading>) -> Self {
+        //= spec/train.md#trn-12-changing-ends
+        //# A device that learns of another direction of travel than before, or that its direction is no longer known, MUST begin anew.
+        if self.facing == facing { self } else { Self { facing, ..Self::INITIAL } }
+    }
 
     /// Whether `train` can be in this state: each part is in a valid one, and a train that measures no position has none.
     pub fn is_valid(&self, train: &Train<N>) -> bool {
@@ -121,7 +136,7 @@ impl<const N: usize> State<N> {
 
 /// One cycle.
 pub fn step<const N: usize>(train: &Train<N>, state: State<N>, antennas: Antennas) -> (State<N>, Cab) {
-    train.act(state, train.receive(antennas))
+    train.act(state.facing(antennas.facing), train.receive(antennas))
 }
 
 impl<const N: usize> Train<N> {
@@ -129,8 +144,8 @@ impl<const N: usize> Train<N> {
     pub fn receive(&self, antennas: Antennas) -> Received {
         Received {
             detected: self.detect(antennas.main.code, antennas.sub.code),
-            main: self.main(antennas.main.frame),
-            sub: self.sub(antennas.sub.frame),
+            main: self.main(antennas.main.frame).filter(|main| is_for(main.section, antennas.facing)),
+            sub: self.sub(antennas.sub.frame).filter(|sub| is_for(sub.section, antennas.facing)),
             measured: Measured {
                 first: antennas.first,
                 second: antennas.second,
@@ -169,7 +184,10 @@ impl<const N: usize> Train<N> {
             permitted: permission.speed.map(|speed| RawKmhTenths(i32::from(speed.0))),
         };
         let brake = supervision::step(parts.supervision, state.brake, speeds);
-        (State { acceptance, permitted, position, brake }, Cab { display, permission, position, brake })
+        (
+            State { acceptance, permitted, position, brake, facing: state.facing },
+            Cab { display, permission, position, brake },
+        )
     }
 
     /// The aspect whose code the two frequencies are, as a set of one; empty if they are of none.
@@ -212,6 +230,13 @@ impl<const N: usize> Train<N> {
         let other = main.is_some_and(|main| state.section().is_none_or(|last| last.0 != main.section.0));
         position::step(device, if other { None } else { state.position }, measured)
     }
+}
+
+/// Whether a telegram of this section is for a train that faces so.
+fn is_for(section: SectionId, facing: Option<Heading>) -> bool {
+    //= spec/train.md#trn-11-the-direction-of-travel
+    //# A telegram of a section whose number is for the other direction of travel MUST be treated as not received, and so MUST any telegram while the direction is not known.
+    facing == Some(section.heading())
 }
 
 /// How far the train can have moved towards the exit.

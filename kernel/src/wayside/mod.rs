@@ -93,7 +93,9 @@ pub enum WaysideError {
     NoLength(CircuitId),
     /// The curve limit of this circuit is not in the trains' table.
     UnknownCurve(CircuitId),
-    /// A section number of this circuit stands for another circuit, or for the other direction of travel.
+    /// A section number of this circuit is even for trains towards the left, or odd for those towards the right.
+    SectionNumberOfOther(CircuitId),
+    /// A section number of this circuit stands for another circuit.
     SectionNumberTwice(CircuitId),
     /// The neighbour's permission would never count.
     NoLife,

@@ -11,7 +11,7 @@ use crate::telegram::{Gradient, Length, SectionId};
 /// What trains of one direction of travel are told of a circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facing {
-    /// The number by which they know it. Trains of the other direction know it by another one.
+    /// The number by which they know it: odd for those towards the left, even for those towards the right.
     pub section: SectionId,
     /// The least favourable gradient from any place of the circuit to the points where its telegrams may stop a train.
     pub gradient: Gradient,
@@ -252,7 +252,11 @@ pub fn circuits(
             return Err(WaysideError::UnknownCurve(circuit));
         }
         //= spec/wayside.md#way-19-two-numbers-a-circuit
-        //# The constructor MUST reject signals in which one section number stands for two circuits, or for both directions of travel of one.
+        //# The constructor MUST reject signals in which one section number stands for two circuits, or in which a section number is even for trains towards the left or odd for those towards the right.
+        let wrong = |heading| fixed.facing(heading).section.heading() != heading;
+        if wrong(Heading::Left) || wrong(Heading::Right) {
+            return Err(WaysideError::SectionNumberOfOther(circuit));
+        }
         if clashes(&plan.circuits, index, fixed) {
             return Err(WaysideError::SectionNumberTwice(circuit));
         }
@@ -261,14 +265,14 @@ pub fn circuits(
     Ok(kept)
 }
 
-/// Whether a number of the circuit at `index` stands for both directions of travel, or for a circuit before it.
+/// Whether a number of the circuit at `index` stands for a circuit before it, for the same direction of travel.
 #[inline(never)]
 fn clashes(circuits: &[Option<Fixed>; MAX_CIRCUITS], index: usize, fixed: Fixed) -> bool {
     let (left, right) = (fixed.left.section, fixed.right.section);
-    let mut clash = left == right;
+    let mut clash = false;
     for its in circuits.iter().take(index).flatten() {
-        clash |= its.left.section == left || its.left.section == right;
-        clash |= its.right.section == left || its.right.section == right;
+        clash |= its.left.section == left;
+        clash |= its.right.section == right;
     }
     clash
 }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::Heading;
+use atc_kernel::heading::Heading;
+use atc_kernel::telegram::SectionId;
 use atc_layout::form::Circuit;
 
 use super::{Judged, NO_SIGNAL, NO_STATION, Sound, Station, count, finding, judged};
@@ -19,9 +20,9 @@ pub struct Telegram {
     pub station: String,
     /// The circuit, as its layout calls it.
     pub circuit: String,
-    /// The number that is sent to trains that travel to the left of the layout.
+    /// The number that is sent to trains that travel to the left of the layout: odd.
     pub left: Option<u16>,
-    /// The number that is sent to those that travel to the right.
+    /// The number that is sent to those that travel to the right: even.
     pub right: Option<u16>,
 }
 
@@ -79,6 +80,7 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
     vec![
         judged(Rule::TelegramCircuit, count(line.telegrams().len(), "circuit"), named(line)),
         judged(Rule::TelegramTwice, scope(), with(&|| twice(&sent))),
+        judged(Rule::TelegramDirection, scope(), with(&|| against(&sent))),
         judged(Rule::TelegramDiffers, scope(), with(&|| differs(&sent))),
         judged(
             Rule::TelegramMissing,
@@ -147,6 +149,23 @@ fn named(line: &Line) -> Judged {
         }
     }
     Ok(findings)
+}
+
+fn against(sent: &[Sent<'_>]) -> Vec<Finding> {
+    let wrong = sent.iter().filter(|one| SectionId(one.number).heading() != one.heading);
+    wrong
+        .map(|one| {
+            let towards = side(one.heading);
+            let (is, right) = if towards == "left" { ("even", "odd") } else { ("odd", "even") };
+            let (circuit, station) = (&one.circuit.name, one.station.name());
+            let what = format!(
+                "section {} is {is}, and is sent to trains to the {towards} in circuit {circuit} of {station}",
+                one.number
+            );
+            let place = one.station.at(&circuit.span);
+            finding(one.at.clone(), place, what, format!("give {towards} an {right} number"))
+        })
+        .collect()
 }
 
 fn twice(sent: &[Sent<'_>]) -> Vec<Finding> {

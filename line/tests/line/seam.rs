@@ -128,13 +128,15 @@ fn what_two_parts_of_the_line_break_together() {
         (
             "telegram-differs",
             "\"Eastham\", circuit = \"E2\", left = 15,",
-            "\"Eastham\", circuit = \"E2\", left = 1000,",
+            "\"Eastham\", circuit = \"E2\", left = 1001,",
         ),
     ] {
         // A number that no section has is told by its own rule, too, so it is given one.
-        let more = "    { number = 1000, length_m = 300, gradient_permille = -12, limit_km_h = 75 },\n]\n\n[times]";
+        let more = "    { number = 1001, length_m = 300, gradient_permille = -12, limit_km_h = 75 },\n]\n\n[times]";
         found(rule, &[(line, from, to), (line, "]\n\n[times]", more)], line, line);
     }
+    let other = ("circuit = \"W2\", left = 1, right = 2", "circuit = \"W2\", left = 2, right = 1");
+    found("telegram-direction", &[(line, other.0, other.1)], line, "westham.toml");
     found("one-wrong-code", &[(line, "{ main_hz = 15, sub_hz = 16.5,", "{ main_hz = 15, sub_hz = 12,")], line, "");
     let third = "file = \"eastham.toml\"\n\n[[station]]\nfile = \"eastham.toml\"";
     found("station-twice", &[(line, "file = \"eastham.toml\"", third)], line, line);

@@ -6,6 +6,7 @@ use crate::drawn::{Cycle, Drawn};
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::train::{Config, OnBoard, Step};
+use atc_protocol::names::Named;
 
 impl Drawn for OnBoard {
     fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
@@ -35,6 +36,7 @@ fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
             received("codes", Tone::Signal, cycles, |step| step.main.code_hz.is_some() && step.sub.code_hz.is_some()),
             received("main telegrams", Tone::Limit, cycles, |step| step.main.telegram.is_some() || step.main.frame.is_some()),
             received("sub telegrams", Tone::Limit, cycles, |step| step.sub.telegram.is_some() || step.sub.frame.is_some()),
+            facing_lane(cycles),
             speed_lane(&measured, &permitted),
             display_lane(&display),
             brake_lane("brake", &brakes, &brakes),
@@ -69,6 +71,16 @@ fn received(label: &str, tone: Tone, cycles: &[Cycle<OnBoard>], there: fn(&Step)
     let marks = spans(cycles.iter().map(|cycle| there(&cycle.step))).into_iter().filter(|span| span.2);
     let marks = marks.map(|(from, to, _)| Mark::Bar { from, to, tone, texts: Vec::new() });
     Lane { label: label.to_owned(), first: false, height: 26, marks: marks.collect() }
+}
+
+/// Which way the train faces.
+fn facing_lane(cycles: &[Cycle<OnBoard>]) -> Lane {
+    let marks = spans(cycles.iter().map(|cycle| cycle.step.facing)).into_iter().map(|(from, to, facing)| {
+        let text = facing.map_or("not known", Named::name);
+        let tone = if facing.is_some() { Tone::Limit } else { Tone::Blank };
+        Mark::Bar { from, to, tone, texts: vec![text.to_owned()] }
+    });
+    Lane { label: "faces".to_owned(), first: false, height: 26, marks: marks.collect() }
 }
 
 /// What is displayed.

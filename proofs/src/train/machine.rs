@@ -75,6 +75,7 @@ harness! {
             moved: Some(received.measured.moved),
             speed: received.speed,
             line: received.line,
+            facing: before.facing,
         };
         let stepped = device.train.step(before, antennas);
         let acted = device.train.act(before, device.train.receive(antennas));

@@ -1,4 +1,4 @@
-//! The on-board device as one machine: theorems T-TRN-1 to T-TRN-7.
+//! The on-board device as one machine: theorems T-TRN-1 to T-TRN-8.
 //!
 //! Every harness is one cycle from any valid state of all parts together, with any parameters and anything received, but
 //! for what its bound says. Where the train, the exits and the stopping points really are, and for how long nothing was
@@ -6,6 +6,7 @@
 
 mod brake;
 mod distance;
+mod facing;
 mod machine;
 mod reception;
 mod silence;
@@ -29,6 +30,7 @@ use atc_kernel::train::{Cab, Parts, Received, State, Train};
 
 pub use brake::{t_trn_2, t_trn_2_only, t_trn_5};
 pub use distance::{t_trn_6, t_trn_6_inside, t_trn_6_moved};
+pub use facing::{t_trn_8, t_trn_8_held};
 pub use machine::{trn_8, trn_machine, trn_valid};
 pub use reception::{t_trn_4, t_trn_4_code};
 pub use silence::{t_trn_3, trn_10};
@@ -49,6 +51,8 @@ pub const ALL: &[Harness] = &[
     t_trn_6::HARNESS,
     t_trn_6_inside::HARNESS,
     t_trn_6_moved::HARNESS,
+    t_trn_8::HARNESS,
+    t_trn_8_held::HARNESS,
     trn_8::HARNESS,
     trn_machine::HARNESS,
     trn_valid::HARNESS,
@@ -162,7 +166,7 @@ fn any_steady_state<E: Engine + ?Sized>(
     let permitted = any_state(e, &line);
     let interval = any_interval(e).filter(|_| position.is_some());
     let device = any_device(e, line, Acceptance { times }, position)?;
-    let state = State { acceptance, permitted, position: interval, brake: any_brake(e) };
+    let state = State { acceptance, permitted, position: interval, brake: any_brake(e), facing: None };
     Some((device, state, detected))
 }
 
@@ -185,7 +189,8 @@ fn any_device_state<E: Engine + ?Sized>(
     let permitted = any_state(e, &line);
     let interval = any_interval(e);
     let device = any_device(e, line, machine, position)?;
-    let state = State { acceptance, permitted, position: interval.filter(|_| position.is_some()), brake: any_brake(e) };
+    let position = interval.filter(|_| position.is_some());
+    let state = State { acceptance, permitted, position, brake: any_brake(e), facing: None };
     Some((device, state))
 }
 

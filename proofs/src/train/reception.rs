@@ -1,5 +1,6 @@
 //! What the antennas give, read: T-TRN-4.
 
+use super::facing::{ahead, any_way};
 use super::{RANKS, any_device, any_moved, codes};
 use crate::permitted::{any_line, knows_main, knows_sub};
 use crate::telegram::any_telegram;
@@ -60,6 +61,7 @@ fn any_antennas<E: Engine + ?Sized>(e: &mut E, main: Carrier, sub: Carrier) -> O
         moved: any_flag(e, "the odometer says it (odd: yes)").then_some(moved),
         speed: crate::supervision::any_speed(e, "measured speed (0.1 km/h, two's complement)").map(RawKmhTenths),
         line: told.then_some(kind),
+        facing: any_way(e, "facing (0: not known, 1: left, else right)"),
     })
 }
 
@@ -72,27 +74,29 @@ fn any_frame<E: Engine + ?Sized>(e: &mut E) -> Option<Frame> {
 }
 
 harness! {
-    /// A frame that is no telegram, that came on the other carrier, or that has a rank that the line has not, is as no frame: what is received is the same
-    /// as without it. (What a cycle without a telegram does is T-PER-8's: ages.) A frame that is a telegram of its carrier, with known ranks,
-    /// is received as it is.
+    /// A frame that is no telegram, that came on the other carrier, that has a rank that the line has not, or that is for trains of the other direction of
+    /// travel, is as no frame, and so is any while the direction is not known: what is received is the same as without it. (What a cycle without a telegram
+    /// does is T-PER-8's: ages.) A frame that is a telegram of its carrier, with known ranks, for the direction in which the train faces, is received as it is.
     t_trn_4(e)
     theorem "T-TRN-4";
-    requirements ["TRN-3"];
-    assumptions ["four-speeds"];
+    requirements ["TRN-3", "TRN-11"];
+    assumptions ["four-speeds", "trains-know-facing"];
     bound "tables of 4 speeds, 32 wrong bits in a frame";
     cases 2;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
     apart [0 1];
     claims {
-        Own: "a telegram of the carrier's own kind with known ranks is received, as it was sent",
-        Other: "a frame of the other kind, one with an unknown rank, and one that is no telegram are as no frame",
+        Own: "a telegram of the carrier's own kind with known ranks, for the direction in which the train faces, is received, as it was sent",
+        Other: "a frame of the other kind, one with an unknown rank, one for the other direction of travel or while that is not known, and one that is no telegram are as no frame",
     }
     covers {
         Received: "a telegram is received",
         Wrong: "a telegram comes on the wrong carrier",
         Unknown: "a telegram has an unknown rank",
         Damaged: "a frame is no telegram",
+        Against: "a telegram is for trains of the other direction of travel",
+        Lost: "a telegram comes while the direction is not known",
     }
     {
         let on_main = e.choose("carrier (0: main, 1: sub)", 2) == 0;
@@ -105,26 +109,28 @@ harness! {
         let received = device.train.receive(antennas);
         let without = device.train.receive(Antennas { main: silent, sub: silent, ..antennas });
         let read = decode(frame).ok();
-        let (mut own, mut known) = (false, false);
+        let (mut own, mut known, mut for_it) = (false, false, false);
         let mut right = true;
         match read {
             Some(Telegram::Main(main)) => {
-                (own, known) = (on_main, knows_main(main));
+                (own, known, for_it) = (on_main, knows_main(main), ahead(main.section, antennas.facing));
                 right = received.main == Some(main) && received.sub.is_none();
             }
             Some(Telegram::Sub(sub)) => {
-                (own, known) = (!on_main, knows_sub(sub));
+                (own, known, for_it) = (!on_main, knows_sub(sub), ahead(sub.section, antennas.facing));
                 right = received.sub == Some(sub) && received.main.is_none();
             }
             None => {}
         }
-        let good = own && known;
+        let good = own && known && for_it;
         e.claim(Claim::Own as u32, !good || right);
         e.claim(Claim::Other as u32, good || received == without);
         e.cover(Cover::Received as u32, good && right);
         e.cover(Cover::Wrong as u32, read.is_some() && !own && known);
         e.cover(Cover::Unknown as u32, own && !known);
         e.cover(Cover::Damaged as u32, read.is_none());
+        e.cover(Cover::Against as u32, own && known && !for_it && antennas.facing.is_some());
+        e.cover(Cover::Lost as u32, own && known && antennas.facing.is_none());
     }
 }
 

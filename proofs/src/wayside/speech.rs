@@ -628,8 +628,8 @@ harness! {
 }
 
 harness! {
-    /// The circuits' data are accepted if and only if every circuit in which trains may be is described and has a length, curves are in the trains' table, and no section
-    /// number stands twice. The error names a rule that is broken. What is kept is what was given, with the layout's lengths.
+    /// The circuits' data are accepted if and only if every circuit in which trains may be is described and has a length, curves are in the trains' table, no section
+    /// number stands twice, and odd numbers are for trains to the left, even ones for those to the right. The error names a rule that is broken. What is kept is what was given, with the layout's lengths.
     way_signals(e)
     theorem "T-WAY-8";
     requirements ["WAY-18", "WAY-19"];
@@ -646,6 +646,7 @@ harness! {
         Accepted: "signals of two circuits are accepted",
         Curve: "a curve limit that trains do not know",
         Twice: "a section number stands twice",
+        Other: "a number of the other direction of travel",
         Missing: "a circuit in which trains may be is not described",
     }
     {
@@ -665,17 +666,19 @@ harness! {
                 twice |= earlier < place && ids[place] == ids[earlier];
             }
         }
+        let facing = ids[0] % 2 == 1 && ids[1] % 2 == 0 && ids[2] % 2 == 1 && ids[3] % 2 == 0;
         let described = used.bits() < 4;
         let long = lengths[0].0 > 0 && lengths[1].0 > 0;
         let known = |rank: AspectId| usize::from(rank.rank()) <= SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
-        e.claim(Claim::Exact as u32, made.is_ok() == (described && long && curves && !twice));
+        e.claim(Claim::Exact as u32, made.is_ok() == (described && long && curves && !twice && facing));
         let told = match made.as_ref().err() {
             None => true,
             Some(WaysideError::CircuitWithoutSignals(_)) => !described,
             Some(WaysideError::NoLength(_)) => !long,
             Some(WaysideError::UnknownCurve(_)) => !curves,
             Some(WaysideError::SectionNumberTwice(_)) => twice,
+            Some(WaysideError::SectionNumberOfOther(_)) => !facing,
             Some(_) => false,
         };
         e.claim(Claim::Told as u32, told);
@@ -692,6 +695,7 @@ harness! {
         e.cover(Cover::Accepted as u32, made.is_ok());
         e.cover(Cover::Curve as u32, matches!(made, Err(WaysideError::UnknownCurve(_))));
         e.cover(Cover::Twice as u32, matches!(made, Err(WaysideError::SectionNumberTwice(_))));
+        e.cover(Cover::Other as u32, matches!(made, Err(WaysideError::SectionNumberOfOther(_))));
         e.cover(Cover::Missing as u32, matches!(made, Err(WaysideError::CircuitWithoutSignals(_))));
     }
 }

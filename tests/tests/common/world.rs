@@ -267,7 +267,7 @@ pub fn signals(circuits: usize) -> SignalPlan {
         |section: usize| Facing { section: SectionId(u16::try_from(section).unwrap()), gradient: Gradient(0), curve };
     let mut all = [None; MAX_CIRCUITS];
     for (number, circuit) in all.iter_mut().enumerate().take(circuits) {
-        *circuit = Some(Fixed { left: facing(2 * number), right: facing(2 * number + 1) });
+        *circuit = Some(Fixed { left: facing(2 * number + 1), right: facing(2 * number) });
     }
     let codes = CodeTable::new(nominal(10_000), nominal(12_000), pairs).unwrap();
     SignalPlan { circuits: all, speeds: told, aspects, codes }

@@ -4,6 +4,7 @@ use crate::{BEYOND_MM, BRAKE_MM_S2, CYCLE_S, EXPIRY, FRAME, SLOPE, WIDTH, WORST}
 use atc_kernel::aspect::AspectId;
 use atc_kernel::code::Millihertz;
 use atc_kernel::distance::Metres;
+use atc_kernel::heading::Heading;
 use atc_kernel::permitted::LineKind;
 use atc_kernel::position::{Millibels, Moved};
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
@@ -212,7 +213,8 @@ impl World {
 
     /// What a telegram of this section says now.
     fn telegram(&mut self, stream: usize, number: usize) -> Telegram {
-        let section = SectionId(u16::try_from(number).unwrap() + 1);
+        // They all travel to the left.
+        let section = SectionId(2 * u16::try_from(number).unwrap() + 1);
         let counter = Counter(self.counters[stream]);
         let rank = |rank: u8| AspectId::new(rank).unwrap();
         let Section { begin, exit, .. } = self.line[number];
@@ -337,6 +339,7 @@ impl World {
             moved: if self.dice.one_in(60) { None } else { odometer },
             speed: if self.dice.one_in(300) { None } else { Some(speed) },
             line: (passes || self.cycle == 1 || self.dice.one_in(70)).then_some(kind),
+            facing: Some(Heading::Left),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Walks of `train`: the telegrams of `permitted-speed` in their carriers, code frequencies at the ends of their bands for times at the limits
-//! of acceptance, levels, an odometer that is wide or silent, and a measured speed around what was permitted last.
+//! of acceptance, levels, an odometer that is wide or silent, a measured speed around what was permitted last, and telegrams of
+//! both directions of travel for a train that faces one of them, changes ends, or does not know.
 
 use serde_json::{Value, json};
 
@@ -108,6 +109,8 @@ struct Ride {
     /// The difference of the levels, in hundredths of a decibel.
     difference: i64,
     measures: bool,
+    /// How the train faces: left, right, or it is not known.
+    facing: &'static str,
 }
 
 fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
@@ -133,6 +136,7 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
         stays: around(&[operate, expiry, recovery, shortened, interruption, 1], 1),
         difference: random.between(0, 2400),
         measures: config.get("position").is_some(),
+        facing: "left",
     })
 }
 
@@ -161,13 +165,26 @@ impl Ride {
     }
 }
 
+/// The number of a section for trains to the left, or to the right.
+fn numbered(section: &Value, left: bool) -> Value {
+    section.as_i64().map_or(Value::Null, |section| (section % 32_768 * 2 + i64::from(left)).into())
+}
+
 impl Walk for Ride {
     fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value {
         let heard = self.telegrams.next(random, None);
         let [main, sub] = self.codes(random);
         let mut step = json!({"main": {"code_hz": main}, "sub": {"code_hz": sub}});
+        if random.one_in(40) {
+            self.facing = ["left", "right", "unknown"][random.below(3)];
+        }
+        if self.facing != "unknown" {
+            step["facing"] = self.facing.into();
+        }
         for (kind, other) in [("main", "sub"), ("sub", "main")] {
-            if let Some(telegram) = heard.get(kind) {
+            if let Some(mut telegram) = heard.get(kind).cloned() {
+                let ahead = (self.facing != "right") != random.one_in(15);
+                telegram["section"] = numbered(&telegram["section"], ahead);
                 // On the other carrier it is no telegram.
                 let carrier = if random.one_in(15) { other } else { kind };
                 step[carrier]["telegram"] = json!({kind: telegram});

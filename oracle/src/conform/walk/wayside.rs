@@ -55,7 +55,7 @@ fn three(mut config: Value) -> Value {
         }
     }
     let side = |section: u32| json!({"section": section, "gradient_permille": 5, "curve_km_h": 75});
-    config["signals"]["circuits"]["W3"] = json!({"left": side(106), "right": side(206)});
+    config["signals"]["circuits"]["W3"] = json!({"left": side(113), "right": side(212)});
     let block = |name: &str| json!({"circuits": [name], "max_trains": 2, "tail_hold_sections": 1, "pass_ms": 3000});
     config["counted"]["blocks"] = json!([block("W3"), block("W2"), block("W1")]);
     config
@@ -100,10 +100,10 @@ fn wrong() -> Vec<Value> {
         change(|config| config["counted"]["blocks"] = json!([])),
         change(|config| config["signals"]["speeds_km_h"] = json!([0, 15, 25, 75])),
         change(|config| config["signals"]["codes"]["pairs"][3]["speed_km_h"] = 74.into()),
-        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 203.into()),
-        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 100.into()),
-        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 200.into()),
-        change(|config| config["signals"]["circuits"]["B"]["right"]["section"] = 100.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 206.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 101.into()),
+        change(|config| config["signals"]["circuits"]["B"]["left"]["section"] = 202.into()),
+        change(|config| config["signals"]["circuits"]["B"]["right"]["section"] = 103.into()),
         change(|config| config["signals"]["circuits"]["B"]["right"]["section"] = 200.into()),
         change(|config| config["signals"]["speeds_km_h"] = json!([5, 15, 25, 45, 75])),
         change(|config| config["signals"]["speeds_km_h"] = json!([0, 25, 25, 45, 75])),

@@ -11,6 +11,7 @@ use atc_kernel::train::{self, Antennas, Train};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::interlocking::Heading;
 use super::permitted::{Basis, LineKind};
 use super::supervision::Brake;
 use super::{Machine, position, telegram};
@@ -59,6 +60,9 @@ pub struct Step {
     /// The kind of line that begins here, if the train is told of one in this cycle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<LineKind>,
+    /// The direction of travel in which the train faces; null or absent: it is not known, and no telegram is used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facing: Option<Heading>,
 }
 
 /// One cycle's output.
@@ -116,6 +120,7 @@ impl Step {
             moved: self.moved_m.map(|_| measured.moved),
             speed: self.speed_km_h.map(|speed| RawKmhTenths(speed.0)),
             line: self.line.map(Into::into),
+            facing: self.facing.map(|facing| facing.0),
         })
     }
 }
@@ -141,7 +146,7 @@ impl OnBoard {
 
 impl Machine for OnBoard {
     const NAME: &'static str = "train";
-    const STEP: &'static str = r#"{"main":{"code_hz":22,"telegram":{"main":{"section":7,"counter":1,"beyond_exit_m":400,"speed_rank":4}}},"sub":{"code_hz":21},"first_db":-21.5,"second_db":-24.25,"moved_m":[1.4,1.6],"speed_km_h":44.9}"#;
+    const STEP: &'static str = r#"{"main":{"code_hz":22,"telegram":{"main":{"section":7,"counter":1,"beyond_exit_m":400,"speed_rank":4}}},"sub":{"code_hz":21},"first_db":-21.5,"second_db":-24.25,"moved_m":[1.4,1.6],"speed_km_h":44.9,"facing":"left"}"#;
     const CONFIG: &'static str =
         r#"{"permitted":{"cycle_ms":10},"acceptance":{"operate_ms":300},"supervision":{"maximum_km_h":400}}"#;
 

@@ -299,10 +299,13 @@ impl Config {
             WaysideError::UnknownCurve(id) => {
                 format!("signals.circuits.{}.curve_km_h is not in signals.speeds_km_h", circuit(id))
             }
-            WaysideError::SectionNumberTwice(id) => format!(
-                "signals.circuits.{} has a section number that stands for another circuit, or for both directions of travel",
+            WaysideError::SectionNumberOfOther(id) => format!(
+                "signals.circuits.{} has a section number of the other direction of travel; left.section must be odd and right.section even",
                 circuit(id)
             ),
+            WaysideError::SectionNumberTwice(id) => {
+                format!("signals.circuits.{} has a section number that stands for another circuit", circuit(id))
+            }
             WaysideError::NoLife => format!("life_ms is {} ms; it must be one cycle at least", self.life_ms),
             WaysideError::LifeOutlastsTurn => {
                 format!(

@@ -37,7 +37,7 @@ fn changed(from: &str, to: &str) -> tempfile::TempDir {
 fn the_example_breaks_no_rule() {
     let output = check(&root(), &["line/examples/line.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert_eq!(text(&output.stdout), "line/examples/line.toml: no broken rule; 47 checks met\n");
+    assert_eq!(text(&output.stdout), "line/examples/line.toml: no broken rule; 48 checks met\n");
     assert!(output.stderr.is_empty());
     let readme = fs::read_to_string(root().join("line/README.md")).expect("there");
     assert!(readme.contains(text(&output.stdout)));

@@ -8,4 +8,5 @@ mod properties;
 mod refusals;
 mod signal;
 mod spec_words;
+mod train;
 mod wayside;

@@ -264,8 +264,11 @@ fn every_broken_rule_is_named() {
             "signals.codes.pairs has no pair for 0 km/h, which code 0",
         ),
         (with(&|config| config["signals"]["codes"]["pairs"] = json!([])), "signals.codes.pairs is empty"),
-        (b("section", 100.into()), "signals.circuits.B has a section number that stands for another circuit"),
-        (b("section", 203.into()), "or for both directions of travel"),
+        (b("section", 101.into()), "signals.circuits.B has a section number that stands for another circuit"),
+        (
+            b("section", 206.into()),
+            "signals.circuits.B has a section number of the other direction of travel; left.section must be odd",
+        ),
         (b("curve_km_h", 74.into()), "signals.circuits.B.left.curve_km_h is 74; it must be one of signals.speeds_km_h"),
         (b("gradient_permille", 128.into()), "signals.circuits.B.left.gradient_permille is 128"),
         (

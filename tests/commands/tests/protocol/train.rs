@@ -1,0 +1,71 @@
+//! Machine `train` of protocol 1: telegrams of the other direction of travel, and a train that changes ends.
+
+use atc_tests::session::{converse, start, step};
+use serde_json::{Value, json};
+
+/// In cycles of 100 ms a telegram every second one, for `section`; the train stands. With it, how the train faces.
+fn session(cycles: &[(u16, Option<&str>)]) -> Vec<Value> {
+    let begin = start("train", &json!({"permitted": {"cycle_ms": 100}}).to_string());
+    let steps = cycles.iter().enumerate().map(|(cycle, (section, facing))| {
+        let mut body = json!({"moved_m": [0, 0], "speed_km_h": 0});
+        let counter = cycle / 2 % 256;
+        if cycle % 2 == 0 {
+            let main = json!({"section": section, "counter": counter, "beyond_exit_m": 400, "speed_rank": 7});
+            body["main"] = json!({"telegram": {"main": main}});
+        } else {
+            let sub = json!({
+                "section": section, "counter": counter, "length_m": 200, "gradient_permille": 0,
+                "curve_rank": 7, "restriction_rank": 7,
+            });
+            body["sub"] = json!({"telegram": {"sub": sub}});
+        }
+        if let Some(facing) = facing {
+            body["facing"] = (*facing).into();
+        }
+        step(&body.to_string())
+    });
+    let lines: Vec<String> = std::iter::once(begin).chain(steps).collect();
+    let said = converse(&lines.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(said[0].starts_with("{\"started\""), "{}", said[0]);
+    said[1..].iter().map(|line| serde_json::from_str::<Value>(line).expect("JSON")["output"].clone()).collect()
+}
+
+/// Whether the train may move.
+fn permitted(output: &Value) -> bool {
+    output["permitted_km_h"].as_f64().is_some_and(|speed| speed > 0.0)
+}
+
+#[test]
+fn a_train_takes_no_telegram_of_the_other_direction_of_travel() {
+    let all = |section: u16, facing| session(&[(section, facing); 20]);
+    // Section 7 is for trains to the left, 8 for those to the right.
+    for (section, facing) in [(7, "left"), (8, "right")] {
+        assert!(permitted(&all(section, Some(facing))[19]), "{section} {facing}");
+    }
+    for (section, facing) in [(8, Some("left")), (7, Some("right")), (7, None), (8, None)] {
+        for output in all(section, facing) {
+            assert_eq!((&output["permitted_km_h"], &output["brake"]), (&Value::Null, &"emergency".into()));
+        }
+    }
+}
+
+#[test]
+fn a_train_that_changes_ends_begins_anew() {
+    let left = [(7, Some("left")); 20];
+    let after = |more: (u16, Option<&'static str>)| session(&[&left[..], &[more; 20]].concat());
+    // What is still sent to the left is for others now; the same if the direction is lost.
+    for facing in [Some("right"), None] {
+        let outputs = after((7, facing));
+        assert!(permitted(&outputs[19]));
+        for output in &outputs[20..] {
+            assert_eq!((&output["permitted_km_h"], &output["brake"]), (&Value::Null, &"emergency".into()));
+        }
+    }
+    // The ground has set a route for the other direction: it is used when it is said, and not before.
+    let outputs = after((8, Some("right")));
+    assert_eq!(outputs[20..].iter().position(permitted), outputs.iter().position(permitted));
+    // A train that faces left again knows nothing of before.
+    let back = [(7, Some("left")); 10];
+    let outputs = session(&[&left[..], &[(8, None)], &back].concat());
+    assert!(outputs[20..22].iter().all(|output| !permitted(output)));
+}
