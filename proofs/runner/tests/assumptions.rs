@@ -122,6 +122,7 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("wayside/counter.rs", "ghost.wrapping_add(since.to_le_bytes()[0]) == main.0", AGAIN),
     ("wayside/consent.rs", "life.0 <= MAX_TICKS", "a range: a time that the constructor accepts"),
     ("wayside/consent.rs", "!granted || sent <= u32::from(before.age.0)", AGAIN),
+    ("train/facing.rs", "own(&before)", AGAIN),
     ("wayside/speech.rs", "fixed.left.section != fixed.right.section", "what the constructor guarantees (WAY-19)"),
     (
         "wayside/speech.rs",

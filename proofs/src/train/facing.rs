@@ -61,6 +61,7 @@ harness! {
     theorem "T-TRN-8";
     requirements ["TRN-12"];
     assumptions ["four-for-sixteen", "four-speeds", "trains-know-facing"];
+    built_in &[("trains-know-facing", "what the device is told is how the train faces")];
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
@@ -108,6 +109,7 @@ harness! {
     theorem "T-TRN-8";
     requirements ["TRN-11", "TRN-12"];
     assumptions ["four-for-sixteen", "four-speeds", "trains-know-facing"];
+    built_in &[("trains-know-facing", "what the device is told is how the train faces")];
     bound BOUND;
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;

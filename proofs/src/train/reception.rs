@@ -81,6 +81,7 @@ harness! {
     theorem "T-TRN-4";
     requirements ["TRN-3", "TRN-11"];
     assumptions ["four-speeds", "trains-know-facing"];
+    built_in &[("trains-know-facing", "what the device is told is how the train faces")];
     bound "tables of 4 speeds, 32 wrong bits in a frame";
     cases 2;
     unwind 33 = 1 + crate::aspect::LONGEST;

@@ -49,7 +49,7 @@ fn any_rank<E: Engine + ?Sized>(e: &mut E) -> Option<AspectId> {
 
 fn any_facing<E: Engine + ?Sized>(e: &mut E, likely: u16) -> Option<Facing> {
     Some(Facing {
-        section: SectionId(e.word("section number", likely..=likely + 1)),
+        section: SectionId(e.word("section number", likely..=likely + 2)),
         gradient: Gradient(i8::from_le_bytes([any_byte(e, "gradient (‰, two's complement)", 0..=255)])),
         curve: any_rank(e)?,
     })
@@ -653,7 +653,7 @@ harness! {
         let lengths = any_lengths(e);
         let Some(mut signals) = fixed_tables() else { return };
         let mut any = |likely| any_facing(e, likely);
-        let (Some(left), Some(right), Some(next_left), Some(next_right)) = (any(0), any(2), any(3), any(6)) else { return };
+        let (Some(left), Some(right), Some(next_left), Some(next_right)) = (any(0), any(2), any(1), any(4)) else { return };
         let (one, other) = (Fixed { left, right }, Fixed { left: next_left, right: next_right });
         signals.circuits[0] = Some(one);
         signals.circuits[1] = Some(other);
