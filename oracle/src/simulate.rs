@@ -10,7 +10,7 @@ use atc_simulation::campaign::{self, Campaign};
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::headline;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::Operate;
+use atc_simulation::onboard::{Operate, Signal};
 use atc_simulation::record::Record;
 use atc_simulation::world::{Setting, World};
 use atc_simulation::{charts, diagram};
@@ -66,6 +66,9 @@ pub struct RunArgs {
     /// The trains' device
     #[arg(long, value_enum, default_value = "shortened")]
     device: Device,
+    /// What trains run on
+    #[arg(long, value_enum, default_value = "codes")]
+    signal: On,
     /// An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
     #[arg(long)]
     clears_at_once: bool,
@@ -81,6 +84,7 @@ impl RunArgs {
             ("--faults", !self.faults.is_empty()),
             ("--beyond", self.beyond),
             ("--device", self.device != Device::Shortened),
+            ("--signal", self.signal != On::Codes),
             ("--clears-at-once", self.clears_at_once),
         ];
         options.iter().find(|(_, there)| *there).map(|(option, _)| *option)
@@ -93,6 +97,24 @@ enum Device {
     Shortened,
     /// Without it
     Conventional,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum On {
+    /// Codes alone
+    Codes,
+    /// Telegrams alone: the ground's transmitters send frames for both directions of travel in turn
+    Telegrams,
+    /// Telegrams with codes beside them
+    Both,
+}
+
+const fn signal(args: &RunArgs) -> Signal {
+    match args.signal {
+        On::Codes => Signal::Codes,
+        On::Telegrams => Signal::Telegrams,
+        On::Both => Signal::Both,
+    }
 }
 
 fn kind(name: &str) -> Result<Kind, String> {
@@ -153,7 +175,12 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
             return Err(format!("--each {each} is of one kind: name it with --faults"));
         };
         let (kinds, extent, seed) = (vec![*kind], extent(args), args.seed);
-        faults = campaign::faults(line, &Campaign { runs: 1, kinds, extent, faults: each, trains, seconds, seed }, 0).1;
+        faults = campaign::faults(
+            line,
+            &Campaign { runs: 1, kinds, extent, faults: each, trains, seconds, seed, signal: signal(args) },
+            0,
+        )
+        .1;
     }
     let single = if each.is_none() { args.faults.as_slice() } else { &[] };
     for (number, kind) in single.iter().enumerate() {
@@ -164,7 +191,7 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
-    Ok(Setting { operate, trains, seed: args.seed, faults, compared: false })
+    Ok(Setting { operate, trains, seed: args.seed, faults, compared: false, signal: signal(args) })
 }
 
 /// The film of a run.
@@ -246,6 +273,7 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
         trains,
         seconds: args.run.time.unwrap_or(600),
         seed: args.run.seed,
+        signal: signal(&args.run),
     };
     let outcomes = campaign::run(line, &campaign, &|_| ())?;
     let mut done = Done::default();

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::event::Event;
 use crate::fault::{Extent, Fault, Kind};
 use crate::line::Line;
-use crate::onboard::Operate;
+use crate::onboard::{Operate, Signal};
 use crate::world::{Setting, World};
 
 /// What a campaign is made of.
@@ -29,6 +29,8 @@ pub struct Campaign {
     pub seconds: u32,
     /// The seed of the first run; the next has the next.
     pub seed: u64,
+    /// What trains run on.
+    pub signal: Signal,
 }
 
 /// What became of the runs with one kind of fault.
@@ -69,7 +71,14 @@ pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Re
     let one = |run: u64| -> Result<(Kind, u64, Vec<Event>), String> {
         let (kind, faults) = faults(line, campaign, run);
         let seed = campaign.seed + run;
-        let setting = Setting { operate: Operate::Shortened, trains: campaign.trains, seed, faults, compared: false };
+        let setting = Setting {
+            operate: Operate::Shortened,
+            trains: campaign.trains,
+            seed,
+            faults,
+            compared: false,
+            signal: campaign.signal,
+        };
         let mut world = World::new(line, setting)?;
         world.run(u64::from(campaign.seconds) * 1000);
         watch(run);

@@ -1,4 +1,5 @@
-//! The ground's devices: the kernel's [`Combined`] of every station, the points that they drive, and the telegrams between them.
+//! The ground's devices: the kernel's [`Combined`] of every station, or its whole [`Wayside`]; the points that they drive, and the
+//! telegrams between them.
 
 use std::collections::VecDeque;
 
@@ -7,6 +8,8 @@ use atc_kernel::interlocking::{
     CircuitSet, Combined, Heading, Input, Layout, MAX_CIRCUITS, Memory, Movement, Orders, Phase, PointSet, Positions,
     Refusal, Request, RouteSet, SegmentSet,
 };
+use atc_kernel::wayside::{Equipment, Framed, Message as Said, Session, Transmission, Wayside, WaysideError};
+use atc_kernel::wayside::{Input as WaysideInput, State as WaysideState};
 
 use crate::motion::Lie;
 use crate::track::Track;
@@ -24,6 +27,35 @@ pub struct Reply {
     pub answer: Option<Result<(), Refusal>>,
     /// The telegram of each circuit.
     pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+    /// The frames and codes of each circuit; none without a whole device.
+    pub transmissions: [Option<Transmission>; MAX_CIRCUITS],
+    /// What is told to the neighbour at each segment; none without a whole device.
+    pub messages: [Option<Said>; MAX_SEGMENTS],
+}
+
+impl Reply {
+    /// Stop, and silence.
+    const SAFE: Self = Self {
+        proceed: RouteSet::EMPTY,
+        drives: Positions::NONE,
+        permits: SegmentSet::EMPTY,
+        answer: None,
+        telegrams: [None; MAX_CIRCUITS],
+        transmissions: [None; MAX_CIRCUITS],
+        messages: [None; MAX_SEGMENTS],
+    };
+}
+
+/// The most segments of a station here.
+const MAX_SEGMENTS: usize = 8;
+
+/// What a whole device hears besides what is detected.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard {
+    /// The message of the neighbour at each segment, if one came.
+    pub messages: [Option<Said>; MAX_SEGMENTS],
+    /// The transmitters that have taken the frames of the last cycle.
+    pub framed: Framed,
 }
 
 /// What a station's device remembers, for pictures.
@@ -44,7 +76,7 @@ pub struct View {
 /// A device of any size.
 pub trait Device: Send {
     /// One cycle.
-    fn step(&mut self, input: Input) -> Reply;
+    fn step(&mut self, input: Input, heard: Heard) -> Reply;
     /// Starts it anew.
     fn restart(&mut self);
     /// What it remembers.
@@ -65,7 +97,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Held<R, P, 
 }
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Held<R, P, N, S> {
-    fn step(&mut self, input: Input) -> Reply {
+    fn step(&mut self, input: Input, _: Heard) -> Reply {
         let (memory, commands) = Combined(&self.layout).step(self.memory, input);
         self.memory = memory;
         let output = commands.interlocking;
@@ -75,6 +107,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
             permits: output.permits,
             answer: output.answer,
             telegrams: commands.telegrams,
+            ..Reply::SAFE
         }
     }
 
@@ -83,19 +116,87 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
     }
 
     fn view(&self) -> View {
-        let (plan, state) = (self.layout.plan(), &self.memory.interlocking);
-        let mut occupied = CircuitSet::EMPTY;
-        for (number, cycles) in state.track.clear_for().iter().enumerate() {
-            occupied = occupied.or(CircuitSet::nth(number).only_if(*cycles < plan.clear));
-        }
-        let routes = plan
-            .routes
-            .iter()
-            .zip(&state.routes)
-            .map(|(route, state)| (state.phase, state.path(route).circuits, state.overlap(route).circuits));
-        let (toward, away) = (state.directions.toward, state.directions.away);
-        View { occupied, blocked: state.works.blocked, routes: routes.collect(), toward, away }
+        viewed(&self.layout, &self.memory)
     }
+}
+
+/// The kernel's whole device for one layout, with its transmitters; no line is counted.
+pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize> {
+    layout: Box<Layout<R, P, N, S>>,
+    equipment: Equipment<0>,
+    state: Option<WaysideState<0, R, S>>,
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Speaking<R, P, N, S> {
+    /// The device, just started.
+    ///
+    /// # Errors
+    /// The rule that the equipment breaks.
+    pub fn new(layout: Box<Layout<R, P, N, S>>, equipment: Equipment<0>) -> Result<Self, WaysideError> {
+        Wayside::new(&layout, &equipment)?;
+        Ok(Self { layout, equipment, state: None })
+    }
+}
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Speaking<R, P, N, S> {
+    fn step(&mut self, input: Input, heard: Heard) -> Reply {
+        // It was checked when the device was made.
+        let Ok(wayside) = Wayside::new(&self.layout, &self.equipment) else { return Reply::SAFE };
+        let state = self.state.unwrap_or_else(|| wayside.initial());
+        let mut messages = [None; S];
+        for (message, told) in messages.iter_mut().zip(heard.messages) {
+            *message = told;
+        }
+        let Input { occupied, detected, request, orders, .. } = input;
+        let input = WaysideInput { blocks: [], occupied, detected, request, orders, messages, framed: heard.framed };
+        // The three parts of its step, so that a run can be judged by what the train of each circuit is told.
+        let (mut state, reading) = wayside.read(state, input);
+        let (memory, commands) = Combined(&self.layout).step(state.device, reading.input);
+        state.device = memory;
+        let (state, output) = wayside.send(state, &reading, &commands);
+        self.state = Some(state);
+        let mut messages = [None; MAX_SEGMENTS];
+        for (message, told) in messages.iter_mut().zip(output.messages) {
+            *message = told;
+        }
+        Reply {
+            proceed: output.proceed,
+            drives: output.drives,
+            permits: commands.interlocking.permits,
+            answer: output.answer,
+            telegrams: commands.telegrams,
+            transmissions: output.transmissions,
+            messages,
+        }
+    }
+
+    fn restart(&mut self) {
+        self.state = None;
+        self.equipment.session = Session(self.equipment.session.0.wrapping_add(1));
+    }
+
+    fn view(&self) -> View {
+        self.state.as_ref().map_or_else(View::default, |state| viewed(&self.layout, &state.device))
+    }
+}
+
+/// What a device with this memory shows.
+fn viewed<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: &Layout<R, P, N, S>,
+    memory: &Memory<R, S>,
+) -> View {
+    let (plan, state) = (layout.plan(), &memory.interlocking);
+    let mut occupied = CircuitSet::EMPTY;
+    for (number, cycles) in state.track.clear_for().iter().enumerate() {
+        occupied = occupied.or(CircuitSet::nth(number).only_if(*cycles < plan.clear));
+    }
+    let routes = plan
+        .routes
+        .iter()
+        .zip(&state.routes)
+        .map(|(route, state)| (state.phase, state.path(route).circuits, state.overlap(route).circuits));
+    let (toward, away) = (state.directions.toward, state.directions.away);
+    View { occupied, blocked: state.works.blocked, routes: routes.collect(), toward, away }
 }
 
 /// A point as it lies.
@@ -131,6 +232,7 @@ struct Message {
     sent_ms: u64,
     segment: usize,
     given: bool,
+    said: Option<Said>,
 }
 
 /// A station at work.
@@ -138,6 +240,10 @@ pub struct Station {
     device: Box<dyn Device>,
     /// What is sent in the circuits now.
     pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+    /// What the transmitters send now.
+    pub air: [Option<Transmission>; MAX_CIRCUITS],
+    /// The transmitters that have taken the frames of the last cycle.
+    taken: CircuitSet,
     /// What the device said last.
     pub reply: Reply,
     consents: Vec<Consent>,
@@ -148,15 +254,27 @@ pub struct Station {
 impl Station {
     /// A station whose device has just started, with so many segments.
     pub fn new(device: Box<dyn Device>, segments: usize) -> Self {
-        let reply = Reply {
-            proceed: RouteSet::EMPTY,
-            drives: Positions::NONE,
-            permits: SegmentSet::EMPTY,
-            answer: None,
+        Self {
+            device,
             telegrams: [None; MAX_CIRCUITS],
-        };
-        let consents = vec![Consent::default(); segments];
-        Self { device, telegrams: [None; MAX_CIRCUITS], reply, consents, inbox: VecDeque::new(), unblocked: false }
+            air: [None; MAX_CIRCUITS],
+            taken: CircuitSet::EMPTY,
+            reply: Reply::SAFE,
+            consents: vec![Consent::default(); segments],
+            inbox: VecDeque::new(),
+            unblocked: false,
+        }
+    }
+
+    /// The transmitters, but for those in `stuck`, take the frames for both directions of travel, and send them in turn.
+    pub fn take(&mut self, stuck: CircuitSet) {
+        for (number, air) in self.air.iter_mut().enumerate() {
+            let it = CircuitSet::nth(number);
+            if !stuck.meets(it) {
+                *air = self.reply.transmissions[number];
+                self.taken = self.taken.or(it);
+            }
+        }
     }
 
     /// Starts the device anew: it forgets what it knew, and staff unblock the circuits again.
@@ -172,8 +290,8 @@ impl Station {
     }
 
     /// Puts a telegram of the neighbour on its way: whether trains may be sent into `segment`.
-    pub fn post(&mut self, now_ms: u64, delay_ms: u64, segment: usize, given: bool) {
-        self.inbox.push_back(Message { arrives_ms: now_ms + delay_ms, sent_ms: now_ms + 1, segment, given });
+    pub fn post(&mut self, now_ms: u64, delay_ms: u64, segment: usize, (given, said): (bool, Option<Said>)) {
+        self.inbox.push_back(Message { arrives_ms: now_ms + delay_ms, sent_ms: now_ms + 1, segment, given, said });
     }
 
     /// One cycle at `now_ms`: what was said in the cycle before goes into the rails, but for the circuits in `stuck`.
@@ -189,8 +307,13 @@ impl Station {
                 self.telegrams[number] = *telegram;
             }
         }
+        let mut heard = Heard { messages: [None; MAX_SEGMENTS], framed: Framed { main: self.taken, sub: self.taken } };
+        self.taken = CircuitSet::EMPTY;
         while self.inbox.front().is_some_and(|message| message.arrives_ms <= now_ms) {
             let Some(message) = self.inbox.pop_front() else { break };
+            if let Some(told) = heard.messages.get_mut(message.segment) {
+                *told = message.said;
+            }
             let consent = &mut self.consents[message.segment];
             // A telegram that was sent before the last one is no news.
             if message.sent_ms > consent.sent_ms {
@@ -207,7 +330,7 @@ impl Station {
             orders.lift = CircuitSet::ALL;
             self.unblocked = true;
         }
-        self.reply = self.device.step(Input { occupied, detected, request, orders, consent });
+        self.reply = self.device.step(Input { occupied, detected, request, orders, consent }, heard);
     }
 
     /// The code that a train hears whose front is in the circuit of this number and faces so; and what it is told.

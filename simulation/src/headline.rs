@@ -9,7 +9,7 @@ use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::generate::Shape;
 use crate::line::Line;
-use crate::onboard::Operate;
+use crate::onboard::{Operate, Signal};
 use crate::world::{Setting, World};
 
 /// How much is measured.
@@ -119,7 +119,8 @@ type Ended = (Vec<Vec<u64>>, Measured);
 
 fn measure_one(line: &Line, extent: &Extent, (length_ms, operate): (u32, Operate)) -> Result<Ended, String> {
     let faults = interruptions(extent, length_ms);
-    let setting = Setting { operate, trains: extent.trains, seed: extent.seed, faults, compared: true };
+    let setting =
+        Setting { operate, trains: extent.trains, seed: extent.seed, faults, compared: true, signal: Signal::Codes };
     let mut world = World::new(line, setting)?;
     world.run(u64::from(extent.seconds) * 1000);
     let mut arrivals = vec![Vec::new(); extent.trains];

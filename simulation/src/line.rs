@@ -3,13 +3,19 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use atc_kernel::interlocking::{Heading, Layout};
+use atc_kernel::aspect::AspectId;
+use atc_kernel::interlocking::{Heading, Layout, MAX_CIRCUITS, MAX_CODES};
+use atc_kernel::telegram::{Gradient, SectionId};
+use atc_kernel::time::Ticks;
+use atc_kernel::wayside::{Equipment, Facing, Fixed, Session, SignalPlan};
 use atc_layout::{Compiled, Description, border};
 use serde::{Deserialize, Serialize};
 
+use crate::fault::consent_life_ms;
 use crate::generate::Shape;
-use crate::ground::{Device, Held};
+use crate::ground::{Device, Held, Speaking};
 use crate::motion::{Dynamics, Leg};
+use crate::onboard::words;
 use crate::track::{Link, Track, join};
 
 /// The form of a line file, in TOML.
@@ -333,15 +339,33 @@ impl Line {
     ///
     /// # Errors
     /// What the kernel says of the layout; it was checked when it was compiled.
-    pub fn device(&self, station: usize) -> Result<Box<dyn Device>, String> {
-        let description = (&self.stations[station].description, self.clears_at_once);
-        if let Ok(device) = sized::<8, 4, 2, 2>(description) {
-            return Ok(device);
+    pub fn device(&self, station: usize, telegrams: bool) -> Result<Box<dyn Device>, String> {
+        let equipment = if telegrams { Some(self.equipment(station)?) } else { None };
+        let made = (&self.stations[station].description, self.clears_at_once, equipment.as_ref());
+        let few = sized::<8, 4, 2, 2>(made).or_else(|_| sized::<24, 4, 10, 2>(made));
+        few.or_else(|_| sized::<64, 16, 32, 8>(made))
+    }
+
+    /// What a station's device has besides its layout, where trains run on telegrams. A circuit has one number in all stations.
+    fn equipment(&self, station: usize) -> Result<Equipment<0>, String> {
+        let words = words(&self.speeds_kmh)?;
+        let highest = u8::try_from(words.aspects.speeds().len() - 1).ok().and_then(AspectId::new);
+        let curve = highest.ok_or("more speeds than ranks")?;
+        let facing = |section: usize| {
+            let section = u16::try_from(section).map_err(|_| "more circuits than section numbers".to_owned())?;
+            Ok::<_, String>(Facing { section: SectionId(section), gradient: Gradient(0), curve })
+        };
+        let mut circuits = [None; MAX_CIRCUITS];
+        for (place, circuit) in circuits.iter_mut().zip(&self.track.sites[station].circuits) {
+            *place = Some(Fixed { left: facing(2 * circuit + 1)?, right: facing(2 * circuit)? });
         }
-        if let Ok(device) = sized::<24, 4, 10, 2>(description) {
-            return Ok(device);
+        let mut speeds = [None; MAX_CODES];
+        for (place, speed) in speeds.iter_mut().zip(words.aspects.speeds()) {
+            *place = Some(*speed);
         }
-        sized::<64, 16, 32, 8>(description)
+        let signals = SignalPlan { circuits, speeds, aspects: words.aspects, codes: words.codes };
+        let life = u16::try_from(consent_life_ms(self) / self.cycle_ms).map_or(Ticks(1), Ticks);
+        Ok(Equipment { counted: None, signals, life, session: Session(0) })
     }
 
     /// The least brake that the stations count on, in m/s².
@@ -357,7 +381,7 @@ impl Line {
 }
 
 fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
-    (description, clears_at_once): (&Description, bool),
+    (description, clears_at_once, equipment): (&Description, bool, Option<&Equipment<0>>),
 ) -> Result<Box<dyn Device>, String> {
     let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
     let mut plan = compiled.plan;
@@ -368,7 +392,10 @@ fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
         Layout::new(*plan)
     };
     let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
-    Ok(Box::new(Held::new(Box::new(layout))))
+    let layout = Box::new(layout);
+    let Some(equipment) = equipment else { return Ok(Box::new(Held::new(layout))) };
+    let speaking = Speaking::new(layout, *equipment);
+    Ok(Box::new(speaking.map_err(|broken| format!("{}: {broken:?}", compiled.names.station))?))
 }
 
 /// The segments by which each station and the next are joined.

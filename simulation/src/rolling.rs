@@ -1,16 +1,18 @@
 //! A train at work: what it hears, what its device makes of it, and how it moves.
 
+use atc_kernel::heading::Heading;
 use atc_kernel::interlocking::CircuitSet;
 use atc_kernel::speed::RawKmhTenths;
 use atc_kernel::supervision::Brake;
 use atc_kernel::train::Cab;
+use atc_kernel::wayside::Transmission;
 
 use crate::driver::{Sight, drive};
 use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::line::Bound;
 use crate::motion::{Body, Crossed};
-use crate::onboard::OnBoard;
+use crate::onboard::{FRAME_MS, Met, OnBoard, Signal};
 use crate::track::Track;
 use crate::world::World;
 
@@ -69,6 +71,10 @@ pub struct Train {
     sent: Option<u8>,
     /// Whether that has just changed: a code counts that was heard throughout a cycle.
     changed: bool,
+    /// Since when nothing broke off what it hears, in ms.
+    hears_ms: u64,
+    /// How far it moved in the last cycle.
+    moved_m: f64,
     braking_ms: Option<u64>,
     interruption: Option<usize>,
     counted: bool,
@@ -92,6 +98,8 @@ impl Train {
             rival: OnBoard::START,
             sent: None,
             changed: true,
+            hears_ms: 0,
+            moved_m: 0.0,
             braking_ms: None,
             interruption: None,
             counted: true,
@@ -155,9 +163,11 @@ impl World<'_> {
     pub(crate) fn roll(&mut self, number: usize) {
         let length = f64::from(self.line.train_cycle_ms);
         let (interruption, misread) = (self.interruption(number, length), self.misread(number, length));
+        let met = self.met(number, interruption.is_some());
         let (device, line, now_ms) = (&self.device, self.line, self.now_ms);
         let train = &mut self.trains[number];
-        let heard = if train.changed { None } else { train.sent };
+        let coded = self.setting.signal != Signal::Telegrams;
+        let heard = train.sent.filter(|_| coded && !train.changed);
         train.changed = false;
         let disturbed = match (interruption, misread) {
             (Some(_), _) => None,
@@ -166,14 +176,14 @@ impl World<'_> {
         };
         let speed = measured(train.body.speed);
         let before = train.cab.brake;
-        train.cab = device.step(&mut train.onboard, disturbed, speed);
+        train.cab = device.step(&mut train.onboard, disturbed, speed, met);
         let moves = speed.0 > 0;
         if moves && before == Brake::Release && train.cab.brake != Brake::Release {
             train.applications += 1;
         }
         let mut needless = false;
         if self.setting.compared {
-            let other = device.step(&mut train.beside, heard, speed).brake;
+            let other = device.step(&mut train.beside, heard, speed, met).brake;
             if interruption.is_some() && train.interruption != interruption {
                 // Whether it tells anything: a train that stands, or brakes anyway, is not braked needlessly.
                 train.counted = !(moves && other == Brake::Release && train.cab.brake == Brake::Release);
@@ -185,7 +195,7 @@ impl World<'_> {
                 train.needless += 1;
                 needless = true;
             }
-            let rival = self.rival.step(&mut train.rival, disturbed, speed).brake;
+            let rival = self.rival.step(&mut train.rival, disturbed, speed, met).brake;
             train.alone += u32::from(
                 moves && rival == Brake::Release && before == Brake::Release && train.cab.brake != Brake::Release,
             );
@@ -200,6 +210,39 @@ impl World<'_> {
         if needless {
             self.tell(What::NeedlesslyBraked { train: number, along_m });
         }
+    }
+
+    /// What a train on telegrams meets in a cycle: the frames that are complete at its end, its way, and how it faces.
+    fn met(&mut self, number: usize, broken_off: bool) -> Met {
+        if self.setting.signal == Signal::Codes {
+            return Met::default();
+        }
+        let end_ms = self.now_ms + u64::from(self.line.train_cycle_ms);
+        let train = &mut self.trains[number];
+        if broken_off {
+            train.hears_ms = end_ms;
+        }
+        let (leg, moved_m, hears_ms) = (train.body.front(), train.moved_m, train.hears_ms);
+        let track = &self.line.track;
+        let piece = &track.pieces[leg.piece];
+        let to_exit_m = piece.plain.then(|| self.trains[number].body.to_joint_m(track));
+        let (mut facing, mut sent) = (None, None);
+        for (station, local) in self.local.iter().enumerate() {
+            let Some(here) = local[piece.circuit] else { continue };
+            facing = facing.or(track.heading(station, leg.piece, leg.exit));
+            let air = self.stations[station].air[usize::from(here)];
+            // Two at once are heard as neither.
+            sent = if sent.is_some() && air.is_some() { None } else { sent.or(air) };
+        }
+        let slot = u64::from(FRAME_MS);
+        let mut frames = [None; 2];
+        if end_ms.is_multiple_of(slot) && hears_ms + slot <= end_ms {
+            // Those for trains to the left come first.
+            let heading = if (end_ms / slot).is_multiple_of(2) { Heading::Right } else { Heading::Left };
+            let feed = sent.map(|sent: Transmission| sent.facing(heading));
+            frames = [feed.map(|feed| feed.main), feed.map(|feed| feed.sub)];
+        }
+        Met { frames, moved_m, to_exit_m, facing }
     }
 
     fn interruption(&self, number: usize, length: f64) -> Option<usize> {
@@ -236,6 +279,7 @@ impl World<'_> {
         };
         train.body.speed = (train.body.speed + acceleration * step).max(0.0);
         let metres = train.body.speed * step;
+        train.moved_m = metres;
         if metres <= 0.0 {
             return;
         }
@@ -277,6 +321,7 @@ impl World<'_> {
                     self.tell(What::Overrun { train: number, circuit: track.circuits[circuit].name.clone() });
                 }
                 self.trains[number].changed = true;
+                self.trains[number].hears_ms = self.now_ms + u64::from(self.line.train_cycle_ms);
                 self.listen(number);
             }
         }

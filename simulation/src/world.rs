@@ -10,7 +10,7 @@ use crate::fault::{Fault, Kind, consent_life_ms};
 use crate::ground::{PointState, Station, drive};
 use crate::line::{Bound, Line};
 use crate::motion::Body;
-use crate::onboard::{Device, Operate};
+use crate::onboard::{Device, FRAME_MS, Operate, Signal};
 use crate::rolling::Train;
 
 /// What a run is made of, besides the line.
@@ -26,6 +26,8 @@ pub struct Setting {
     pub faults: Vec<Fault>,
     /// Whether each train has a second device beside it that no interruption reaches, to tell a needless brake.
     pub compared: bool,
+    /// What trains run on.
+    pub signal: Signal,
 }
 
 /// A line at work.
@@ -74,12 +76,13 @@ impl<'a> World<'a> {
         }
         setting.faults.sort_by(|one, other| one.from_ms.total_cmp(&other.from_ms));
         let mut random = Pcg64Mcg::seed_from_u64(setting.seed);
-        let device = Device::new(&line.speeds_kmh, line.train_cycle_ms, setting.operate)?;
+        let kind = setting.signal.line();
+        let device = Device::new(&line.speeds_kmh, line.train_cycle_ms, setting.operate, kind)?;
         let rival = match setting.operate {
             Operate::Shortened => Operate::Conventional,
             Operate::Conventional => Operate::Shortened,
         };
-        let rival = Device::new(&line.speeds_kmh, line.train_cycle_ms, rival)?;
+        let rival = Device::new(&line.speeds_kmh, line.train_cycle_ms, rival, kind)?;
         let points = line.track.points.iter().map(|point| {
             let least = (point.throw_ms * 5 / 7).max(1);
             PointState { reverse: false, moves_ms: None, stroke_ms: random.random_range(least..=point.throw_ms) }
@@ -87,7 +90,10 @@ impl<'a> World<'a> {
         let points = points.collect();
         let mut stations = Vec::new();
         for (number, place) in line.stations.iter().enumerate() {
-            stations.push(Station::new(line.device(number)?, place.compiled.model.segments.len()));
+            stations.push(Station::new(
+                line.device(number, setting.signal != Signal::Codes)?,
+                place.compiled.model.segments.len(),
+            ));
         }
         let local = line.track.sites.iter().map(|site| {
             let mut local = vec![None; line.track.circuits.len()];
@@ -147,6 +153,9 @@ impl<'a> World<'a> {
         self.begin_faults();
         if self.now_ms.is_multiple_of(u64::from(self.line.cycle_ms)) {
             self.cycle();
+        }
+        if self.now_ms.is_multiple_of(u64::from(2 * FRAME_MS)) {
+            self.transmit();
         }
         for train in 0..self.trains.len() {
             self.roll(train);
@@ -292,6 +301,20 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The transmitters take new frames, but for those that repeat what they sent.
+    fn transmit(&mut self) {
+        let circuits = self.line.track.circuits.len();
+        let stuck: Vec<usize> =
+            self.faults(Kind::RepeatedCode, f64::from(FRAME_MS)).map(|fault| fault.which % circuits).collect();
+        for (station, site) in self.stations.iter_mut().zip(&self.line.track.sites) {
+            let mut frozen = CircuitSet::EMPTY;
+            for (number, circuit) in site.circuits.iter().enumerate() {
+                frozen = frozen.or(CircuitSet::nth(number).only_if(stuck.contains(circuit)));
+            }
+            station.take(frozen);
+        }
+    }
+
     /// What changed at the signals of a station.
     fn signals(&mut self, station: usize, told: &mut Vec<What>) {
         let (before, now) = (self.proceed[station], self.stations[station].reply.proceed);
@@ -330,7 +353,9 @@ impl<'a> World<'a> {
                 let given = permits.meets(SegmentSet::nth(joined.segments[from]));
                 if !lost {
                     let now = self.now_ms;
-                    self.stations[receiver].post(now, u64::from(delay.unwrap_or(0)), joined.segments[to], given);
+                    let said = self.stations[sender].reply.messages[joined.segments[from]];
+                    let delay = u64::from(delay.unwrap_or(0));
+                    self.stations[receiver].post(now, delay, joined.segments[to], (given, said));
                 }
             }
         }

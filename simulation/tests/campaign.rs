@@ -5,7 +5,7 @@ use atc_simulation::event::What;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::Operate;
+use atc_simulation::onboard::{Operate, Signal};
 use atc_simulation::world::{Setting, World};
 
 /// Four tracks a station, so that trains follow each other on the line.
@@ -14,7 +14,8 @@ fn line() -> Line {
 }
 
 fn campaign(runs: u64, kinds: &[Kind], extent: Extent) -> Campaign {
-    Campaign { runs, kinds: kinds.to_vec(), extent, faults: 1, trains: 8, seconds: 400, seed: 1 }
+    let (kinds, signal) = (kinds.to_vec(), Signal::Codes);
+    Campaign { runs, kinds, extent, faults: 1, trains: 8, seconds: 400, seed: 1, signal }
 }
 
 #[test]
@@ -25,6 +26,31 @@ fn no_single_fault_leads_to_harm() {
         assert_eq!((outcome.runs, outcome.unsafe_runs), (5, 0), "{kind:?}: {:?}", outcome.first);
         assert!(outcome.arrivals >= 10, "{kind:?}: the trains do not get on");
     }
+}
+
+/// The same where trains run on telegrams: the ground is the kernel's whole device, with frames for both directions in turn.
+#[test]
+fn no_single_fault_leads_to_harm_on_telegrams() {
+    for signal in [Signal::Telegrams, Signal::Both] {
+        let campaign = Campaign { signal, ..campaign(22, &Kind::ALL, Extent::Tolerated) };
+        for (kind, outcome) in run(&line(), &campaign, &|_| ()).expect("a campaign") {
+            assert_eq!((outcome.runs, outcome.unsafe_runs), (2, 0), "{signal:?}, {kind:?}: {:?}", outcome.first);
+            assert!(outcome.arrivals >= 2, "{signal:?}, {kind:?}: {} arrivals", outcome.arrivals);
+        }
+    }
+}
+
+/// Also on telegrams: a train that is lost for far longer than is tolerated, and the old rule of the test below.
+#[test]
+fn harm_is_seen_on_telegrams() {
+    let lost = Campaign { faults: 4, signal: Signal::Telegrams, ..campaign(32, &[Kind::ShuntLoss], Extent::Beyond) };
+    let outcome =
+        |line: &Line, campaign: &Campaign| run(line, campaign, &|_| ()).expect("a campaign")[&Kind::ShuntLoss].clone();
+    assert!(outcome(&line(), &lost).unsafe_runs > 0, "the campaign saw nothing");
+    let flickers = Campaign { faults: 150, seconds: 600, extent: Extent::Tolerated, runs: 8, ..lost };
+    assert_eq!(outcome(&line(), &flickers).unsafe_runs, 0);
+    let old = Line { clears_at_once: true, ..line() };
+    assert!(outcome(&old, &flickers).unsafe_runs > 0, "the campaign saw nothing");
 }
 
 /// A condition that is broken: a code that is misread for far longer than the operate time, a train that is lost for far
@@ -56,7 +82,14 @@ fn an_old_rule_leads_to_harm_and_is_seen() {
 #[test]
 fn the_truth_is_judged_apart_from_the_devices() {
     let line = Line::generate("Two", &Shape::loops(2, 3)).expect("a line");
-    let setting = Setting { operate: Operate::Shortened, trains: 2, seed: 1, faults: Vec::new(), compared: false };
+    let setting = Setting {
+        operate: Operate::Shortened,
+        trains: 2,
+        seed: 1,
+        faults: Vec::new(),
+        compared: false,
+        signal: Signal::Codes,
+    };
     let world = || World::new(&line, setting.clone()).expect("a world");
 
     // A train is put where another one stands.

@@ -4,17 +4,18 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use atc_kernel::permitted::Basis;
 use atc_simulation::event::What;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::Operate;
+use atc_simulation::onboard::{Operate, Signal};
 use atc_simulation::record::Record;
 use atc_simulation::world::{Setting, World};
 use atc_simulation::{charts, diagram};
 
 fn setting(trains: usize, seed: u64, faults: Vec<Fault>) -> Setting {
-    Setting { operate: Operate::Shortened, trains, seed, faults, compared: false }
+    Setting { operate: Operate::Shortened, trains, seed, faults, compared: false, signal: Signal::Codes }
 }
 
 fn example(name: &str) -> PathBuf {
@@ -48,6 +49,26 @@ fn trains_go_to_and_fro_for_two_hours() {
         };
         assert!(world.events.iter().filter(arrived).count() >= 5, "train {number} does not get on");
     }
+}
+
+/// Trains on telegrams know where they are, and their braking pattern counts.
+#[test]
+fn trains_run_on_telegrams_alone() {
+    let line = Line::read(&example("three-stations.toml")).expect("a line");
+    let setting = Setting { signal: Signal::Telegrams, ..setting(4, 1, Vec::new()) };
+    let mut world = World::new(&line, setting).expect("a world");
+    let (mut by_pattern, mut placed) = (0, 0);
+    while world.now_ms < 1_800_000 && !world.is_unsafe {
+        world.tick();
+        let cab = world.trains[0].cab;
+        assert_ne!(cab.permission.basis, Basis::Analog);
+        by_pattern += u32::from(cab.permission.basis == Basis::Pattern && world.trains[0].body.speed > 1.0);
+        placed += u32::from(cab.position.is_some());
+    }
+    assert!(!world.is_unsafe, "{:?}", world.events.last());
+    assert!(by_pattern > 20_000 && placed > 100_000, "{by_pattern} {placed}");
+    let arrived = world.events.iter().filter(|event| matches!(event.what, What::Arrived { .. })).count();
+    assert!(arrived >= 12, "{arrived} arrivals");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The machine as a whole: T-TRN-7.
 
+use super::facing::any_way;
 use super::{RANKS, any_cycle, any_device_state, any_received, carriers};
 use crate::aspect::any_machine_state;
 use crate::permitted::any_line;
@@ -43,23 +44,26 @@ harness! {
 }
 
 harness! {
-    /// As a machine the device is its two halves, one after the other. It starts with nothing known, under the emergency brake, which is valid; its safe output
+    /// As a machine the device is its two halves, one after the other, on what it knew before; on nothing, if the train faces another way than before, or if its
+    /// direction was lost or found. It starts with nothing known, under the emergency brake, which is valid; its safe output
     /// shows and permits nothing, knows no place, and is the emergency brake.
     trn_machine(e)
     theorem "T-TRN-7";
-    requirements ["GEN-1"];
+    requirements ["GEN-1", "TRN-12"];
     assumptions ["four-for-sixteen", "four-speeds"];
     bound "4 aspects, tables of 4 speeds, before the step no main telegram was used";
     cases 1;
     unwind 33 = 1 + crate::aspect::LONGEST;
     solver kissat;
     claims {
-        Step: "a step with antennas that receive nothing is what was received, acted on",
+        Step: "a step with antennas that receive nothing is what was received, acted on; by a device just started if the direction of travel is another one than before",
         Start: "the initial state is valid, knows nothing and brakes; in its first cycle, whatever is received, nothing is permitted by telegrams",
         Safe: "the safe output is the emergency brake, no display, no permission and no position",
     }
     covers {
         Runs: "the brake is released",
+        Turned: "a train that displayed a speed changes ends",
+        Lost: "the direction is lost",
     }
     {
         let Some(line) = any_line(e) else { return };
@@ -75,10 +79,13 @@ harness! {
             moved: Some(received.measured.moved),
             speed: received.speed,
             line: received.line,
-            facing: before.facing,
+            facing: any_way(e, "facing now (0: not known, 1: left, else right)"),
         };
+        before.facing = any_way(e, "facing before (0: not known, 1: left, else right)");
+        let changed = before.facing != antennas.facing;
+        let known = if changed { State { facing: antennas.facing, ..State::INITIAL } } else { before };
         let stepped = device.train.step(before, antennas);
-        let acted = device.train.act(before, device.train.receive(antennas));
+        let acted = device.train.act(known, device.train.receive(antennas));
         e.claim(Claim::Step as u32, stepped == acted);
         let start = device.train.initial();
         let (_, cab) = device.train.act(start, received);
@@ -91,6 +98,9 @@ harness! {
         let safe = Cab { display: None, permission: nothing, position: None, brake: Brake::Emergency };
         e.claim(Claim::Safe as u32, <Train<RANKS> as Machine>::SAFE == safe);
         e.cover(Cover::Runs as u32, stepped.1.brake == Brake::Release);
+        let displayed = before.acceptance.parts().last != 0;
+        e.cover(Cover::Turned as u32, changed && displayed && antennas.facing.is_some());
+        e.cover(Cover::Lost as u32, changed && antennas.facing.is_none());
     }
 }
 

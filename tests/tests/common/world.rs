@@ -423,7 +423,8 @@ impl World {
         let train = &self.trains[number];
         let Some(circuit) = self.circuit_of(train) else { return };
         let mut said = Vec::new();
-        for device in &self.devices {
+        // A device has transmitters in its own circuits only.
+        for device in self.devices.iter().filter(|device| device.circuits.contains(&circuit)) {
             let Some(transmission) = &device.output.transmissions[circuit] else { continue };
             if let Ok(Telegram::Main(main)) = decode(transmission.facing(train.heading).main) {
                 said.push(main);
@@ -433,7 +434,7 @@ impl World {
             return;
         }
         let main: Main = self.dice.of(&said);
-        let number_of = 2 * circuit + usize::from(train.heading == Heading::Right);
+        let number_of = 2 * circuit + usize::from(train.heading == Heading::Left);
         assert_eq!(usize::from(main.section.0), number_of, "a telegram of another circuit");
         let it = &self.circuits[circuit];
         let (exit, sign) = if train.heading == Heading::Right { (it.high, 1) } else { (it.low, -1) };

@@ -7,11 +7,11 @@ use atc_simulation::fault::{Extent, Kind};
 use atc_simulation::film;
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::Operate;
+use atc_simulation::onboard::{Operate, Signal};
 use atc_simulation::world::{Setting, World};
 
 fn setting(trains: usize, faults: Vec<atc_simulation::fault::Fault>, seed: u64) -> Setting {
-    Setting { operate: Operate::Shortened, trains, seed, faults, compared: false }
+    Setting { operate: Operate::Shortened, trains, seed, faults, compared: false, signal: Signal::Codes }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "distances on a line")]
@@ -77,6 +77,7 @@ fn an_accident_is_the_end_of_its_film() {
         trains: 8,
         seconds: 600,
         seed: 1,
+        signal: Signal::Codes,
     };
     let accident = (0..campaign.runs).find_map(|run| {
         let (_, faults) = faults(&line, &campaign, run);
