@@ -3,6 +3,9 @@
 //!
 //! A cycle has a second. Lengths are millimetres along one line, from left to right; between two points, or beyond one, there are two tracks.
 
+#[path = "board.rs"]
+pub mod board;
+
 use atc_kernel::Machine as _;
 use atc_kernel::aspect::AspectTable;
 use atc_kernel::code::{CodeFrequencies, CodeTable, Millihertz};
@@ -138,6 +141,8 @@ pub struct Train {
     pub way: Option<(i64, i64)>,
     /// A neighbour that is not in this world speaks to it.
     pub outside: bool,
+    /// Its device, if it goes by that.
+    pub board: Option<Box<board::Board>>,
 }
 
 impl Train {
@@ -154,6 +159,7 @@ impl Train {
             heard: None,
             way: None,
             outside: false,
+            board: None,
         }
     }
 
@@ -345,6 +351,10 @@ pub struct Counts {
     pub arrived: u64,
     /// Cycles in which a circuit did not report its train.
     pub lost: u64,
+    /// Cycles in which the device of a train permitted it to move.
+    pub permitted: u64,
+    /// Cycles in which the direction of travel on board changed, or was lost.
+    pub turned: u64,
 }
 
 impl Counts {
@@ -356,6 +366,8 @@ impl Counts {
         self.confirmed += other.confirmed;
         self.arrived += other.arrived;
         self.lost += other.lost;
+        self.permitted += other.permitted;
+        self.turned += other.turned;
     }
 }
 
@@ -374,6 +386,8 @@ pub struct World {
     pub staff: Vec<Works>,
     pub counts: Counts,
     pub margin: i64,
+    /// What the trains with a device have in common.
+    pub ride: Option<Box<board::Ride>>,
 }
 
 impl World {
@@ -397,6 +411,7 @@ impl World {
             staff: Vec::new(),
             counts: Counts::default(),
             margin: 0,
+            ride: None,
         }
     }
 
@@ -517,6 +532,9 @@ impl World {
         if train.outside {
             return train.speed;
         }
+        if let Some(board) = &train.board {
+            return board.speed(train);
+        }
         let least = (train.speed - BRAKE).max(0);
         let (Some(stop), most) = self.authority(train) else { return least };
         let way = (stop - train.nose) * train.sign() - self.margin;
@@ -531,6 +549,9 @@ impl World {
     /// One cycle of a train; what it runs into with its points.
     fn run(&mut self, number: usize) -> Option<String> {
         self.listen(number);
+        if let Some(above) = self.on_board(number) {
+            return Some(above);
+        }
         let mut train = self.trains[number].clone();
         if self.dice.one_in(30) {
             train.pace = self.dice.of(&[1_000, 3_000, 10_000, 20_000, 20_000, 20_000]);
@@ -538,6 +559,9 @@ impl World {
         train.speed = self.speed(&mut train);
         train.before = train.nose;
         train.nose += train.sign() * train.speed;
+        if let Some(board) = &mut train.board {
+            board.moved = train.speed;
+        }
         let accident = self.cross(&mut train).map(|what| format!("train {number} runs over {what}"));
         let passes = |signal: &&Signal| {
             let (from, to) = (signal.at - train.before, signal.at - train.nose);
@@ -653,6 +677,7 @@ impl World {
             }
         }
         self.staff = wanted;
+        self.transmitters();
         for number in 0..self.trains.len() {
             if let Some(accident) = self.run(number) {
                 return Some(accident);
@@ -834,7 +859,7 @@ pub fn withdraw(number: usize) -> Request {
 
 /// Hunts through so many episodes, or as many as `ATC_EPISODES` says, each of up to 1,500 cycles: none ends in an accident. It is no empty
 /// hunt: trains run and arrive, staff come, devices restart, circuits do not report.
-pub fn finds_none(episodes: u64, episode: impl Fn(u64, &mut Counts) -> Option<String>) {
+pub fn finds_none(episodes: u64, episode: impl Fn(u64, &mut Counts) -> Option<String>) -> Counts {
     let mut counts = Counts::default();
     let episodes = std::env::var("ATC_EPISODES").ok().and_then(|number| number.parse().ok()).unwrap_or(episodes);
     for seed in 1..=episodes {
@@ -845,6 +870,7 @@ pub fn finds_none(episodes: u64, episode: impl Fn(u64, &mut Counts) -> Option<St
     assert!(counts.cycles > 300 * episodes && counts.lost > counts.cycles / 20, "{counts:?}");
     let all = [counts.proceed, counts.passed, counts.arrived, counts.confirmed, counts.restarts];
     assert!(all.iter().all(|number| number * 6 > episodes), "{counts:?}");
+    counts
 }
 
 /// Hunts with a broken condition through these episodes: one ends in an accident.

@@ -16,6 +16,7 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp, Wayside, WaysideError};
+use world::board::{IN_FORCE, Ride, reckon};
 use world::{
     Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, finds_none,
     finds_one, input, pieces, point, route, set, signals, stopping, withdraw,
@@ -127,12 +128,13 @@ struct Line {
     heard: Option<Stamp>,
 }
 
-fn plan(broken: Option<Broken>) -> Draft {
+fn plan(broken: Option<Broken>, on_board: bool) -> Draft {
+    let approach: &[usize] = if on_board { &[0, 1, 2, 3, 4, 5] } else { &[0, 1, 2] };
     let mut plan = draft(&pieces(&CIRCUITS));
     plan.points = [point(6), point(9)];
     for track in 0..2 {
         let path = [(6, at(0, track)), (7 + track, Positions::NONE)];
-        plan.routes[track] = route(Heading::Right, 0, &[0, 1, 2], &path, 9);
+        plan.routes[track] = route(Heading::Right, 0, approach, &path, 9);
         plan.routes[track].from = SegmentSet::nth(0);
         plan.routes[2 + track] = route(Heading::Right, 7 + track, &[7 + track], &[(9, at(1, track))], 10);
         plan.routes[2 + track].to = SegmentSet::nth(1);
@@ -148,6 +150,9 @@ fn plan(broken: Option<Broken>) -> Draft {
     };
     plan.segments[0] = segment(&[0, 1, 2, 3, 4, 5], CircuitSet::EMPTY, Heading::Left);
     plan.segments[1] = segment(&[10, 11, 12, 13], CircuitSet::nth(9), Heading::Right);
+    if on_board {
+        reckon(&mut plan);
+    }
     match broken {
         Some(Broken::Clear) => (plan.clear, plan.loss) = (1, 0),
         Some(Broken::Release) => {
@@ -173,7 +178,7 @@ fn block(circuits: &[u8]) -> Counted {
     }
 }
 
-fn build(seed: u64, broken: Option<Broken>) -> (World, Line) {
+fn build(seed: u64, broken: Option<Broken>, on_board: bool) -> (World, Line) {
     let mut dice = Dice::new(seed);
     // The sections in the order of travel, block by block.
     let (blocks, segment, travel): ([&[u8]; 2], SegmentId, Travel) = match dice.below(4) {
@@ -221,10 +226,14 @@ fn build(seed: u64, broken: Option<Broken>) -> (World, Line) {
         let routes = vec![(2 + track, 360 * M)];
         all.push(Signal { at: 300 * M, heading: Heading::Right, track: Some((0, track)), device: 0, routes });
     }
-    let device = Device::new(&plan(broken), &equipment, vec![0, 1]);
+    let device = Device::new(&plan(broken, on_board), &equipment, vec![0, 1]);
     let mut world = World::new(seed, (zones, pieces(&CIRCUITS), all), vec![device], &[20 * M, 340 * M]);
     world.margin = dice.of(&[1, 50, 50, 50]) * M;
     let errors = dice.of(&[0, 40, 100, 300]);
+    if on_board {
+        let all: Vec<usize> = (0..CIRCUITS.len()).collect();
+        world.ride(Ride::new(0, &all, &[6, 7, 8, 9]));
+    }
     let line = Line {
         blocks: counted,
         direction,
@@ -255,7 +264,7 @@ impl Line {
             let kind = world.dice.of(&[Kind::Telegrams, Kind::Signals]);
             let mut train = Train::new(-650 * M, length * M, Heading::Right, kind, [0, 0]);
             (train.outside, train.speed) = (true, speed);
-            world.trains.push(train);
+            world.enter(train);
             self.births.push(cycle);
             self.born_at = cycle;
         }
@@ -436,7 +445,23 @@ fn request(world: &mut World) -> Option<Request> {
 
 /// An episode: its accident, if there is one.
 fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<String> {
-    let (mut world, mut line) = build(seed, broken);
+    run(build(seed, broken, false), (seed, broken), counts)
+}
+
+/// The same with the kernel's device in the trains that go by telegrams; a limit is judged so many cycles after it was set.
+fn on_board(seed: u64, in_force: i64, counts: &mut Counts) -> Option<String> {
+    let (mut world, line) = build(seed, None, true);
+    if let Some(ride) = &mut world.ride {
+        ride.in_force = in_force;
+    }
+    run((world, line), (seed, None), counts)
+}
+
+fn run(
+    (mut world, mut line): (World, Line),
+    (seed, broken): (u64, Option<Broken>),
+    counts: &mut Counts,
+) -> Option<String> {
     let mut channels = [Channel::default(), Channel::default()];
     let restarts = world.dice.of(&[0, 0, 0, 1500, 300]);
     let (mut still, mut found) = (0, None);
@@ -451,6 +476,7 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
         let mut given = input(line.own(&world, occupied), detected, blocks);
         given.orders = world.orders(0);
         given.request = request(&mut world);
+        given.framed = world.framed(0);
         given.messages[1] = channels[0].receive(&mut world.dice, world.cycle);
         let proceeds = world.devices[0].step(given);
         world.counts.proceed += proceeds;
@@ -466,6 +492,17 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
 #[test]
 fn no_accident_on_a_counted_line() {
     finds_none(100, |seed, counts| episode(seed, None, counts));
+}
+
+#[test]
+fn no_accident_with_devices_on_board() {
+    let counts = finds_none(40, |seed, counts| on_board(seed, IN_FORCE, counts));
+    assert!(counts.permitted > 40 * 20 && counts.turned > 40, "{counts:?}");
+}
+
+#[test]
+fn a_limit_that_is_judged_too_soon_is_an_accident() {
+    finds_one("a limit at once", 1..400, |seed, counts| on_board(seed, 0, counts));
 }
 
 #[test]

@@ -13,6 +13,7 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Session};
+use world::board::{IN_FORCE, Ride, reckon};
 use world::{
     BLOCKS, Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft,
     finds_none, finds_one, input, pieces, point, route, set, signals, withdraw,
@@ -53,13 +54,14 @@ enum Broken {
 const BROKEN: [(Broken, u64); 3] = [(Broken::Turn, 300), (Broken::Clear, 1), (Broken::Release, 420)];
 
 /// The station at one end: its tracks, its throat, the line outward from it, and how much of that the other one sees.
-fn plan(tracks: [usize; 2], throat: usize, line: &[usize], shared: u8, outward: Heading) -> Draft {
+fn plan(tracks: [usize; 2], throat: usize, (line, shared): (&[usize], u8), outward: Heading, on_board: bool) -> Draft {
+    let approach = if on_board { line.len() } else { 3 };
     let mut plan = draft(&pieces(&CIRCUITS));
     plan.points[0] = point(throat);
     for (track, platform) in tracks.into_iter().enumerate() {
         let path = [(throat, at(0, track)), (platform, Positions::NONE)];
         // Beyond the tracks is a buffer stop.
-        plan.routes[track] = route(outward.opposite(), line[0], &line[..3], &path, CIRCUITS.len());
+        plan.routes[track] = route(outward.opposite(), line[0], &line[..approach], &path, CIRCUITS.len());
         plan.routes[track].from = SegmentSet::nth(0);
         plan.routes[2 + track] = route(outward, platform, &[platform], &path[..1], line[0]);
         plan.routes[2 + track].to = SegmentSet::nth(0);
@@ -71,6 +73,9 @@ fn plan(tracks: [usize; 2], throat: usize, line: &[usize], shared: u8, outward: 
         *place = CircuitSet::nth(*circuit);
     }
     plan.segments[0] = segment;
+    if on_board {
+        reckon(&mut plan);
+    }
     plan
 }
 
@@ -90,14 +95,14 @@ fn equipment(session: u16, life: u16) -> Equipment<BLOCKS> {
 }
 
 /// The two devices. Their views meet at a joint, or overlap by one circuit or two.
-fn devices(shared: u8, broken: Option<Broken>) -> Vec<Device> {
+fn devices(shared: u8, broken: Option<Broken>, on_board: bool) -> Vec<Device> {
     let (from_left, from_right): (&[usize], &[usize]) = match shared {
         0 => (&[3, 4, 5], &[8, 7, 6]),
         1 => (&[3, 4, 5, 6], &[8, 7, 6]),
         _ => (&[3, 4, 5, 6], &[8, 7, 6, 5]),
     };
-    let mut left = plan(PLATFORMS[0], 2, from_left, shared, Heading::Right);
-    let mut right = plan(PLATFORMS[1], 9, from_right, shared, Heading::Left);
+    let mut left = plan(PLATFORMS[0], 2, (from_left, shared), Heading::Right, on_board);
+    let mut right = plan(PLATFORMS[1], 9, (from_right, shared), Heading::Left, on_board);
     break_in(&mut left, broken);
     break_in(&mut right, broken);
     let mut life = LIFE;
@@ -108,9 +113,9 @@ fn devices(shared: u8, broken: Option<Broken>) -> Vec<Device> {
     vec![Device::new(&left, &equipment(100, LIFE), vec![0]), Device::new(&right, &equipment(500, life), vec![1])]
 }
 
-fn build(seed: u64, broken: Option<Broken>) -> World {
+fn build(seed: u64, broken: Option<Broken>, on_board: bool) -> World {
     let mut dice = Dice::new(seed);
-    let devices = devices(dice.of(&[0, 1, 2, 2]), broken);
+    let devices = devices(dice.of(&[0, 1, 2, 2]), broken, on_board);
     let zone = |low: i64, high: i64, points| Zone { low: low * M, high: high * M, points, fouling: 20 * M };
     let zones = vec![zone(-10_000, 20, [None, Some(0)]), zone(700, 10_000, [Some(1), None])];
     let signal = |at: i64, heading, track, device, routes: &[(usize, i64)]| {
@@ -134,6 +139,11 @@ fn build(seed: u64, broken: Option<Broken>) -> World {
         let kind = dice.of(&[Kind::Telegrams, Kind::Signals]);
         let (nose, heading) = if end == 0 { (-10 * M, Heading::Right) } else { (730 * M, Heading::Left) };
         world.trains.push(Train::new(nose, length, heading, kind, [track, track]));
+    }
+    if on_board {
+        // Those that are a train's length away from what the other station sees.
+        let judged = [PLATFORMS[0][0], PLATFORMS[0][1], 2, 9, PLATFORMS[1][0], PLATFORMS[1][1]];
+        world.ride(Ride::new(dice.of(&[0, 1]), &judged, &judged));
     }
     world
 }
@@ -194,7 +204,12 @@ fn turn_round(world: &mut World) -> bool {
         if arrived && world.dice.one_in(12) {
             let heading = train.heading.opposite();
             let nose = if heading == Heading::Right { high } else { low };
-            world.trains[number] = Train { nose, before: nose, heading, heard: None, way: None, ..train.clone() };
+            let mut turned = Train { nose, before: nose, heading, heard: None, way: None, ..train.clone() };
+            if let Some(board) = &mut turned.board {
+                // Nobody may know the new direction for a while.
+                (board.moved, board.unknown_until) = (0, world.cycle + world.dice.of(&[0, 0, 0, 1, 4]));
+            }
+            world.trains[number] = turned;
             world.counts.arrived += 1;
         }
     }
@@ -206,6 +221,7 @@ fn step(world: &mut World, number: usize, sends: bool, channels: &mut [Channel; 
     let (occupied, detected) = world.detect(number);
     let mut given = input(occupied, detected, [STILL; BLOCKS]);
     given.orders = world.orders(number);
+    given.framed = world.framed(number);
     given.request = request(world, number, sends);
     given.messages[0] = channels[1 - number].receive(&mut world.dice, world.cycle);
     let proceeds = world.devices[number].step(given);
@@ -216,7 +232,19 @@ fn step(world: &mut World, number: usize, sends: bool, channels: &mut [Channel; 
 
 /// An episode: its accident, if there is one.
 fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<String> {
-    let mut world = build(seed, broken);
+    run(build(seed, broken, false), (seed, broken), counts)
+}
+
+/// The same with the kernel's device in the trains that go by telegrams; a limit is judged so many cycles after it was set.
+fn on_board(seed: u64, in_force: i64, counts: &mut Counts) -> Option<String> {
+    let mut world = build(seed, None, true);
+    if let Some(ride) = &mut world.ride {
+        ride.in_force = in_force;
+    }
+    run(world, (seed, None), counts)
+}
+
+fn run(mut world: World, (seed, broken): (u64, Option<Broken>), counts: &mut Counts) -> Option<String> {
     let mut channels = [Channel::default(), Channel::default()];
     let mut sends = [true, false];
     let mut still = 0;
@@ -251,6 +279,17 @@ fn episode(seed: u64, broken: Option<Broken>, counts: &mut Counts) -> Option<Str
 #[test]
 fn no_accident_between_two_stations() {
     finds_none(150, |seed, counts| episode(seed, None, counts));
+}
+
+#[test]
+fn no_accident_with_devices_on_board() {
+    let counts = finds_none(40, |seed, counts| on_board(seed, IN_FORCE, counts));
+    assert!(counts.permitted > 40 * 20 && counts.turned > 40, "{counts:?}");
+}
+
+#[test]
+fn a_limit_that_is_judged_too_soon_is_an_accident() {
+    finds_one("a limit at once", 1..400, |seed, counts| on_board(seed, 0, counts));
 }
 
 #[test]
