@@ -116,6 +116,7 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("interlocking/room.rs", "between <= stronger", "the case: the brake between"),
     ("interlocking/room.rs", "holds(weaker)", "the case: the distance is enough for the weaker brake"),
     ("interlocking/room.rs", "holds(stronger)", "the case: the distance is enough for the stronger brake"),
+    ("interlocking/device.rs", "layout()", "a layout of constants, which the constructor takes"),
     ("interlocking/track.rs", "before.counts.0 <= clear", "a range: no count is over T_clear"),
     ("interlocking/track.rs", "before.counts.1 <= clear", "a range: no count is over T_clear"),
     ("interlocking/track.rs", "before.holds(loss)", AGAIN),

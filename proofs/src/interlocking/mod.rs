@@ -7,6 +7,7 @@ mod ahead;
 mod atc;
 mod border;
 mod cycle;
+mod device;
 mod direction;
 mod heading;
 mod layout;
@@ -97,6 +98,7 @@ pub const ALL: &[Harness] = &[
     table::t_atc_3_stale::HARNESS,
     table::t_atc_3_damaged::HARNESS,
     table::t_atc_3_device::HARNESS,
+    device::t_atc_3_step::HARNESS,
     works::t_ilk_8::HARNESS,
     direction::t_ilk_9::HARNESS,
     point::t_ilk_4::HARNESS,

@@ -213,6 +213,16 @@ A simulated line:
           
           [default: shortened]
 
+      --signal <SIGNAL>
+          What trains run on
+
+          Possible values:
+          - codes:     Codes alone
+          - telegrams: Telegrams alone: the ground's transmitters send frames for both directions of travel in turn
+          - both:      Telegrams with codes beside them
+          
+          [default: codes]
+
       --clears-at-once
           An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
 
