@@ -51,7 +51,7 @@ fn trains_go_to_and_fro_for_two_hours() {
     }
 }
 
-/// Trains on telegrams know where they are, and their braking pattern counts.
+/// Trains on telegrams know where they are, and are permitted to run by their pattern.
 #[test]
 fn trains_run_on_telegrams_alone() {
     let line = Line::read(&example("three-stations.toml")).expect("a line");

@@ -3,7 +3,7 @@
 //! It hears codes and frames, those for the other direction of travel too; frames are lost, late by a cycle, and come from transmitters that have frozen;
 //! levels are missing, the odometer is wide or silent, the direction of travel is unknown for a while, or changes.
 
-use super::{BRAKE, Draft, Kind, LIFE, LOSS, SPEEDS, Train, World};
+use super::{BRAKE, Counts, Draft, Kind, LIFE, LOSS, SPEEDS, Train, World, finds_none, finds_one};
 use atc_kernel::aspect::{Acceptance, AspectId, AspectTable, Times};
 use atc_kernel::code::{CodeFrequencies, CodeTable, Millihertz};
 use atc_kernel::distance::Metres;
@@ -25,7 +25,7 @@ const AGE: i64 = 7;
 /// The same, and to a stand from the highest speed.
 const RESIDUAL: u16 = 29;
 /// After so many cycles a limit that was lowered must be kept.
-pub const IN_FORCE: i64 = 10;
+const IN_FORCE: i64 = 10;
 /// The levels: mB a metre, and up to so many more.
 const SLOPE: i64 = 2;
 const WIDTH: i64 = 8;
@@ -291,4 +291,11 @@ impl World {
         self.ride = Some(ride);
         found
     }
+}
+
+/// Hunts with devices on board: no episode ends in an accident, trains may move and change ends, and one ends in one if a limit is judged at once.
+pub fn finds_none_on_board(episode: fn(u64, i64, &mut Counts) -> Option<String>) {
+    let counts = finds_none(40, |seed, counts| episode(seed, IN_FORCE, counts));
+    assert!(counts.permitted > 40 * 20 && counts.turned > 40, "{counts:?}");
+    finds_one("a limit at once", 1..400, |seed, counts| episode(seed, 0, counts));
 }

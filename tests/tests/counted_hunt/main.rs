@@ -16,7 +16,7 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Join, Message, Permission, Session, Stamp, Wayside, WaysideError};
-use world::board::{IN_FORCE, Ride, reckon};
+use world::board::{Ride, finds_none_on_board, reckon};
 use world::{
     Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft, finds_none,
     finds_one, input, pieces, point, route, set, signals, stopping, withdraw,
@@ -496,13 +496,7 @@ fn no_accident_on_a_counted_line() {
 
 #[test]
 fn no_accident_with_devices_on_board() {
-    let counts = finds_none(40, |seed, counts| on_board(seed, IN_FORCE, counts));
-    assert!(counts.permitted > 40 * 20 && counts.turned > 40, "{counts:?}");
-}
-
-#[test]
-fn a_limit_that_is_judged_too_soon_is_an_accident() {
-    finds_one("a limit at once", 1..400, |seed, counts| on_board(seed, 0, counts));
+    finds_none_on_board(on_board);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Session};
-use world::board::{IN_FORCE, Ride, reckon};
+use world::board::{Ride, finds_none_on_board, reckon};
 use world::{
     BLOCKS, Channel, Counts, Device, Dice, Draft, Kind, LIFE, M, Piece, Signal, Train, World, Zone, at, draft,
     finds_none, finds_one, input, pieces, point, route, set, signals, withdraw,
@@ -283,13 +283,7 @@ fn no_accident_between_two_stations() {
 
 #[test]
 fn no_accident_with_devices_on_board() {
-    let counts = finds_none(40, |seed, counts| on_board(seed, IN_FORCE, counts));
-    assert!(counts.permitted > 40 * 20 && counts.turned > 40, "{counts:?}");
-}
-
-#[test]
-fn a_limit_that_is_judged_too_soon_is_an_accident() {
-    finds_one("a limit at once", 1..400, |seed, counts| on_board(seed, 0, counts));
+    finds_none_on_board(on_board);
 }
 
 #[test]
