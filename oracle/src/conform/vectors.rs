@@ -170,9 +170,11 @@ const fn count(machine: &str, set: Set) -> u64 {
         b"speed-supervision" | b"braking-pattern" => 600,
         _ => 1500,
     };
-    match set {
-        Set::Minimal => thorough / 10,
-        Set::Thorough => thorough,
+    match (set, machine.as_bytes()) {
+        // Its stations are many.
+        (Set::Minimal, b"interlocking" | b"wayside") => thorough / 4,
+        (Set::Minimal, _) => thorough / 10,
+        (Set::Thorough, _) => thorough,
     }
 }
 
@@ -201,11 +203,24 @@ pub fn vectors(machine: &str, set: Set) -> Vec<Vector> {
         // The lines' own configurations only in the thorough set, and few: their traces are long.
         let sizes = if set == Set::Thorough { Sizes::Few } else { Sizes::Small };
         let Some(expected) = walk::case(machine, SEED, number, sizes, None) else { continue };
-        let note =
-            if expected.is_rejected() { "a rule broken by one step".to_owned() } else { format!("walk {number}") };
-        add(Vector::of(&expected, note));
+        let what = if expected.is_rejected() { "a rule broken by one step, walk" } else { "walk" };
+        add(Vector::of(&expected, format!("{what} {number}")));
     }
     all
+}
+
+/// The vector of the minimal set that has this note; none if there is none.
+pub fn noted(machine: &str, note: &str) -> Option<Vector> {
+    let expected = if let Some(name) = note.strip_prefix("the example ") {
+        walk::examples(machine).into_iter().find(|(known, _)| *known == name)?.1.expected().ok()?
+    } else if let Some(number) = note.rsplit_once("walk ").and_then(|(_, number)| number.parse().ok()) {
+        walk::case(machine, SEED, number, Sizes::Small, None)?
+    } else {
+        let names = |directed: &directed::Directed| format!("catches {}", directed.catches.join(", "));
+        let mut all = directed::all().into_iter().filter(|directed| directed.machine == machine);
+        all.find(|directed| names(directed) == note)?.case().expected().ok()?
+    };
+    Some(Vector::of(&expected, note.to_owned()))
 }
 
 /// The JSON Schema of a vector.

@@ -76,6 +76,11 @@ impl Programs {
         Ok(command)
     }
 
+    /// The mutants that are in it.
+    pub fn mutants(&self) -> &BTreeSet<String> {
+        &self.mutants
+    }
+
     /// What holds the vectors against these mutants, one after the other; against all, if none is named.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! `aspect-acceptance`: [`atc_kernel::aspect`] behind the protocol.
 
-use atc_kernel::aspect::{AspectSet, AspectTable, Display, MAX_ASPECTS, State, Times};
+use atc_kernel::Machine as _;
+use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Display, MAX_ASPECTS, State, Times};
 use atc_kernel::speed::KmhTenths;
 pub use atc_line::aspect::Config;
 use schemars::JsonSchema;
@@ -33,14 +34,14 @@ pub struct Output {
 #[derive(Clone, Debug)]
 pub struct Aspect {
     table: AspectTable,
-    times: Times,
+    acceptance: Acceptance<MAX_ASPECTS>,
     state: State<MAX_ASPECTS>,
 }
 
 impl Aspect {
     /// The times of the line, in cycles.
     pub fn times(&self) -> Times {
-        self.times
+        self.acceptance.times
     }
 
     /// The aspects of the line.
@@ -99,25 +100,26 @@ impl Machine for Aspect {
 
     fn open(config: &Config) -> Result<Self, String> {
         let table = config.table()?;
-        let times = config.times()?;
-        Ok(Self { table, times, state: State::INITIAL })
+        let acceptance = Acceptance { times: config.times()? };
+        Ok(Self { table, acceptance, state: acceptance.initial() })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         let detected = self.detected(step)?;
-        let (state, display) = atc_kernel::aspect::step(self.times, self.state, detected);
+        let (state, display) = self.acceptance.step(self.state, detected);
         self.state = state;
         Ok(self.output(display))
     }
 
     fn cycles(&self) -> Vec<(&'static str, u16)> {
+        let times = self.acceptance.times;
         vec![
-            ("operate", self.times.operate().0),
-            ("recovery", self.times.recovery().0),
-            ("recovery_and_mask", self.times.expiry().0),
-            ("interruption", self.times.interruption().0),
-            ("shortened_operate", self.times.shortened_operate().0),
-            ("tolerated_interruption", self.times.tolerated_interruption().0),
+            ("operate", times.operate().0),
+            ("recovery", times.recovery().0),
+            ("recovery_and_mask", times.expiry().0),
+            ("interruption", times.interruption().0),
+            ("shortened_operate", times.shortened_operate().0),
+            ("tolerated_interruption", times.tolerated_interruption().0),
         ]
     }
 }

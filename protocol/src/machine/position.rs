@@ -1,6 +1,7 @@
 //! `train-position`: [`atc_kernel::position`] behind the protocol.
 
-use atc_kernel::position::{self, Interval, Measured, Moved, Position};
+use atc_kernel::Machine as _;
+use atc_kernel::position::{Interval, Measured, Moved, Position};
 use atc_line::position::level;
 pub use atc_line::position::{Config, TableConfig};
 use schemars::JsonSchema;
@@ -81,11 +82,13 @@ impl Machine for Positioned {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        Ok(Self { position: config.position()?, interval: None })
+        let position = config.position()?;
+        Ok(Self { position, interval: position.initial() })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
-        self.interval = position::step(&self.position, self.interval, step.measured()?);
-        Ok(Output { interval_m: self.interval.map(ends) })
+        let (state, interval) = self.position.step(self.interval, step.measured()?);
+        self.interval = state;
+        Ok(Output { interval_m: interval.map(ends) })
     }
 }

@@ -124,7 +124,8 @@ impl Machine for Supervised {
         let raw = |speed: Option<Kmh>| speed.map(|speed| RawKmhTenths(speed.0));
         let previous = step.previous.map_or(self.previous, supervision::Brake::from);
         let speeds = Speeds { measured: raw(step.speed_km_h), permitted: raw(step.permitted_km_h) };
-        self.previous = supervision::step(self.parameters, previous, speeds);
-        Ok(Output { brake: self.previous.into() })
+        let (state, brake) = self.parameters.step(previous, speeds);
+        self.previous = state;
+        Ok(Output { brake: brake.into() })
     }
 }

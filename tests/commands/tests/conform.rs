@@ -217,6 +217,15 @@ fn the_requirements_of_the_fields_are_in_the_specification() {
     }
 }
 
+/// Without a table a machine's differences would name no requirement, and its vectors would be refused.
+#[test]
+fn every_machine_has_a_table_of_its_fields() {
+    let mut tables: Vec<&str> = TABLES.iter().map(|table| table.machine).collect();
+    let mut machines: Vec<&str> = atc_protocol::machine::KINDS.iter().map(|kind| kind.name).collect();
+    (tables.sort_unstable(), machines.sort_unstable());
+    assert_eq!(tables, machines);
+}
+
 /// The page of a report is whole by itself, and the JSON is of its schema.
 #[test]
 fn the_reports_of_a_difference() {

@@ -32,7 +32,7 @@ fn there(output: &Value, name: &str, word: &str) -> Option<Value> {
 
 /// Every table, in the order of the machines.
 pub const TABLES: &[Table] =
-    &[ASPECT, SUPERVISION, BLOCK, TELEGRAM, PATTERN, PERMITTED, POSITION, INTERLOCKING, WAYSIDE];
+    &[ASPECT, SUPERVISION, BLOCK, TELEGRAM, PATTERN, PERMITTED, POSITION, INTERLOCKING, TRAIN, WAYSIDE];
 
 const ASPECT: Table = Table {
     machine: "aspect-acceptance",
@@ -182,6 +182,30 @@ const INTERLOCKING: Table = Table {
             |output| output.get("answer")?.get("refused").cloned(),
             &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24", "ILK-28", "ILK-29", "ILK-30"],
         ),
+    ],
+};
+
+const TRAIN: Table = Table {
+    machine: "train",
+    start: &["TRN-8", "CODE-4", "PER-9", "POS-5", "SUP-3", "TIME-4"],
+    cycles: &["TIME-1", "TIME-3", "PER-8", "TRN-10"],
+    fields: &[
+        output(
+            "display_km_h",
+            Danger::Higher,
+            &["TRN-1", "TRN-2", "CODE-1", "CODE-2", "CODE-3", "ACC-1", "ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-7"],
+        ),
+        output(
+            "permitted_km_h",
+            Danger::Higher,
+            &[
+                "TRN-2", "TRN-3", "TRN-4", "TRN-5", "TRN-6", "TRN-9", "TRN-11", "TRN-12", "PER-1", "PER-3", "PER-4",
+                "PER-5", "PER-6", "PER-7", "PER-8", "TEL-6", "TEL-8", "PAT-1",
+            ],
+        ),
+        Field { level: Level::Reason, ..output("basis", Danger::No, &["PER-1", "PER-3", "PER-6", "PER-8", "TRN-12"]) },
+        output("position_m", Danger::Narrower, &["POS-1", "POS-2", "POS-4", "TRN-6", "TRN-12"]),
+        output("brake", Danger::WeakerBrake, &["TRN-7", "SUP-1", "SUP-2", "DUP-1"]),
     ],
 };
 

@@ -7,8 +7,11 @@ use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
 use super::station::Station;
+use super::varied::varied;
 use super::{Source, Walk, wrong_plans};
 use crate::conform::random::Random;
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked};
 
 pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
 
@@ -54,7 +57,7 @@ pub(super) fn fork() -> Value {
 
 fn small() -> Vec<Value> {
     let loop_ = layout(PASSING_LOOP);
-    vec![
+    let mut all = vec![
         fork(),
         wrong_plans::with_line(fork()),
         with_times(&loop_, SHORTEST),
@@ -75,7 +78,19 @@ fn small() -> Vec<Value> {
         ),
         with_times(&layout(TERMINUS), Times { clear: 2, settle: 1, start: 1, ..SHORTEST }),
         with_times(&layout(JUNCTION), SHORTEST),
-    ]
+    ];
+    let varied = varied(&all, VARIED);
+    all.extend(varied);
+    all
+}
+
+/// How many stations have other values than the layouts.
+const VARIED: u64 = 40;
+
+/// Whether the kernel takes the station.
+pub(super) fn is_taken(config: &Value) -> bool {
+    let config = serde_json::from_value::<Config>(config.clone());
+    config.is_ok_and(|config| Interlocked::open(&config).is_ok())
 }
 
 fn large() -> Vec<Value> {
@@ -124,17 +139,36 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
     let _ = started;
     let points =
         station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
+    let points = points.collect();
+    let stay = if plan { random.between(1, 4) } else { random.between(5, 40) };
     Box::new(Ground {
-        trains: Vec::new(),
-        points: points.collect(),
+        trains: standing(&station, stay, random),
+        points,
         disturbed: None,
         consent: station.segments.iter().map(|_| !random.one_in(4)).collect(),
         begun: random.one_in(10),
         requests: if plan { 2 } else { 12 },
         wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
-        stay: if plan { random.between(1, 4) } else { random.between(5, 40) },
+        stay,
         station,
     })
+}
+
+/// Trains that stand in the station before the device begins, each somewhere in a path: in half of the walks there are some.
+fn standing(station: &Station, stay: i64, random: &mut Random) -> Vec<Train> {
+    let mut trains: Vec<Train> = Vec::new();
+    for _ in 0..random.one_of(&[0, 0, 1, 2]) {
+        let Some(route) = random.pick(&station.routes) else { continue };
+        let place = random.below(route.path.len());
+        let rear = place.checked_sub(1).map_or_else(|| route.entry.first(), |place| route.path.get(place));
+        let mut on: VecDeque<usize> = route.path.get(place).copied().into_iter().collect();
+        on.extend(rear.copied().filter(|_| random.one_in(3)));
+        if on.iter().all(|circuit| !trains.iter().any(|train| train.on.contains(circuit))) {
+            let next = route.path.iter().skip(place + 1).copied().collect();
+            trains.push(Train { on, next, left: random.between(0, 3 * stay) });
+        }
+    }
+    trains
 }
 
 fn word(side: &Value) -> &'static str {

@@ -15,6 +15,7 @@ mod station;
 mod supervision;
 mod telegram;
 mod train;
+mod varied;
 mod wayside;
 mod wrong_plans;
 

@@ -148,7 +148,11 @@ impl Walk for Ride {
             step["line"] = if random.one_in(2) { "analog".into() } else { "digital".into() };
         }
         let known = i64::try_from(self.speeds.len()).unwrap_or(1);
-        let rank = |random: &mut Random| if random.one_in(12) { known.min(15) } else { random.between(0, known - 1) };
+        let rank = |random: &mut Random| match random.below(16) {
+            0 => known.min(15),
+            1 => 15,
+            _ => random.between(0, known - 1),
+        };
         if let Some(counter) = self.main.next(&self.gaps, self.window, self.disorder, random) {
             let section = if random.one_in(20) { self.behind } else { self.section };
             let far = random.between(0, self.far);

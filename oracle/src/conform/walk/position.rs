@@ -52,6 +52,8 @@ fn wrong() -> Vec<Value> {
     crossed_last[16] = high[16] + 1;
     vec![
         config(255, &low, &high, 10, -6000, [0, 0]),
+        config(8, &low, &high, 10, -6000, [0, 0]),
+        config(4096, &line(7, -33), &line(13, -20), 1, -4000, [0, 0]),
         config(256, &crossed, &high, 10, -6000, [0, 0]),
         config(256, &line(0, 0), &high, 10, -6000, [0, 0]),
         config(256, &line(3, -900), &line(0, 0), 10, -6000, [0, 0]),

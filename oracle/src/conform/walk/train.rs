@@ -52,7 +52,13 @@ fn small() -> Vec<Value> {
     ];
     let mut measured = all[0].clone();
     measured["position"] = position();
+    let mut two = measured.clone();
     all.push(measured);
+    two["channels"] = 2.into();
+    all.push(two);
+    let mut two = all[0].clone();
+    two["channels"] = 2.into();
+    all.push(two);
     all
 }
 
@@ -109,6 +115,8 @@ struct Ride {
     /// The difference of the levels, in hundredths of a decibel.
     difference: i64,
     measures: bool,
+    /// Whether it has two channels.
+    two: bool,
     /// How the train faces: left, right, or it is not known.
     facing: &'static str,
 }
@@ -136,6 +144,7 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
         stays: around(&[operate, expiry, recovery, shortened, interruption, 1], 1),
         difference: random.between(0, 2400),
         measures: config.get("position").is_some(),
+        two: config["channels"] == 2,
         facing: "left",
     })
 }
@@ -202,6 +211,9 @@ impl Walk for Ride {
             self.difference = (self.difference - by / 10 + random.between(-12, 12)).clamp(-50, 3300);
             step["first_db"] = parts(self.difference, 100);
             step["second_db"] = if random.one_in(12) { parts(-6001, 100) } else { 0.into() };
+        }
+        if self.two && random.one_in(12) {
+            step["lost"] = [json!(["a"]), json!(["b"]), json!(["a", "b"]), json!(["b", "a"])][random.below(4)].clone();
         }
         let permitted = last.and_then(|last| last["permitted_km_h"].as_f64()).unwrap_or(0.0) * 10.0;
         #[expect(clippy::cast_possible_truncation, reason = "a permitted speed is small")]

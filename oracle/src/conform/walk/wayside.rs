@@ -10,11 +10,8 @@ use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200) };
 
-/// The circuits of the station in the direction of travel.
-const TRACK: [&str; 6] = ["W2", "W1", "A", "B", "E1", "E2"];
-
-/// The same, where the line has a third circuit.
-const LONGER: [&str; 7] = ["W3", "W2", "W1", "A", "B", "E1", "E2"];
+/// The circuits of the station and of the line behind it, in the direction of travel.
+const STATION: [&str; 4] = ["A", "B", "E1", "E2"];
 
 /// The example's configuration.
 fn example() -> Value {
@@ -42,22 +39,85 @@ fn away(mut config: Value) -> Value {
     config
 }
 
-/// With three counted blocks of one circuit each.
-fn three(mut config: Value) -> Value {
-    let plan = &mut config["layout"]["plan"];
-    for (list, more) in [
-        ("/circuits", json!({"name": "W3", "length_m": 270})),
-        ("/segments/0/circuits", "W3".into()),
-        ("/routes/0/approach", "W3".into()),
-    ] {
-        if let Some(list) = plan.pointer_mut(list).and_then(Value::as_array_mut) {
-            list.push(more);
+/// With counted blocks of so many circuits each, from the outermost one, and with so many of them held behind a head.
+fn blocks(mut config: Value, sizes: &[usize], hold: u64) -> Value {
+    let count: usize = sizes.iter().sum();
+    for number in 3..=count {
+        let name = format!("W{number}");
+        let plan = &mut config["layout"]["plan"];
+        for (list, more) in [
+            ("/circuits", json!({"name": name, "length_m": 270})),
+            ("/segments/0/circuits", name.as_str().into()),
+            ("/routes/0/approach", name.as_str().into()),
+        ] {
+            if let Some(list) = plan.pointer_mut(list).and_then(Value::as_array_mut) {
+                list.push(more);
+            }
         }
+        let side = |section: usize| json!({"section": section, "gradient_permille": 5, "curve_km_h": 75});
+        config["signals"]["circuits"][&name] = json!({"left": side(107 + 2 * number), "right": side(206 + 2 * number)});
+    }
+    let mut names = (1..=count).rev().map(|number| format!("W{number}"));
+    let block = |size: &usize| {
+        let circuits: Vec<String> = names.by_ref().take(*size).collect();
+        json!({"circuits": circuits, "max_trains": size, "tail_hold_sections": hold, "pass_ms": 3000})
+    };
+    config["counted"]["blocks"] = sizes.iter().map(block).collect();
+    config
+}
+
+/// With one more route of the station.
+fn and_route(mut config: Value, route: Value) -> Value {
+    if let Some(routes) = config["layout"]["plan"]["routes"].as_array_mut() {
+        routes.push(route);
+    }
+    config
+}
+
+/// A route of this heading from the circuit `entry` over `path`, from no segment and to that one, if any.
+fn route(heading: &str, entry: &str, path: &[&str], overlap: &[&str], to: &[&str]) -> Value {
+    let at = |circuit: &&str| {
+        let points = if *circuit == "A" { json!({"P": "normal"}) } else { json!({}) };
+        json!({"circuits": [circuit], "points": points})
+    };
+    let beyond = if heading == "left" { "W1" } else { "E1" };
+    json!({
+        "name": "other", "heading": heading, "entry": [entry], "approach": [entry],
+        "path": path.iter().map(at).collect::<Vec<_>>(), "overlap": {"circuits": overlap, "points": {}},
+        "beyond": [beyond], "continuing": [], "conflicts": [], "from": [], "to": to, "drive_cycles": 4,
+        "release_cycles": 40, "stay_cycles": 4, "speed_code": 3, "cab_signalled": true,
+    })
+}
+
+/// The station with a second way in: from the circuit C of this length.
+fn second_way(mut config: Value, length: u64) -> Value {
+    if let Some(circuits) = config["layout"]["plan"]["circuits"].as_array_mut() {
+        circuits.push(json!({"name": "C", "length_m": length}));
     }
     let side = |section: u32| json!({"section": section, "gradient_permille": 5, "curve_km_h": 75});
-    config["signals"]["circuits"]["W3"] = json!({"left": side(113), "right": side(212)});
-    let block = |name: &str| json!({"circuits": [name], "max_trains": 2, "tail_hold_sections": 1, "pass_ms": 3000});
-    config["counted"]["blocks"] = json!([block("W3"), block("W2"), block("W1")]);
+    config["signals"]["circuits"]["C"] = json!({"left": side(301), "right": side(300)});
+    and_route(config, route("right", "C", &["B"], &[], &["East"]))
+}
+
+/// A line that leads out of the station to the left, which is that of the counted trains for the other direction.
+fn out_to_the_west(mut config: Value) -> Value {
+    config["layout"]["plan"]["segments"][0]["throat"] = json!(["A"]);
+    and_route(config, route("left", "B", &["A"], &[], &["West"]))
+}
+
+/// With circuits of these lengths, in the order of the plan.
+fn long(mut config: Value, lengths: &[u64]) -> Value {
+    for (circuit, length) in config["layout"]["plan"]["circuits"].as_array_mut().into_iter().flatten().zip(lengths) {
+        circuit["length_m"] = (*length).into();
+    }
+    config
+}
+
+/// With as many sections held behind a head, in a line of the trains that leave.
+fn away_held(config: Value, hold: u64, train_m: u64) -> Value {
+    let mut config = away(config);
+    config["counted"]["blocks"][0]["tail_hold_sections"] = hold.into();
+    config["counted"]["train_m"] = train_m.into();
     config
 }
 
@@ -74,7 +134,16 @@ fn small() -> Vec<Value> {
         timed(example.clone(), 3, 4, 2, 1),
         timed(away(example.clone()), 2, 3, 1, 0),
         timed(plain(example.clone()), 2, 5, 1, 2),
-        timed(three(example.clone()), 2, 3, 1, 0),
+        timed(away_held(example.clone(), 2, 400), 2, 3, 1, 0),
+        timed(second_way(away_held(example.clone(), 2, 400), 220), 2, 3, 1, 0),
+        // A route to another line than that of the counted trains.
+        timed(plain(out_to_the_west(example.clone())), 2, 3, 1, 0),
+        timed(out_to_the_west(away(example.clone())), 2, 3, 1, 0),
+        timed(long(plain(example.clone()), &[60_000, 220, 230, 60_000, 60_000, 260]), 2, 3, 1, 0),
+        timed(blocks(example.clone(), &[1, 1, 1], 1), 2, 3, 1, 0),
+        timed(blocks(example.clone(), &[1, 1, 1, 1], 2), 2, 3, 1, 0),
+        timed(blocks(example.clone(), &[2, 1, 3], 1), 1, 2, 1, 0),
+        timed(blocks(example.clone(), &[1, 2, 1, 1, 2], 3), 2, 4, 2, 1),
     ]
 }
 
@@ -97,6 +166,7 @@ fn wrong() -> Vec<Value> {
         change(|config| config["counted"]["train_m"] = 221.into()),
         change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["W2"])),
         change(|config| config["counted"]["blocks"][1]["circuits"] = json!(["E1"])),
+        change(|config| config["counted"]["blocks"][1]["tail_hold_sections"] = 2.into()),
         change(|config| config["counted"]["blocks"] = json!([])),
         change(|config| config["signals"]["speeds_km_h"] = json!([0, 15, 25, 75])),
         change(|config| config["signals"]["codes"]["pairs"][3]["speed_km_h"] = 74.into()),
@@ -110,6 +180,15 @@ fn wrong() -> Vec<Value> {
         change(|config| config["layout"]["plan"]["residual_cycles"] = 2.into()),
         change(|config| config["layout"]["plan"]["braking_m"] = json!([0, 100, 300, 700, 900])),
         against(),
+        out_to_the_west(example()),
+        // A route over circuits of the counted line, and one whose overlap is there.
+        and_route(away(example()), route("right", "W1", &["A", "B"], &[], &[])),
+        and_route(away(example()), route("right", "W1", &["A"], &["B"], &[])),
+        // The shortest of two ways before the entry counts.
+        second_way(away_held(example(), 1, 215), 300),
+        second_way(away_held(example(), 1, 205), 200),
+        change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([0, 25, 25, 75])),
+        change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([25, 25, 45, 75])),
         change(|config| {
             config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("A"));
         }),
@@ -151,8 +230,12 @@ struct Block {
 
 struct Ground {
     /// The circuits of the station in the direction of travel.
-    track: &'static [&'static str],
+    track: Vec<String>,
     blocks: Vec<Block>,
+    /// Whether detections and checks are whatever they may be, of no train.
+    noise: bool,
+    /// How many routes there are: `in-out`, and perhaps `other`.
+    routes: usize,
     /// Whether the low end of the blocks is their entry.
     up: bool,
     life: i64,
@@ -175,17 +258,23 @@ struct Ground {
 }
 
 fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
-    let track: &'static [&'static str] =
-        if config["signals"]["circuits"].get("W3").is_some() { &LONGER } else { &TRACK };
+    let lines = config["layout"]["plan"]["segments"].as_array().into_iter().flatten();
+    let west = lines.filter(|line| line["name"] == "West").filter_map(|line| line["circuits"].as_array()).flatten();
+    let mut track: Vec<String> = west.filter_map(Value::as_str).map(ToOwned::to_owned).collect();
+    track.reverse();
+    track.extend(STATION.map(ToOwned::to_owned));
     let blocks = config["counted"]["blocks"].as_array().into_iter().flatten().map(|block| {
         let circuits = block["circuits"].as_array().into_iter().flatten();
-        let place = |circuit: &Value| track.iter().position(|name| circuit == name);
+        let place = |circuit: &Value| track.iter().position(|name| *circuit == **name);
         Block { places: circuits.filter_map(place).collect() }
     });
     let life = cycles(started, "life");
+    let blocks = blocks.collect();
     Box::new(Ground {
         track,
-        blocks: blocks.collect(),
+        blocks,
+        noise: random.one_in(3),
+        routes: config["layout"]["plan"]["routes"].as_array().map_or(1, Vec::len),
         up: config["counted"]["direction"] != "down",
         life,
         session: config["session"].as_i64().unwrap_or(0),
@@ -230,7 +319,21 @@ impl Ground {
         }
     }
 
+    /// Checks and detections of no train.
+    fn noise(&self, random: &mut Random) -> Vec<Value> {
+        let detection = |block: &Block, random: &mut Random| {
+            let present: Vec<_> = (0..block.places.len()).filter(|_| random.one_in(3)).collect();
+            let reset = if random.one_in(8) { present.len().into() } else { Value::Null };
+            let [low, high] = [random.one_in(3), random.one_in(3)];
+            json!({"low_check": low, "high_check": high, "present": present, "reset": reset})
+        };
+        self.blocks.iter().map(|block| detection(block, random)).collect()
+    }
+
     fn detections(&self, random: &mut Random) -> Vec<Value> {
+        if self.noise {
+            return self.noise(random);
+        }
         let detection = |block: &Block, random: &mut Random| {
             let head = self.train.map(|(place, _)| place);
             let mut present: Vec<_> = (0..block.places.len()).filter(|at| Some(block.places[*at]) == head).collect();
@@ -255,14 +358,14 @@ impl Ground {
         self.blocks.iter().map(|block| detection(block, random)).collect()
     }
 
-    fn occupied(&self, random: &mut Random) -> Vec<&'static str> {
+    fn occupied(&self, random: &mut Random) -> Vec<&str> {
         let counted: Vec<_> = self.blocks.iter().flat_map(|block| block.places.iter().copied()).collect();
         let at = |place: usize| self.train.map(|(head, _)| head) == Some(place) || self.tail == Some(place);
         let places = (0..self.track.len()).filter(|place| {
             let its = !counted.contains(place) && at(*place);
             its != (self.wrong > 0 && random.one_in(4 * self.wrong))
         });
-        places.map(|place| self.track[place]).collect()
+        places.map(|place| self.track[place].as_str()).collect()
     }
 
     /// What the neighbours say in this cycle.
@@ -299,10 +402,12 @@ impl Ground {
         messages
     }
 
-    fn request(random: &mut Random) -> Value {
+    fn request(&self, random: &mut Random) -> Value {
         match random.below(12) {
-            0..=4 => json!({"set": "in-out"}),
-            5 => json!({"withdraw": "in-out"}),
+            0..=3 => json!({"set": "in-out"}),
+            4 if self.routes > 1 => json!({"set": "other"}),
+            5 if self.routes > 1 && random.one_in(2) => json!({"withdraw": "other"}),
+            4 | 5 => json!({"withdraw": "in-out"}),
             6 => json!({"drive": "P", "to": if random.one_in(2) { "normal" } else { "reverse" }}),
             7 | 8 => json!({"turn": "West", "to": if random.one_in(4) { "away" } else { "toward" }}),
             _ => json!({"turn": "East", "to": if random.one_in(4) { "toward" } else { "away" }}),
@@ -314,7 +419,7 @@ impl Ground {
             self.begun = true;
             return Some(json!({"unblock": self.track, "lift": self.track}));
         }
-        let one = self.track[random.below(self.track.len())];
+        let one = self.track[random.below(self.track.len())].as_str();
         match random.below(40) {
             0 => Some(json!({"block": [one]})),
             1 | 2 => Some(json!({"unblock": self.track})),
@@ -339,14 +444,14 @@ impl Walk for Ground {
             "messages": self.messages(random),
         });
         if random.one_in(3) {
-            step["request"] = Self::request(random);
+            step["request"] = self.request(random);
         }
         if let Some(orders) = self.orders(random) {
             step["orders"] = orders;
         }
         if random.one_in(4) {
             let some = |random: &mut Random| -> Vec<&str> {
-                self.track.iter().copied().filter(|_| random.one_in(2)).collect()
+                self.track.iter().map(String::as_str).filter(|_| random.one_in(2)).collect()
             };
             step["framed"] = json!({"main": some(random), "sub": some(random)});
         }

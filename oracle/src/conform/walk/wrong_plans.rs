@@ -50,6 +50,65 @@ const WRONG_LINES: &[Changes] = &[
     )],
 ];
 
+/// Each breaks one rule of engineering of the station as it is, whose rules are all checked.
+const UNSOUND: &[Changes] = &[
+    &[("/loss_cycles", "2"), ("/clear_cycles", "3"), ("/routes/0/stay_cycles", "3"), ("/routes/1/stay_cycles", "3")],
+    &[("/routes/1/entry", r#"["W", "B"]"#), ("/routes/1/approach", r#"["W", "B"]"#)],
+    &[("/routes/1/approach", r#"["B"]"#)],
+    &[("/routes/0/approach", r#"["W", "B"]"#)],
+    &[("/routes/0/approach", r#"["W", "E"]"#)],
+    &[("/routes/0/overlap", r#"{"circuits": ["A"], "points": {"P": "normal"}}"#)],
+    &[("/routes/1/beyond", "[]")],
+    &[("/routes/1/beyond", r#"["C"]"#)],
+    &[("/routes/0/conflicts", r#"["to-B"]"#)],
+    &[
+        ("/points", r#"[{"name": "P", "detectors": ["A"]}, {"name": "Q", "detectors": []}]"#),
+        ("/routes/0/path/0/points", r#"{"P": "normal", "Q": "normal"}"#),
+    ],
+    &[("/braking_m", "[0, 65535]")],
+    &[("/routes/0/speed_code", "0")],
+    &[("/circuits/1/length_m", "0")],
+];
+
+/// The same with the segment S behind B.
+const UNSOUND_LINES: &[Changes] = &[
+    &[("/segments/0/throat", r#"["C"]"#)],
+    &[("/segments/0/outward", r#""left""#)],
+    &[("/routes/1/from", r#"["S"]"#)],
+    &[("/points", r#"[{"name": "P", "detectors": ["A"]}, {"name": "Q", "detectors": ["E"]}]"#)],
+    &[("/circuits/4/length_m", "0")],
+    &[
+        (
+            "/circuits",
+            r#"[{"name": "W", "length_m": 600}, {"name": "A", "length_m": 600}, {"name": "B", "length_m": 600},
+                {"name": "C", "length_m": 600}, {"name": "E", "length_m": 600}, {"name": "F", "length_m": 600}]"#,
+        ),
+        (
+            "/segments",
+            r#"[{"name": "S", "circuits": ["E"], "throat": ["B"], "outward": "right"},
+                {"name": "T", "circuits": ["F"], "throat": ["C"], "outward": "left"},
+                {"name": "U", "circuits": ["W"], "throat": ["C"], "outward": "left"}]"#,
+        ),
+        ("/routes/1/from", r#"["T", "U"]"#),
+    ],
+    &[
+        (
+            "/routes/1",
+            r#"{"name": "back", "heading": "left", "entry": ["B"], "approach": ["B"],
+                "path": [{"circuits": ["A"], "points": {"P": "normal"}}], "overlap": {"circuits": [], "points": {}},
+                "beyond": ["W"], "continuing": [], "conflicts": [], "from": [], "to": [], "drive_cycles": 2,
+                "release_cycles": 3, "stay_cycles": 2, "speed_code": 1, "cab_signalled": false}"#,
+        ),
+        ("/routes/0/continuing", r#"["back"]"#),
+    ],
+];
+
+/// The station, with the rules of engineering checked.
+pub(super) fn sound(mut fork: Value) -> Value {
+    fork["plan"]["rules"] = true.into();
+    fork
+}
+
 /// The station with a segment.
 pub(super) fn with_line(mut fork: Value) -> Value {
     let plan = &mut fork["plan"];
@@ -62,8 +121,10 @@ pub(super) fn with_line(mut fork: Value) -> Value {
 /// The plans.
 pub(super) fn wrong(fork: &Value) -> Vec<Value> {
     let line = with_line(fork.clone());
-    let pairs = WRONG.iter().map(|changes| (fork, changes)).chain(WRONG_LINES.iter().map(|changes| (&line, changes)));
-    pairs.map(|(plan, changes)| changed(plan, changes)).chain([long(fork)]).collect()
+    let (all_rules, all_rules_of_line) = (sound(fork.clone()), sound(line.clone()));
+    let groups = [(fork, WRONG), (&line, WRONG_LINES), (&all_rules, UNSOUND), (&all_rules_of_line, UNSOUND_LINES)];
+    let each = groups.iter().flat_map(|(plan, all)| all.iter().map(|changes| changed(plan, changes)));
+    each.chain([long(fork)]).collect()
 }
 
 fn changed(plan: &Value, changes: Changes) -> Value {
@@ -94,7 +155,7 @@ fn long(fork: &Value) -> Value {
 #[cfg(test)]
 mod tests {
     use super::super::interlocking::fork;
-    use super::{with_line, wrong};
+    use super::{UNSOUND, UNSOUND_LINES, changed, sound, with_line, wrong};
     use crate::conform::case::{Case, is_rejected};
     use serde_json::Value;
 
@@ -105,7 +166,17 @@ mod tests {
 
     #[test]
     fn the_station_is_taken_and_each_of_its_wrong_plans_is_not() {
-        assert!(!is_rejected(&started(fork())) && !is_rejected(&started(with_line(fork()))));
+        for plan in [fork(), with_line(fork()), sound(fork()), sound(with_line(fork()))] {
+            let reply = started(plan);
+            assert!(!is_rejected(&reply), "{reply}");
+        }
+        // What breaks a rule of engineering alone is taken where those are not checked.
+        for (plan, all) in [(fork(), UNSOUND), (with_line(fork()), UNSOUND_LINES)] {
+            for changes in all {
+                let reply = started(changed(&plan, changes));
+                assert!(!is_rejected(&reply), "{reply}");
+            }
+        }
         for plan in wrong(&fork()) {
             let reply = started(plan);
             assert!(is_rejected(&reply), "{reply}");

@@ -233,7 +233,7 @@ impl Interlocked {
 impl Machine for Interlocked {
     const NAME: &'static str = "interlocking";
     const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"request":{"set":"W-1"},"orders":{"unblock":["1T"]},"consent":["West"]}"#;
-    const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}; or {"plan":{…}}, the kernel's own terms, for the traces of models: the rules of engineering are not checked"#;
+    const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}; or {"plan":{…}}, the kernel's own terms, for the traces of models: the rules of engineering are checked only if it says "rules":true"#;
 
     type Config = Config;
     type Step = Step;

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::{ByName, Heading, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
-/// engineering are not, so that a trace on a bad layout, which ends in an accident, can be replayed. Not for a real station.
+/// engineering are checked if `rules` is true, and else not, so that a trace on a bad layout, which ends in an accident, can be replayed.
+/// Not for a real station.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "InterlockingPlan")]
@@ -41,6 +42,9 @@ pub struct PlanConfig {
     /// For how many cycles a train may still slide once it is wholly on the last circuit of a route.
     #[serde(default)]
     pub standstill_cycles: u16,
+    /// Whether the rules of engineering are checked as well.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub rules: bool,
     /// The speed of each code from 0 (stop), in km/h; at most 8.
     pub speeds_km_h: Vec<u16>,
     /// The braking distance from each of these speeds, in metres.
@@ -64,6 +68,10 @@ pub struct CircuitForm {
     pub name: String,
     /// Its length in metres.
     pub length_m: u16,
+    /// The highest speed code in it, as the line has it; absent: the line has none there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 7))]
+    pub speed_code: Option<u8>,
 }
 
 /// A point.
@@ -182,6 +190,12 @@ impl PlanConfig {
         fill(&mut speeds, self.speeds_km_h.iter().copied(), "speeds_km_h")?;
         fill(&mut plan.braking, self.braking_m.iter().map(|metres| Metres(*metres)), "braking_m")?;
         fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
+        for (number, circuit) in self.circuits.iter().enumerate() {
+            if let Some(code) = circuit.speed_code {
+                let code = speed_code(&format!("circuit {}: speed_code", circuit.name), code)?;
+                plan.line = plan.line.and(kernel::SpeedLimits::NONE.and_at_most(code, CircuitSet::nth(number)));
+            }
+        }
         plan.clear = self.clear_cycles;
         plan.turn = Ticks(self.turn_cycles);
         plan.start = Ticks(self.start_cycles);
@@ -199,7 +213,8 @@ impl PlanConfig {
         for (place, route) in plan.routes.iter_mut().zip(&self.routes) {
             *place = route_of(&names, route).map_err(|why| format!("route {}: {why}", route.name))?;
         }
-        let layout = Layout::with_what_proofs_need(*plan)
+        let checked = if self.rules { Layout::new(*plan) } else { Layout::with_what_proofs_need(*plan) };
+        let layout = checked
             .map_err(|broken| format!("{} [{}]", names.broken(broken, &plan), Rule::Plan(broken.rule).name()))?;
         Ok((Box::new(layout), names, speeds))
     }
@@ -265,6 +280,13 @@ fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, St
     Ok(Element { circuits: circuits(names, &form.circuits, field)?, positions })
 }
 
+fn speed_code(field: &str, code: u8) -> Result<SpeedCode, String> {
+    if code > SpeedCode::MOST.0 {
+        return Err(format!("{field} is {code}; it is 0 to {}", SpeedCode::MOST.0));
+    }
+    Ok(SpeedCode(code))
+}
+
 fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> {
     let throat = circuits(names, &form.throat, "throat")?;
     let mut made = Segment { throat, outward: form.outward.0, shared: form.shared, ..Segment::NONE };
@@ -276,11 +298,6 @@ fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> 
 
 fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String> {
     let overlap_speed = form.overlap_speed_code.unwrap_or(form.speed_code);
-    for (field, code) in [("speed_code", form.speed_code), ("overlap_speed_code", overlap_speed)] {
-        if code > SpeedCode::MOST.0 {
-            return Err(format!("{field} is {code}; it is 0 to {}", SpeedCode::MOST.0));
-        }
-    }
     let mut made = kernel::Route {
         heading: form.heading.0,
         entry: circuits(names, &form.entry, "entry")?,
@@ -295,8 +312,8 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
         drive: Ticks(form.drive_cycles),
         release: Ticks(form.release_cycles),
         stay: Ticks(form.stay_cycles),
-        speed: SpeedCode(form.speed_code),
-        overlap_speed: SpeedCode(overlap_speed),
+        speed: speed_code("speed_code", form.speed_code)?,
+        overlap_speed: speed_code("overlap_speed_code", overlap_speed)?,
         cab_signalled: form.cab_signalled,
         ..kernel::Route::NONE
     };

@@ -2,9 +2,11 @@
 
 mod config;
 
-pub use config::{AcceptanceTimes, Codes, Config, Pair};
+pub use config::{AcceptanceTimes, Channels, Codes, Config, Pair};
 
+use atc_kernel::Machine as _;
 use atc_kernel::aspect::MAX_ASPECTS;
+use atc_kernel::duplex::{self, Duplex};
 use atc_kernel::speed::RawKmhTenths;
 use atc_kernel::telegram::{Frame, encode};
 use atc_kernel::train::{self, Antennas, Train};
@@ -63,6 +65,19 @@ pub struct Step {
     /// The direction of travel in which the train faces; null or absent: it is not known, and no telegram is used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub facing: Option<Heading>,
+    /// With two channels: those that have lost their memory before this cycle, and begin as at a start. Both: a maintenance reset.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lost: Vec<Channel>,
+}
+
+/// One of two channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// Channel A.
+    A,
+    /// Channel B.
+    B,
 }
 
 /// One cycle's output.
@@ -129,7 +144,10 @@ impl Step {
 #[derive(Clone, Debug)]
 pub struct OnBoard {
     train: Train<MAX_ASPECTS>,
+    /// The device in one channel.
     state: train::State<MAX_ASPECTS>,
+    /// The device in two channels, if it has two.
+    duplex: Option<Duplex<train::State<MAX_ASPECTS>>>,
 }
 
 impl OnBoard {
@@ -138,9 +156,31 @@ impl OnBoard {
         &self.train
     }
 
-    /// The kernel's state.
+    /// The kernel's state; of two channels, that of channel A.
     pub fn state(&self) -> &train::State<MAX_ASPECTS> {
-        &self.state
+        self.duplex.as_ref().map_or(&self.state, |duplex| &duplex.a.state)
+    }
+
+    /// What the device commands in one cycle.
+    fn cab(&mut self, antennas: Antennas, lost: &[Channel]) -> Result<train::Cab, String> {
+        let Some(mut device) = self.duplex else {
+            if !lost.is_empty() {
+                return Err("lost names a channel; this device has one channel (config.channels)".to_owned());
+            }
+            let (state, cab) = self.train.step(self.state, antennas);
+            self.state = state;
+            return Ok(cab);
+        };
+        let started = Duplex::initial(&self.train);
+        for channel in lost {
+            match channel {
+                Channel::A => device.a = started.a,
+                Channel::B => device.b = started.b,
+            }
+        }
+        let (device, agreed) = device.step(&self.train, antennas);
+        self.duplex = Some(device);
+        Ok(duplex::output::<Train<MAX_ASPECTS>>(agreed))
     }
 }
 
@@ -155,12 +195,13 @@ impl Machine for OnBoard {
     type Output = Output;
 
     fn open(config: &Config) -> Result<Self, String> {
-        Ok(Self { train: config.train()?, state: train::State::INITIAL })
+        let train = config.train()?;
+        let duplex = (config.channels == Channels::Two).then(|| Duplex::initial(&train));
+        Ok(Self { train, state: train.initial(), duplex })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {
-        let (state, cab) = train::step(&self.train, self.state, step.antennas()?);
-        self.state = state;
+        let cab = self.cab(step.antennas()?, &step.lost)?;
         Ok(Output {
             display_km_h: cab.display.map(|speed| Kmh(speed.0.into())),
             permitted_km_h: cab.permission.speed.map(|speed| Kmh(speed.0.into())),

@@ -2,7 +2,8 @@
 //!
 //! `vectors --directed yes`: whether each directed vector catches the mutants that it names. `vectors --mutants FILE [--set thorough]
 //! [--seconds N] [--seed N]`: of each mutant, a name and a folder in a line of the file, whether a vector catches it; if none does, it searches
-//! for so long on each machine that may show it.
+//! for so long on each machine that may show it. `vectors --caught FILE`: whether each mutant of the file is caught by the one vector that
+//! stands beside it: lines of mutant, machine and note, as the run before prints them.
 //!
 //! In the checkout there are no mutants: it is compiled from the copy of the sources that has them (`atc-prover old-rules --program vectors`).
 
@@ -18,7 +19,7 @@ use atc_oracle::conform::profile::Profile;
 use atc_oracle::conform::random::Random;
 use atc_oracle::conform::shrink::shrink;
 use atc_oracle::conform::side::{Answers, Broken};
-use atc_oracle::conform::vectors::{Set, vectors};
+use atc_oracle::conform::vectors::{Set, noted, vectors};
 use atc_oracle::conform::walk::{self, Sizes};
 use atc_protocol::Session;
 use serde_json::{Value, json};
@@ -105,7 +106,7 @@ fn machines(folder: &str) -> &'static [&'static str] {
         "permitted" | "distance" => &["permitted-speed", "train"],
         "interlocking" => &["interlocking", "wayside"],
         "wayside" => &["wayside"],
-        "train" => &["train"],
+        "train" | "duplex" => &["train"],
         "code" => &["train", "wayside"],
         _ => &[
             "aspect-acceptance",
@@ -127,10 +128,12 @@ struct Options {
     seed: u64,
     seconds: u64,
     directed: bool,
+    caught: Option<String>,
 }
 
 fn options() -> Result<Options, String> {
-    let mut options = Options { mutants: Vec::new(), set: Set::Minimal, seed: 1, seconds: 0, directed: false };
+    let mut options =
+        Options { mutants: Vec::new(), set: Set::Minimal, seed: 1, seconds: 0, directed: false, caught: None };
     let mut words = std::env::args().skip(1);
     while let Some(option) = words.next() {
         let value = words.next().ok_or_else(|| format!("{option} needs a value"))?;
@@ -142,6 +145,7 @@ fn options() -> Result<Options, String> {
                 options.mutants = pairs.map(|(name, folder)| (name.to_owned(), folder.to_owned())).collect();
             }
             "--set" => options.set = if value == "thorough" { Set::Thorough } else { Set::Minimal },
+            "--caught" => options.caught = Some(value),
             "--directed" => options.directed = value == "yes",
             "--seed" => options.seed = number()?,
             "--seconds" => options.seconds = number()?,
@@ -174,14 +178,47 @@ fn directed() -> bool {
     missed == 0
 }
 
+/// Holds each mutant of the file against the vector that stands beside it: how many there are, and which do not differ.
+///
+/// # Errors
+/// A file that cannot be read, or a line that is not of its form.
+fn caught(path: &str) -> Result<bool, String> {
+    let profile = Profile::default();
+    let judge = Judge { level: Level::Output, profile: &profile };
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{path}: {error}"))?;
+    let (mut all, mut missed) = (0, 0);
+    let mut kept: BTreeMap<(&str, &str), Option<Lines>> = BTreeMap::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let [mutant, machine, note] = line.split('\t').collect::<Vec<_>>()[..] else {
+            return Err(format!(
+                "{path}: line {number} is not a mutant, a machine and a note, with tabulators between"
+            ));
+        };
+        let lines = kept.entry((machine, note)).or_insert_with(|| {
+            let lines = noted(machine, note).map(|vector| Lines::of(&vector.expected()))?;
+            // What the kernel itself does not answer so catches nothing.
+            (!lines.catch("", judge)).then_some(lines)
+        });
+        all += 1;
+        let catches = choose(mutant) && lines.as_ref().is_some_and(|lines| lines.catch(mutant, judge));
+        choose("");
+        if !catches {
+            missed += 1;
+            println!("{mutant}: not caught by the vector of {machine} {note:?}");
+        }
+    }
+    println!("{} of {all} mutants are caught by the vectors beside them", all - missed);
+    Ok(missed == 0)
+}
+
 fn run(options: &Options) {
     let profile = Profile::default();
     let judge = Judge { level: Level::Output, profile: &profile };
     let named: BTreeSet<&str> = options.mutants.iter().flat_map(|(_, folder)| machines(folder)).copied().collect();
-    let mut lines: Vec<(&str, Vec<Lines>)> = Vec::new();
+    let mut lines: Vec<(&str, Vec<(String, Lines)>)> = Vec::new();
     for machine in named {
         let all = vectors(machine, options.set);
-        lines.push((machine, all.iter().map(|vector| Lines::of(&vector.expected())).collect()));
+        lines.push((machine, all.iter().map(|vector| (vector.note.clone(), Lines::of(&vector.expected()))).collect()));
         eprintln!("{machine}: {} vectors", all.len());
     }
     let seeds: BTreeMap<&str, Seeds> = if options.seconds > 0 {
@@ -198,10 +235,10 @@ fn run(options: &Options) {
         let started = Instant::now();
         let caught = machines(folder).iter().find_map(|machine| {
             let (_, all) = lines.iter().find(|(name, _)| name == machine)?;
-            all.iter().position(|case| case.catch(mutant, judge)).map(|place| (machine, place))
+            all.iter().find(|(_, case)| case.catch(mutant, judge)).map(|(note, _)| (machine, note))
         });
-        if let Some((machine, place)) = caught {
-            println!("{mutant}\tcaught\t{machine}\t{place}");
+        if let Some((machine, note)) = caught {
+            println!("{mutant}\tcaught\t{machine}\t{note}");
             continue;
         }
         println!("{mutant}\tsurvives\t{folder}\t{:.1}", started.elapsed().as_secs_f64());
@@ -351,7 +388,7 @@ fn search(mutant: &str, folder: &str, options: &Options, judge: Judge, seeds: &B
         while Instant::now() < until {
             number += 1;
             let expected = if number % 3 == 0 {
-                walk::case(machine, options.seed, number / 3, Sizes::Mixed, None)
+                walk::case(machine, options.seed, number / 3, Sizes::Small, None)
             } else {
                 seeds.get(machine).and_then(|seeds| seeds.changed(&mut random)).and_then(without_faults)
             };
@@ -407,6 +444,16 @@ fn main() -> ExitCode {
             std::panic::set_hook(Box::new(|_| {}));
             if options.directed {
                 return if directed() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+            }
+            if let Some(path) = &options.caught {
+                return match caught(path) {
+                    Ok(true) => ExitCode::SUCCESS,
+                    Ok(false) => ExitCode::FAILURE,
+                    Err(error) => {
+                        eprintln!("vectors: {error}");
+                        ExitCode::from(2)
+                    }
+                };
             }
             run(&options);
             ExitCode::SUCCESS

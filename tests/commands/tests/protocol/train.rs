@@ -69,3 +69,49 @@ fn a_train_that_changes_ends_begins_anew() {
     let outputs = session(&[&left[..], &[(8, None)], &back].concat());
     assert!(outputs[20..22].iter().all(|output| !permitted(output)));
 }
+
+/// A session of a device in two channels, each cycle with the channels that have lost their memory; the brake in each.
+fn brakes(channels: u32, lost: &[&[&str]]) -> Vec<String> {
+    let begin = start("train", &json!({"channels": channels}).to_string());
+    let code = json!({"main": {"code_hz": 22}, "sub": {"code_hz": 21}, "speed_km_h": 30});
+    let steps = lost.iter().map(|lost| {
+        let mut body = code.clone();
+        body["line"] = "analog".into();
+        if !lost.is_empty() {
+            body["lost"] = json!(lost);
+        }
+        step(&body.to_string())
+    });
+    let lines: Vec<String> = std::iter::once(begin).chain(steps).collect();
+    let said = converse(&lines.iter().map(String::as_str).collect::<Vec<_>>());
+    let of = |line: &String| {
+        let reply: Value = serde_json::from_str(line).expect("JSON");
+        reply["output"]["brake"].as_str().map_or_else(|| line.clone(), ToOwned::to_owned)
+    };
+    said[1..].iter().map(of).collect()
+}
+
+#[test]
+fn a_device_in_two_channels_stops_for_good_once_they_differ() {
+    const NONE: &[&str] = &[];
+    let running = vec![NONE; 60];
+    assert_eq!(brakes(2, &running), brakes(1, &running));
+    assert_eq!(brakes(2, &running)[59], "release");
+    for channel in ["a", "b"] {
+        // Once a channel has lost its memory the other one alone permits nothing, however long the two are alike again.
+        let mut lost = running.clone();
+        lost.push(&[]);
+        let one: [&str; 1] = [channel];
+        lost[50] = &one;
+        lost.extend(vec![NONE; 100]);
+        assert!(brakes(2, &lost)[50..].iter().all(|brake| brake == "emergency"), "{channel}");
+        // Both: they begin anew.
+        lost[70] = &["a", "b"];
+        let after = brakes(2, &lost);
+        assert!(after[50..71].iter().all(|brake| brake == "emergency"));
+        assert_eq!(after[70..130], brakes(1, &running)[..]);
+    }
+    // A channel that is not there.
+    let said = brakes(1, &[&["a"]]);
+    assert!(said[0].contains("lost names a channel; this device has one channel"), "{}", said[0]);
+}
