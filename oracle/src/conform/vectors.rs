@@ -165,14 +165,14 @@ const SEED: u64 = 5_937_270;
 /// How many walks a machine has in a set.
 const fn count(machine: &str, set: Set) -> u64 {
     let thorough = match machine.as_bytes() {
-        b"interlocking" => 2400,
+        b"interlocking" => 4800,
         b"permitted-speed" => 2000,
         b"speed-supervision" | b"braking-pattern" => 600,
         _ => 1500,
     };
     match (set, machine.as_bytes()) {
         // Its stations are many.
-        (Set::Minimal, b"interlocking" | b"wayside") => thorough / 4,
+        (Set::Minimal, b"interlocking" | b"wayside") => thorough / 3,
         (Set::Minimal, _) => thorough / 10,
         (Set::Thorough, _) => thorough,
     }

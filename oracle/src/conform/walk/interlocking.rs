@@ -6,9 +6,9 @@ use std::collections::VecDeque;
 use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
-use super::station::Station;
+use super::station::{Segment, Station};
 use super::varied::varied;
-use super::{Source, Walk, wrong_plans};
+use super::{Source, Walk, rows, wrong_plans};
 use crate::conform::random::Random;
 use atc_protocol::machine::Machine as _;
 use atc_protocol::machine::interlocking::{Config, Interlocked};
@@ -78,8 +78,11 @@ fn small() -> Vec<Value> {
         ),
         with_times(&layout(TERMINUS), Times { clear: 2, settle: 1, start: 1, ..SHORTEST }),
         with_times(&layout(JUNCTION), SHORTEST),
+        rows::row(),
+        rows::lines(),
     ];
-    let varied = varied(&all, VARIED);
+    let rows = [rows::row(), rows::lines(), all[0].clone(), all[1].clone()];
+    let varied = [varied(&all, VARIED), varied(&rows, VARIED)].concat();
     all.extend(varied);
     all
 }
@@ -124,6 +127,8 @@ struct Ground {
     /// A circuit that is reported otherwise than it is, for so many cycles.
     disturbed: Option<(usize, i64)>,
     consent: Vec<bool>,
+    /// What is asked for first, a cycle each, the last one first: each line has its direction before a train comes.
+    agenda: Vec<Value>,
     begun: bool,
     /// How often a request is made: once in so many cycles.
     requests: u64,
@@ -140,18 +145,32 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
     let points =
         station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
     let points = points.collect();
+    let agenda = if plan && random.one_in(2) { directions(config, &station, random) } else { Vec::new() };
     let stay = if plan { random.between(1, 4) } else { random.between(5, 40) };
     Box::new(Ground {
-        trains: standing(&station, stay, random),
+        trains: if agenda.is_empty() { standing(&station, stay, random) } else { Vec::new() },
         points,
         disturbed: None,
-        consent: station.segments.iter().map(|_| !random.one_in(4)).collect(),
+        consent: station.segments.iter().map(|_| !agenda.is_empty() || !random.one_in(4)).collect(),
+        agenda,
         begun: random.one_in(10),
         requests: if plan { 2 } else { 12 },
         wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
         stay,
         station,
     })
+}
+
+/// Requests for a direction of each line, once the time after the start is over.
+fn directions(config: &Value, station: &Station, random: &mut Random) -> Vec<Value> {
+    let turn =
+        |segment: &Segment| json!({"turn": segment.name, "to": if random.one_in(2) { "toward" } else { "away" }});
+    let mut agenda: Vec<Value> = station.segments.iter().map(turn).collect();
+    if !agenda.is_empty() {
+        let start = config["plan"]["start_cycles"].as_u64().and_then(|start| usize::try_from(start).ok()).unwrap_or(0);
+        agenda.extend(std::iter::repeat_n(Value::Null, start + 1));
+    }
+    agenda
 }
 
 /// Trains that stand in the station before the device begins, each somewhere in a path: in half of the walks there are some.
@@ -340,7 +359,9 @@ impl Ground {
 impl Walk for Ground {
     fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value {
         self.move_points(random, last);
-        self.move_trains(random, last);
+        if self.agenda.is_empty() {
+            self.move_trains(random, last);
+        }
         let mut detected = Map::new();
         for (number, name) in self.station.points.iter().enumerate() {
             let point = self.points[number];
@@ -349,11 +370,15 @@ impl Walk for Ground {
             }
         }
         for number in 0..self.consent.len() {
-            if random.one_in(12) {
+            if self.agenda.is_empty() && random.one_in(12) {
                 self.consent[number] = !self.consent[number];
             }
         }
-        let request = if random.one_in(self.requests) { self.request(random, last) } else { None };
+        let request = match self.agenda.pop() {
+            Some(asked) => Some(asked).filter(|asked| !asked.is_null()),
+            None if random.one_in(self.requests) => self.request(random, last),
+            None => None,
+        };
         let orders = self.orders(random);
         let consent = self.station.segments.iter().zip(&self.consent).filter(|(_, consents)| **consents);
         let consent: Vec<_> = consent.map(|(segment, _)| segment.name.clone()).collect();

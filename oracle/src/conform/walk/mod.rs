@@ -11,6 +11,7 @@ mod pattern;
 mod permitted;
 mod plan;
 mod position;
+mod rows;
 mod station;
 mod supervision;
 mod telegram;

@@ -61,6 +61,10 @@ fn speeds(plan: &mut Value, random: &mut Random) {
     braking.sort_unstable();
     braking.dedup();
     let most = i64::try_from(braking.len()).unwrap_or(1);
+    if let Some(last) = braking.last_mut().filter(|_| random.one_in(6)) {
+        // A code that is not in the table.
+        *last = 65_535;
+    }
     braking.insert(0, 0);
     plan["speeds_km_h"] = json!([0, 15, 25, 45, 75][..braking.len()]);
     plan["braking_m"] = json!(braking);
@@ -109,7 +113,7 @@ pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
             let plan = &mut config["plan"];
             for circuit in plan["circuits"].as_array_mut().into_iter().flatten() {
                 if random.one_in(2) {
-                    circuit["length_m"] = random.one_of(&[50, 100, 200, 300, 600]).into();
+                    circuit["length_m"] = random.one_of(&[50, 100, 200, 300, 600, 40_000]).into();
                 }
                 if random.one_in(4) {
                     circuit["speed_code"] = random.between(0, 4).into();

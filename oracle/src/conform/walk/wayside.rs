@@ -228,6 +228,22 @@ struct Block {
     places: Vec<usize>,
 }
 
+/// A train.
+struct Train {
+    /// The place of its head on the track: beyond the last one only its tail is there.
+    head: usize,
+    /// The cycles until it moves.
+    left: i64,
+    /// The place of its tail behind its head, and the cycles until that is clear.
+    tail: Option<(usize, i64)>,
+}
+
+impl Train {
+    fn is_at(&self, place: usize) -> bool {
+        self.head == place || self.tail.is_some_and(|(tail, _)| tail == place)
+    }
+}
+
 struct Ground {
     /// The circuits of the station in the direction of travel.
     track: Vec<String>,
@@ -240,12 +256,13 @@ struct Ground {
     up: bool,
     life: i64,
     session: i64,
-    /// The head's place on the track, and the cycles until it moves; none: no train.
-    train: Option<(usize, i64)>,
-    /// Places whose head has just gone on: their tail is still there.
-    tail: Option<usize>,
-    /// The place that the head entered in this cycle.
-    entered: Option<usize>,
+    /// The trains, the first one first.
+    trains: Vec<Train>,
+    /// The most trains at a time.
+    most: usize,
+    /// The places that a head has entered in this cycle, and those that a tail has left.
+    entered: Vec<usize>,
+    cleared: Vec<usize>,
     /// What the device has told each neighbour so far.
     heard: [Vec<Value>; 2],
     permits: [bool; 2],
@@ -278,9 +295,10 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
         up: config["counted"]["direction"] != "down",
         life,
         session: config["session"].as_i64().unwrap_or(0),
-        train: None,
-        tail: None,
-        entered: None,
+        trains: Vec::new(),
+        most: [1, 1, 2, 3][random.below(4)],
+        entered: Vec::new(),
+        cleared: Vec::new(),
         heard: [Vec::new(), Vec::new()],
         permits: [!random.one_in(6), !random.one_in(6)],
         // A neighbour answers at once, or about as late as the life.
@@ -296,25 +314,33 @@ impl Ground {
         self.wrong > 0 && random.one_in(self.wrong)
     }
 
-    fn move_train(&mut self, random: &mut Random) {
-        self.entered = None;
-        self.tail = None;
-        let dwell = random.between(0, 3);
-        match &mut self.train {
-            None if random.one_in(6) => {
-                let first = if random.one_in(4) { random.below(self.track.len()) } else { 0 };
-                self.train = Some((first, dwell));
-                self.entered = Some(first);
-            }
-            None => {}
-            Some((_, left)) if *left > 0 => *left -= 1,
-            Some((place, left)) => {
-                self.tail = Some(*place);
-                (*place, *left) = (*place + 1, dwell);
-                self.entered = Some(*place);
-                if *place >= self.track.len() {
-                    self.train = None;
+    fn move_trains(&mut self, random: &mut Random) {
+        self.entered.clear();
+        self.cleared.clear();
+        for number in 0..self.trains.len() {
+            let ahead = self.trains[number].head + 1;
+            let is_free = self.trains.iter().all(|train| !train.is_at(ahead));
+            let train = &mut self.trains[number];
+            if let Some((place, left)) = train.tail {
+                train.tail = (left > 0).then_some((place, left - 1));
+                if left == 0 {
+                    self.cleared.push(place);
                 }
+            }
+            train.left -= 1;
+            if train.left < 0 && train.tail.is_none() && is_free && train.head < self.track.len() {
+                let (tail, dwell) = (random.one_of(&[0, 0, 1, 3]), random.between(0, 3));
+                *train = Train { head: ahead, left: dwell, tail: Some((train.head, tail)) };
+                self.entered.push(ahead);
+            }
+        }
+        let beyond = self.track.len();
+        self.trains.retain(|train| train.head < beyond || train.tail.is_some());
+        if self.trains.len() < self.most && random.one_in(6) {
+            let head = if random.one_in(4) { random.below(self.track.len()) } else { 0 };
+            if self.trains.iter().all(|train| !train.is_at(head)) {
+                self.trains.push(Train { head, left: random.between(0, 3), tail: None });
+                self.entered.push(head);
             }
         }
     }
@@ -335,16 +361,16 @@ impl Ground {
             return self.noise(random);
         }
         let detection = |block: &Block, random: &mut Random| {
-            let head = self.train.map(|(place, _)| place);
-            let mut present: Vec<_> = (0..block.places.len()).filter(|at| Some(block.places[*at]) == head).collect();
+            let is_head = |at: &usize| self.trains.iter().any(|train| train.head == block.places[*at]);
+            let mut present: Vec<_> = (0..block.places.len()).filter(is_head).collect();
             if self.goes_wrong(random) {
                 // Missed, or heard where nothing is.
                 present = if present.is_empty() { vec![0] } else { Vec::new() };
             }
             let (low, high) = (block.places.first().copied(), block.places.last().copied());
             let (entry, exit) = if self.up { (low, high) } else { (high, low) };
-            let check_in = self.entered.is_some() && self.entered == entry;
-            let check_out = self.tail.is_some() && self.tail == exit;
+            let check_in = entry.is_some_and(|entry| self.entered.contains(&entry));
+            let check_out = exit.is_some_and(|exit| self.cleared.contains(&exit));
             let (low, high) = if self.up { (check_in, check_out) } else { (check_out, check_in) };
             let flip = |check: bool, random: &mut Random| check != self.goes_wrong(random);
             let reset = if random.one_in(14) {
@@ -360,7 +386,7 @@ impl Ground {
 
     fn occupied(&self, random: &mut Random) -> Vec<&str> {
         let counted: Vec<_> = self.blocks.iter().flat_map(|block| block.places.iter().copied()).collect();
-        let at = |place: usize| self.train.map(|(head, _)| head) == Some(place) || self.tail == Some(place);
+        let at = |place: usize| self.trains.iter().any(|train| train.is_at(place));
         let places = (0..self.track.len()).filter(|place| {
             let its = !counted.contains(place) && at(*place);
             its != (self.wrong > 0 && random.one_in(4 * self.wrong))
@@ -437,7 +463,7 @@ impl Walk for Ground {
                 self.heard[number].push(stamp.clone());
             }
         }
-        self.move_train(random);
+        self.move_trains(random);
         let detected = if self.goes_wrong(random) { json!({}) } else { json!({"P": "normal"}) };
         let mut step = json!({
             "occupied": self.occupied(random), "detected": detected, "blocks": self.detections(random),
