@@ -173,17 +173,19 @@ fn directions(config: &Value, station: &Station, random: &mut Random) -> Vec<Val
     agenda
 }
 
-/// Trains that stand in the station before the device begins, each somewhere in a path: in half of the walks there are some.
+/// Trains that stand in the station before the device begins, each somewhere in a path or its overlap: in half of the walks there are some.
 fn standing(station: &Station, stay: i64, random: &mut Random) -> Vec<Train> {
     let mut trains: Vec<Train> = Vec::new();
     for _ in 0..random.one_of(&[0, 0, 1, 2]) {
         let Some(route) = random.pick(&station.routes) else { continue };
-        let place = random.below(route.path.len());
-        let rear = place.checked_sub(1).map_or_else(|| route.entry.first(), |place| route.path.get(place));
-        let mut on: VecDeque<usize> = route.path.get(place).copied().into_iter().collect();
+        // It may have slid into the overlap.
+        let way = [&route.path[..], &route.overlap[..]].concat();
+        let place = random.below(way.len());
+        let rear = place.checked_sub(1).map_or_else(|| route.entry.first(), |place| way.get(place));
+        let mut on: VecDeque<usize> = way.get(place).copied().into_iter().collect();
         on.extend(rear.copied().filter(|_| random.one_in(3)));
         if on.iter().all(|circuit| !trains.iter().any(|train| train.on.contains(circuit))) {
-            let next = route.path.iter().skip(place + 1).copied().collect();
+            let next = way.iter().skip(place + 1).copied().filter(|_| random.one_in(2)).collect();
             trains.push(Train { on, next, left: random.between(0, 3 * stay) });
         }
     }
@@ -253,7 +255,12 @@ impl Ground {
                 }
             } else if let Some(front) = self.trains[number].on.front().copied() {
                 let ignores = self.goes_wrong(random) && random.one_in(4);
-                let way = self.way(front, last, ignores);
+                let mut way = self.way(front, last, ignores);
+                if way.is_empty() && random.one_in(12) {
+                    // It slides on over the end of its route.
+                    let ends = self.station.routes.iter().filter(|route| route.path.last() == Some(&front));
+                    way.extend(ends.filter_map(|route| route.overlap.first()).copied().take(1));
+                }
                 if way.is_empty() && outermost.contains(&front) || way.is_empty() && random.one_in(30) {
                     gone.push(number);
                 }

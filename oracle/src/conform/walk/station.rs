@@ -22,6 +22,8 @@ pub(super) struct Route {
     pub(super) entry: Vec<usize>,
     /// The circuits of its path, in the order of travel.
     pub(super) path: Vec<usize>,
+    /// The circuits of its overlap.
+    pub(super) overlap: Vec<usize>,
     /// The segment that it leads to.
     pub(super) to: Option<usize>,
 }
@@ -47,6 +49,7 @@ impl Station {
             name: name.clone(),
             entry: circuits(route.entry),
             path: (0..route.length).flat_map(|place| circuits(route.circuit_at(place))).collect(),
+            overlap: circuits(route.overlap.circuits),
             to: (0..names.segments.len()).find(|number| route.to.meets(SegmentSet::nth(*number))),
         });
         let segments = names.segments.iter().zip(&plan.segments).map(|(name, segment)| Segment {

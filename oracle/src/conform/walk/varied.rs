@@ -103,6 +103,20 @@ fn ends(plan: &mut Value, random: &mut Random) {
     }
 }
 
+/// Two routes that exclude each other for a reason that the circuits do not show.
+fn conflict(plan: &mut Value, random: &mut Random) {
+    let Some(routes) = plan["routes"].as_array_mut() else { return };
+    let pair = [random.below(routes.len()), random.below(routes.len())];
+    for (one, other) in [(pair[0], pair[1]), (pair[1], pair[0])] {
+        let name = routes[other]["name"].clone();
+        if let Some(conflicts) =
+            routes[one]["conflicts"].as_array_mut().filter(|all| one != other && !all.contains(&name))
+        {
+            conflicts.push(name);
+        }
+    }
+}
+
 /// So many stations, each one of these with other values. The same for the same number.
 pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
     let one = |number: u64| {
@@ -122,6 +136,9 @@ pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
             times(plan, &mut random);
             speeds(plan, &mut random);
             ends(plan, &mut random);
+            if random.one_in(2) {
+                conflict(plan, &mut random);
+            }
             is_taken(&config).then_some(config)
         })
     };

@@ -89,14 +89,25 @@ fn route(heading: &str, entry: &str, path: &[&str], overlap: &[&str], to: &[&str
     })
 }
 
-/// The station with a second way in: from the circuit C of this length.
+/// The station with one more circuit, C, of this length.
 fn second_way(mut config: Value, length: u64) -> Value {
     if let Some(circuits) = config["layout"]["plan"]["circuits"].as_array_mut() {
         circuits.push(json!({"name": "C", "length_m": length}));
     }
     let side = |section: u32| json!({"section": section, "gradient_permille": 5, "curve_km_h": 75});
     config["signals"]["circuits"]["C"] = json!({"left": side(301), "right": side(300)});
-    and_route(config, route("right", "C", &["B"], &[], &["East"]))
+    config
+}
+
+/// The same with a route from there to the line in the east.
+fn joining(config: Value, length: u64) -> Value {
+    and_route(second_way(config, length), route("right", "C", &["B"], &[], &["East"]))
+}
+
+/// With the outermost circuit of the line in the west seen by the neighbour too.
+fn shared(mut config: Value) -> Value {
+    config["layout"]["plan"]["segments"][0]["shared"] = 1.into();
+    config
 }
 
 /// A line that leads out of the station to the left, which is that of the counted trains for the other direction.
@@ -135,7 +146,11 @@ fn small() -> Vec<Value> {
         timed(away(example.clone()), 2, 3, 1, 0),
         timed(plain(example.clone()), 2, 5, 1, 2),
         timed(away_held(example.clone(), 2, 400), 2, 3, 1, 0),
-        timed(second_way(away_held(example.clone(), 2, 400), 220), 2, 3, 1, 0),
+        timed(joining(away_held(example.clone(), 2, 400), 220), 2, 3, 1, 0),
+        // A route that ends in the station.
+        timed(and_route(second_way(away(example.clone()), 220), route("right", "C", &["A"], &[], &[])), 2, 3, 1, 0),
+        timed(shared(example.clone()), 2, 3, 1, 0),
+        timed(shared(plain(example.clone())), 2, 3, 1, 0),
         // A route to another line than that of the counted trains.
         timed(plain(out_to_the_west(example.clone())), 2, 3, 1, 0),
         timed(out_to_the_west(away(example.clone())), 2, 3, 1, 0),
@@ -185,8 +200,8 @@ fn wrong() -> Vec<Value> {
         and_route(away(example()), route("right", "W1", &["A", "B"], &[], &[])),
         and_route(away(example()), route("right", "W1", &["A"], &["B"], &[])),
         // The shortest of two ways before the entry counts.
-        second_way(away_held(example(), 1, 215), 300),
-        second_way(away_held(example(), 1, 205), 200),
+        joining(away_held(example(), 1, 215), 300),
+        joining(away_held(example(), 1, 205), 200),
         change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([0, 25, 25, 75])),
         change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([25, 25, 45, 75])),
         change(|config| {
