@@ -117,7 +117,7 @@ fn the_parts_have_everything_and_what_they_need() {
 
 /// The programs whose tests are of tools that the case does not rest on: `ci/test` runs them. A new program is named in the
 /// argument, or here.
-const OF_TOOLS: [&str; 16] = [
+const OF_TOOLS: [&str; 17] = [
     "c_abi",
     "command",
     "conform",
@@ -125,6 +125,7 @@ const OF_TOOLS: [&str; 16] = [
     "drawing",
     "explore",
     "files",
+    "fmi",
     "for_kani",
     "foreign",
     "importers",
@@ -144,6 +145,7 @@ fn every_test_program_is_named_or_of_a_tool() {
     let more = [
         "film",
         "film/kernel",
+        "fmi",
         "kernel",
         "oracle",
         "proofs",

@@ -35,7 +35,7 @@ use super::{Failure, print, remark, write};
 pub(crate) struct ReplayArgs {
     #[command(subcommand)]
     command: Option<ReplayCommand>,
-    /// Logs, and folders with logs (*.jsonl, also in the folders below); "-" for standard input
+    /// Logs, and folders with logs (*.jsonl and *.parquet, also in the folders below); "-" for standard input
     #[arg(required = true, value_name = "LOGS")]
     logs: Vec<PathBuf>,
     /// How much of a reply is compared [default: reason, or what the profile says]

@@ -2,13 +2,14 @@
 //! say the same.
 
 use std::fs::File;
-use std::io::{Seek as _, SeekFrom};
+use std::io::{Read, Seek as _, SeekFrom};
 
 use serde_json::Value;
 
 use super::lines::{Lines, key};
-use super::logs::Log;
+use super::logs::{Form, Log};
 use super::report::Differing;
+use super::rows::Rows;
 use crate::conform::alike::alike;
 use crate::conform::case::Case;
 use crate::conform::fields::Level;
@@ -46,10 +47,27 @@ pub(super) fn explain(differences: &mut [Differing], logs: &[Log], level: Level)
 /// The lines from the start to the reply that differs, if they are few.
 fn session(log: &Log, differing: &Differing) -> Option<Vec<String>> {
     let mut file = File::open(log.path.as_ref()?).ok()?;
+    if log.form == Form::Parquet {
+        // It cannot be read from the middle.
+        let rows = Rows::open(file).ok()?;
+        let of_one = rows.lines_of_a_row();
+        return collect(Lines::of_rows(rows, 0, of_one), differing, 0);
+    }
     file.seek(SeekFrom::Start(differing.offset)).ok()?;
-    let (mut lines, mut all, mut bytes) = (Lines::new(file, differing.offset), Vec::new(), 0);
-    for _ in differing.session_line..=differing.line {
-        let line = std::str::from_utf8(lines.next().ok()??.text?).ok()?.trim();
+    collect(Lines::new(file, differing.offset), differing, differing.session_line.saturating_sub(1))
+}
+
+/// These lines, of which so many are not counted.
+fn collect<R: Read>(mut lines: Lines<R>, differing: &Differing, before: u64) -> Option<Vec<String>> {
+    let (mut all, mut bytes) = (Vec::new(), 0);
+    while let Some(line) = lines.next().ok()? {
+        if line.offset < differing.offset {
+            continue;
+        }
+        if before + line.number > differing.line {
+            break;
+        }
+        let line = std::str::from_utf8(line.text?).ok()?.trim();
         bytes += line.len();
         if bytes > BYTES {
             return None;

@@ -34,12 +34,19 @@ pub(super) struct Lines<R> {
     /// Where the next line begins in the file, and its number.
     offset: u64,
     number: u64,
+    /// How many lines have one number.
+    of_one: u64,
 }
 
 impl<R: Read> Lines<R> {
     /// Lines from here on; `offset` says where in the file that is.
     pub(super) fn new(input: R, offset: u64) -> Self {
-        Self { input, buffer: vec![0; CHUNK], begin: 0, end: 0, offset, number: 1 }
+        Self::of_rows(input, offset, 1)
+    }
+
+    /// The same; so many lines in a row have one number.
+    pub(super) fn of_rows(input: R, offset: u64, of_one: u64) -> Self {
+        Self { input, buffer: vec![0; CHUNK], begin: 0, end: 0, offset, number: 1, of_one: of_one.max(1) }
     }
 
     /// The next line; none at the end.
@@ -67,7 +74,7 @@ impl<R: Read> Lines<R> {
     }
 
     fn line(&mut self, length: usize, dropped: u64, ended: bool) -> Line<'_> {
-        let (offset, number, from) = (self.offset, self.number, self.begin);
+        let (offset, number, from) = (self.offset, (self.number - 1) / self.of_one + 1, self.begin);
         self.begin += length + usize::from(ended);
         self.offset += dropped + length as u64 + u64::from(ended);
         self.number += 1;

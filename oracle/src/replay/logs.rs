@@ -27,6 +27,17 @@ pub struct Log {
     pub path: Option<PathBuf>,
     /// Its length in bytes; none if it is no plain file and cannot be read from the middle.
     pub length: Option<u64>,
+    /// How it is written.
+    pub form: Form,
+}
+
+/// How a log is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// JSON lines.
+    Lines,
+    /// Parquet: its rows are lines. It is read as a whole.
+    Parquet,
 }
 
 /// The logs of a run, in their order.
@@ -50,22 +61,24 @@ pub(super) struct Unit {
 }
 
 impl Logs {
-    /// Finds the logs: files as they are named, and in folders and the folders below them whatever ends in `.jsonl`, in the
-    /// order of their names. What is packed, or is Parquet, is named as not read. A file that is found twice is read once.
+    /// Finds the logs: files as they are named, and in folders and the folders below them whatever ends in `.jsonl` or `.parquet`, in
+    /// the order of their names. What is packed is named as not read. A file that is found twice is read once.
     pub fn find(named: &[PathBuf]) -> Self {
         let (mut logs, mut seen) = (Self::default(), HashSet::new());
         for path in named {
             let name = path.to_string_lossy().into_owned();
             if name == STANDARD_INPUT {
                 if seen.insert(path.clone()) {
-                    logs.files.push(Log { below: name.clone(), name, path: None, length: None });
+                    logs.files.push(Log { below: name.clone(), name, path: None, length: None, form: Form::Lines });
                 }
             } else if path.is_dir() {
                 let before = (logs.files.len(), logs.unread.len());
                 logs.folder(path, path, &mut seen);
                 if before == (logs.files.len(), logs.unread.len()) {
-                    logs.unread
-                        .push(Unread::whole(name, "there is no log (*.jsonl) in this folder that is not read already"));
+                    logs.unread.push(Unread::whole(
+                        name,
+                        "there is no log (*.jsonl, *.parquet) in this folder that is not read already",
+                    ));
                 }
             } else {
                 let below = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
@@ -110,13 +123,7 @@ impl Logs {
             ));
             return;
         }
-        if ends(&name, PARQUET) {
-            self.unread.push(Unread::whole(
-                name,
-                "Parquet is not read; write it as JSON lines, a request and its reply after the other",
-            ));
-            return;
-        }
+        let form = if ends(&name, PARQUET) { Form::Parquet } else { Form::Lines };
         let there = fs::metadata(path).and_then(|there| {
             // What may not be read is told now, and once.
             if there.is_file() {
@@ -129,7 +136,7 @@ impl Logs {
             Ok(there) => {
                 if fs::canonicalize(path).is_ok_and(|real| seen.insert(real)) {
                     let length = there.is_file().then_some(there.len());
-                    self.files.push(Log { name, below, path: Some(path.to_owned()), length });
+                    self.files.push(Log { name, below, path: Some(path.to_owned()), length, form });
                 }
             }
         }
@@ -188,8 +195,8 @@ impl Iterator for Units<'_> {
         loop {
             let log = self.files.get(self.log)?;
             let length = log.length.unwrap_or(0);
-            // What is no plain file cannot be read from the middle: it is one unit.
-            let whole = length == 0;
+            // What is no plain file cannot be read from the middle, nor can Parquet: it is one unit.
+            let whole = length == 0 || log.form == Form::Parquet;
             let unit = if whole {
                 let here = self.begin == 0 && (from..to).contains(&self.at);
                 here.then_some(Unit { log: self.log, begin: 0, end: u64::MAX })
@@ -222,7 +229,7 @@ fn ends(name: &str, with: &str) -> bool {
         && name[name.len() - with.len()..].eq_ignore_ascii_case(with)
 }
 
-/// What is not read, and is too much like a log to be passed over.
+/// What is Parquet by its name.
 const PARQUET: &str = ".parquet";
 
 /// Whether a log was packed by a program for that.
@@ -232,18 +239,33 @@ fn is_packed(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Log, Logs, Unit, Units};
+    use super::{Form, Log, Logs, Unit, Units};
 
-    fn logs(lengths: &[u64]) -> Logs {
-        let log = |length: &u64| Log { name: String::new(), below: String::new(), path: None, length: Some(*length) };
+    fn logs(lengths: &[u64], form: Form) -> Logs {
+        let name = String::new;
+        let log = |length: &u64| Log { name: name(), below: name(), path: None, length: Some(*length), form };
         Logs { files: lengths.iter().map(log).collect(), unread: Vec::new() }
+    }
+
+    /// Parquet is read by one shard, as a whole.
+    #[test]
+    fn what_cannot_be_shared_out_is_in_exactly_one_unit() {
+        for lengths in [&[10_u64, 0, 7, 1, 0][..], &[0], &[1], &[0, 0, 100], &[33, 33, 34]] {
+            let logs = logs(lengths, Form::Parquet);
+            for of in 1..=9 {
+                let shards = (1..=of).map(|index| logs.share(index, of));
+                let units: Vec<Unit> = shards.flat_map(|share| Units::new(&logs.files, share, 3)).collect();
+                let whole = |log| Unit { log, begin: 0, end: u64::MAX };
+                assert_eq!(units, (0..lengths.len()).map(whole).collect::<Vec<_>>(), "{lengths:?}, {of} shards");
+            }
+        }
     }
 
     /// However many shards, and however large the units: every byte, and every log without a byte, is in exactly one.
     #[test]
     fn every_byte_is_in_exactly_one_unit() {
         for lengths in [&[10_u64, 0, 7, 1, 0][..], &[0], &[1], &[0, 0, 100], &[33, 33, 34]] {
-            let logs = logs(lengths);
+            let logs = logs(lengths, Form::Lines);
             for of in 1..=9 {
                 for most in [1, 3, 8, 1000] {
                     let shards = (1..=of).map(|index| logs.share(index, of));

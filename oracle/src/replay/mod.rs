@@ -11,6 +11,7 @@ mod explain;
 mod lines;
 pub mod logs;
 pub mod report;
+mod rows;
 pub mod run;
 mod session;
 mod unit;

@@ -9,7 +9,8 @@ use crate::conform::random::Random;
 use atc_protocol::machine::{KINDS, Kind};
 
 use super::lines::{Line, Lines, is_start};
-use super::logs::{Log, Unit};
+use super::logs::{Form, Log, Unit};
+use super::rows::Rows;
 use super::session::{Begun, FirstFound, Play, Why, before};
 
 /// How a log is read.
@@ -104,7 +105,7 @@ enum Now {
 pub(super) struct Reader<'a> {
     setting: Setting<'a>,
     /// The name that draws the sample.
-    below: &'a str,
+    log: &'a Log,
     now: Now,
     /// Where the session at hand began.
     session: (u64, u64),
@@ -122,6 +123,19 @@ pub(super) struct Reader<'a> {
 pub(super) fn read(log: &Log, unit: Unit, setting: Setting<'_>) -> io::Result<Done> {
     let Some(path) = &log.path else { return lines(Lines::new(io::stdin().lock(), 0), log, unit, setting) };
     let mut file = File::open(path)?;
+    if log.form == Form::Parquet {
+        return match Rows::open(file) {
+            Ok(rows) => {
+                let of_one = rows.lines_of_a_row();
+                lines(Lines::of_rows(rows, 0, of_one), log, unit, setting)
+            }
+            Err(error) => {
+                let mut reader = Reader::new(log, setting);
+                reader.breaks_off(Line { offset: 0, end: 0, number: 0, text: None, ended: false }, &error);
+                Ok(reader.done(0))
+            }
+        };
+    }
     if unit.begin == 0 {
         return lines(Lines::new(file, 0), log, unit, setting);
     }
@@ -134,9 +148,21 @@ pub(super) fn read(log: &Log, unit: Unit, setting: Setting<'_>) -> io::Result<Do
 
 fn lines<R: Read>(mut all: Lines<R>, log: &Log, unit: Unit, setting: Setting<'_>) -> io::Result<Done> {
     let mut reader = Reader::new(log, setting);
-    let (mut count, mut at) = (0_u64, 0);
-    while let Some(line) = all.next()? {
+    let (mut count, mut at, mut number) = (0_u64, 0, 0);
+    loop {
+        let line = match all.next() {
+            Ok(Some(line)) => line,
+            Ok(None) => break,
+            // A page is damaged. What stands before it is read; there is no other unit of this log.
+            Err(error) if log.form == Form::Parquet => {
+                let line = Line { offset: at, end: at, number: number + 1, text: None, ended: false };
+                reader.breaks_off(line, &error);
+                return Ok(reader.done(at));
+            }
+            Err(error) => return Err(error),
+        };
         count += 1;
+        number = line.number;
         // What goes on beyond the unit is read up to the next start.
         let beyond = line.offset >= unit.end;
         if line.text.is_some_and(is_start) {
@@ -158,7 +184,7 @@ fn lines<R: Read>(mut all: Lines<R>, log: &Log, unit: Unit, setting: Setting<'_>
             reader.tell(at);
         }
     }
-    let last = Line { offset: at, end: at, number: count, text: Some(b""), ended: false };
+    let last = Line { offset: at, end: at, number, text: Some(b""), ended: false };
     if unit.begin == 0 && matches!(reader.now, Now::Before) {
         let what = if at == 0 { "the file is empty" } else { "there is no session in the file" };
         reader.stick(Line { number: 0, ..last }, format!(r#"{what}; a session begins with {{"start":{{…}}}}"#).into());
@@ -170,7 +196,7 @@ fn lines<R: Read>(mut all: Lines<R>, log: &Log, unit: Unit, setting: Setting<'_>
 impl<'a> Reader<'a> {
     pub(super) fn new(log: &'a Log, setting: Setting<'a>) -> Self {
         let done = Done { machines: vec![Tally::default(); KINDS.len()], ..Done::default() };
-        Self { setting, below: &log.below, now: Now::Before, session: (0, 0), done, from: None, told: (0, 0) }
+        Self { setting, log, now: Now::Before, session: (0, 0), done, from: None, told: (0, 0) }
     }
 
     fn of(&mut self, kind: &Kind) -> &mut Tally {
@@ -181,7 +207,7 @@ impl<'a> Reader<'a> {
     /// Whether the sample has the session that begins here.
     fn is_drawn(&self, offset: u64) -> bool {
         let (some, of) = self.setting.sample;
-        some >= of || Random::of(self.setting.seed, self.below, offset).number() % of < some
+        some >= of || Random::of(self.setting.seed, &self.log.below, offset).number() % of < some
     }
 
     pub(super) fn begin(&mut self, line: Line<'_>) {
@@ -229,6 +255,18 @@ impl<'a> Reader<'a> {
                 }
             }
         }
+    }
+
+    /// Nothing more can be read, from this row on.
+    fn breaks_off(&mut self, line: Line<'_>, error: &io::Error) {
+        match std::mem::replace(&mut self.now, Now::Before) {
+            Now::Before | Now::Passing => {}
+            Now::Stuck(stuck) => self.stuck(stuck),
+            Now::Playing(play) => self.count(*play, false),
+        }
+        let what = if line.number == 0 { error.to_string() } else { format!("reading breaks off: {error}") };
+        self.stick(line, what.into());
+        self.close(true, line);
     }
 
     /// The session at hand is over: the next one begins with this line, or the file ends here.
@@ -283,7 +321,12 @@ impl<'a> Reader<'a> {
             Now::Playing(play) => play.same + play.differing,
             _ => 0,
         };
-        let now = (at - self.from.unwrap_or(at), counted + playing);
+        let read = match self.log.form {
+            Form::Lines => at - self.from.unwrap_or(at),
+            // Its bytes are not those of its lines: they are counted at its end.
+            Form::Parquet => self.told.0,
+        };
+        let now = (read, counted + playing);
         self.setting.watched.bytes.fetch_add(now.0 - self.told.0, Ordering::Relaxed);
         self.setting.watched.steps.fetch_add(now.1 - self.told.1, Ordering::Relaxed);
         self.told = now;
@@ -291,6 +334,10 @@ impl<'a> Reader<'a> {
 
     pub(super) fn done(mut self, at: u64) -> Done {
         self.tell(at);
+        if self.log.form == Form::Parquet {
+            self.told.0 = self.log.length.unwrap_or(0);
+            self.setting.watched.bytes.fetch_add(self.told.0, Ordering::Relaxed);
+        }
         self.done.bytes = self.told.0;
         self.done
     }

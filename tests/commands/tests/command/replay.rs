@@ -4,8 +4,13 @@ use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
 
 use atc_tests::device;
+use parquet::data_type::{ByteArray, ByteArrayType};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::parser::parse_message_type;
 use serde_json::Value;
 
 fn oracle(folder: &Path, arguments: &[&str]) -> Output {
@@ -369,6 +374,103 @@ fn logs(folder: &Path) {
     write("deep/notes.txt", "not a log");
     write("d.jsonl.gz", "packed");
     write("e.parquet", "PAR1");
+    let rows = wrong.lines().map(|line| Some(line.as_bytes())).collect();
+    fs::write(folder.join("deep/f.parquet"), parquet(&[("line", rows)], 500)).expect("a log");
+}
+
+/// A Parquet file with these columns of text, packed by SNAPPY, in row groups of so many rows.
+fn parquet(columns: &[(&str, Vec<Option<&[u8]>>)], rows: usize) -> Vec<u8> {
+    let schema: Vec<_> = columns.iter().map(|(name, _)| format!("optional binary {name} (STRING);")).collect();
+    let schema = parse_message_type(&format!("message log {{ {} }}", schema.concat()));
+    let schema = Arc::new(schema.expect("a schema"));
+    let packed = WriterProperties::builder().set_compression(parquet::basic::Compression::SNAPPY).build();
+    let mut bytes = Vec::new();
+    let mut out = SerializedFileWriter::new(&mut bytes, schema, Arc::new(packed)).expect("a writer");
+    for from in (0..columns[0].1.len()).step_by(rows) {
+        let mut group = out.next_row_group().expect("a group");
+        for (_, values) in columns {
+            let values = &values[from..(from + rows).min(values.len())];
+            let there: Vec<i16> = values.iter().map(|value| value.is_some().into()).collect();
+            let values: Vec<ByteArray> = values.iter().flatten().map(|value| ByteArray::from(value.to_vec())).collect();
+            let mut column = group.next_column().expect("it writes").expect("a column");
+            column.typed::<ByteArrayType>().write_batch(&values, Some(&there), None).expect("it writes");
+            column.close().expect("it writes");
+        }
+        group.close().expect("it writes");
+    }
+    out.close().expect("it writes");
+    bytes
+}
+
+/// What a report says but for the names and sizes of files.
+fn but_for_names(mut report: Value) -> Value {
+    for name in ["bytes", "input"] {
+        report[name] = Value::Null;
+    }
+    for list in ["differences", "unread"] {
+        for one in report[list].as_array_mut().into_iter().flatten() {
+            one["file"] = Value::Null;
+        }
+    }
+    report
+}
+
+/// A log as Parquet has the report of the same log as JSON lines, with every fault, whatever stands in its rows.
+#[test]
+fn parquet_says_the_same_as_json_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    for fault in FAULTS {
+        let mut lines = lines();
+        let bytes = (fault.seed)(&mut lines).unwrap_or_else(|| (lines.join("\n") + "\n").into_bytes());
+        // Every row has its end.
+        let bytes = bytes.strip_suffix(b"\n").unwrap_or(&bytes);
+        fs::write(at.join("t.jsonl"), [bytes, b"\n"].concat()).expect("a log");
+        let rows = bytes.split(|byte| *byte == b'\n').map(Some).collect();
+        fs::write(at.join("t.parquet"), parquet(&[("line", rows)], 7)).expect("a log");
+        let (code, text) = replay(at, &["t.jsonl", "--json", "lines.json"]);
+        let (other, rows) = replay(at, &["t.parquet", "--json", "rows.json"]);
+        assert_eq!(code, other, "{}: {text}\n{rows}", fault.name);
+        let [one, other] = ["lines.json", "rows.json"].map(|name| but_for_names(report(&at.join(name))));
+        assert!(one == other, "{}: {one:#}\n{other:#}", fault.name);
+    }
+}
+
+/// A row with a request and its reply: places are rows.
+#[test]
+fn a_request_and_its_reply_are_one_row() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = folder.path();
+    let mut lines = lines();
+    change(&mut lines, 20 + OUTPUT, "25", "45");
+    let pairs = || lines.chunks_exact(2).map(|pair| [&pair[0], &pair[1]].map(|line| Some(line.as_bytes())));
+    let mut columns =
+        [("reply", pairs().map(|[_, reply]| reply).collect()), ("time", pairs().map(|_| None).collect())].to_vec();
+    columns.push(("request", pairs().map(|[request, _]| request).collect::<Vec<_>>()));
+    let whole = parquet(&columns, 6);
+    fs::write(at.join("t.parquet"), &whole).expect("a log");
+    fs::write(at.join("t.jsonl"), lines.join("\n")).expect("a log");
+    let (code, said) = replay(at, &["t.parquet", "--json", "rows.json"]);
+    let says = "t.parquet: line 16: aspect-acceptance, step 5 of the session of line 11\n";
+    assert!(code == Some(1) && said.contains(says), "{said}");
+    replay(at, &["t.jsonl", "--json", "lines.json"]);
+    let [rows, lines] = ["rows.json", "lines.json"].map(|name| report(&at.join(name))["differences"][0].clone());
+    for same in ["session", "as_if", "requirements", "offset", "at"] {
+        assert_eq!(rows[same], lines[same], "{same}");
+    }
+    assert_eq!(rows["session"].as_array().map(Vec::len), Some(12));
+    // A page that is damaged: what stands before it is compared, and the rest is named.
+    let mut damaged = whole;
+    let end = damaged.len() - 8;
+    let footer = u32::from_le_bytes(damaged[end..end + 4].try_into().expect("four bytes"));
+    let end = end - usize::try_from(footer).expect("small");
+    // Behind the pages stand their indexes, which nobody reads.
+    damaged[end / 3..end].fill(0xff);
+    fs::write(at.join("t.parquet"), &damaged).expect("a log");
+    let (code, said) = replay(at, &["t.parquet"]);
+    assert!(code == Some(2) && said.contains("reading breaks off: it is no Parquet, or damaged"), "{said}");
+    assert!(said.contains("of 1 sessions agree") || said.contains("of 2 sessions agree"), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
 }
 
 /// Shards, joined, are the report of one run but for the times; a shard that is missing is named, and others are refused.
@@ -381,7 +483,7 @@ fn shards_join_to_the_report_of_one_run() {
     assert_eq!(code, Some(2), "{said}");
     for says in [
         "logs/d.jsonl.gz: packed files are not read",
-        "logs/e.parquet: Parquet is not read",
+        "logs/e.parquet: it is no Parquet, or damaged",
         "empty.jsonl: the file is empty",
     ] {
         assert!(said.contains(says), "{said}");

@@ -2,6 +2,7 @@
 //! their seeded faults is found. Seeds are fixed.
 
 mod draw;
+mod fmu;
 mod javascript;
 mod side;
 mod small;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::OnceLock;
 
 use atc_tests::device;
 
@@ -12,11 +13,17 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../python")
 }
 
-/// What building and testing take besides Python itself.
-const PACKAGES: [&str; 4] = ["maturin>=1.9,<2", "wheel>=0.45,<1", "numpy>=1.24,<3", "mypy>=1.18,<3"];
+/// What building and testing take besides Python itself. FMPy is for the unit of `fmi/`.
+const PACKAGES: [&str; 5] =
+    ["maturin>=1.9,<2", "wheel>=0.45,<1", "numpy>=1.24,<3", "mypy>=1.18,<3", "fmpy>=0.3.22,<0.4"];
 
-/// The programs of a Python of our own with these packages, under `target`; or why there are none.
-fn environment(target: &Path) -> Result<PathBuf, String> {
+/// The programs of a Python of our own with these packages, under `target`; or why there are none. It is made once, for all tests.
+pub fn environment(target: &Path) -> Result<PathBuf, String> {
+    static MADE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+    MADE.get_or_init(|| made(target)).clone()
+}
+
+fn made(target: &Path) -> Result<PathBuf, String> {
     let place = target.join("python/environment");
     let (whole, packages) = (place.join("whole"), PACKAGES.join("\n"));
     if fs::read_to_string(&whole).is_ok_and(|made| made == packages) {
@@ -30,13 +37,17 @@ fn environment(target: &Path) -> Result<PathBuf, String> {
     Ok(place.join("bin"))
 }
 
-/// The wheel, packed as `maturin build` does it, from a library that is built as all tests are: so nothing that they use is built once more with
-/// other features.
+/// Builds every library, and the program `fmu`, as all tests are built: so nothing that they use is built once more with other features.
+pub fn libraries(target: &Path) -> Result<(), String> {
+    let mut build = Command::new(env!("CARGO"));
+    build.args(["build", "--quiet", "--locked", "--workspace", "--lib", "--bin", "fmu", "--test", "contracts"]);
+    run(build.env("CARGO_TARGET_DIR", target).current_dir(folder())).map(drop)
+}
+
+/// The wheel, packed as `maturin build` does it.
 fn packed(target: &Path, bin: &Path) -> Result<PathBuf, String> {
     let library = target.join("debug/lib_atc.so");
-    let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--locked", "--workspace", "--lib", "--test", "contracts"]);
-    run(build.env("CARGO_TARGET_DIR", target).current_dir(folder()))?;
+    libraries(target)?;
     let (unpacked, wheels) = (target.join("python/unpacked"), target.join("python/wheels"));
     let said = |error: std::io::Error| error.to_string();
     for place in [&unpacked, &wheels] {
