@@ -4,7 +4,7 @@ use atc_protocol::decimal::{Decibels, Hertz, Metres};
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::permitted::Basis;
 use atc_protocol::machine::supervision::Brake;
-use atc_protocol::machine::train::{Carrier, Output, Step};
+use atc_protocol::machine::train::{Carrier, Channel, Output, Step};
 use atc_protocol::names::Named;
 use atc_protocol::telegrams::{MainTelegram, SubTelegram, Telegram};
 
@@ -54,6 +54,10 @@ pub fn step(values: &Values) -> Result<Step, String> {
         speed_km_h: measured(Place::SpeedMeasured, Place::Speed)?.map(speed).transpose()?,
         line: named(values, Place::LineBegins, LINE)?,
         facing: named(values, Place::Facing, FACING)?,
+        lost: [(Place::LostA, Channel::A), (Place::LostB, Channel::B)]
+            .into_iter()
+            .filter_map(|(place, channel)| values.flag(place).then_some(channel))
+            .collect(),
     })
 }
 

@@ -169,6 +169,8 @@ table! {
     Speed "speed_km_h" Input SPEED, "The measured speed.";
     LineBegins "line_begins" Input Kind::Enumeration(LINE), "The kind of line that begins here.";
     Facing "facing" Input Kind::Enumeration(FACING), "The direction of travel in which the train faces.";
+    LostA "lost_a" Input Kind::Boolean, "With two channels: channel A has lost its memory before this step.";
+    LostB "lost_b" Input Kind::Boolean, "With two channels: channel B has lost its memory before this step.";
     DisplayShown "display_shown" Output Kind::Boolean, "An aspect is displayed.";
     Display "display_km_h" Output KM_H, "The speed of the displayed aspect; 0 without one.";
     IsPermitted "permitted" Output Kind::Boolean, "A speed is permitted; it may be 0.";

@@ -144,6 +144,8 @@ def variables(step, by_frames):
     values["moved_least_m"], values["moved_most_m"] = moved or (0, 0)
     values["line_begins"] = step.get("line") or "nothing"
     values["facing"] = step.get("facing") or "unknown"
+    lost = step.get("lost", [])
+    values["lost_a"], values["lost_b"] = "a" in lost, "b" in lost
     return values
 
 

@@ -104,7 +104,7 @@ enum Now {
 
 pub(super) struct Reader<'a> {
     setting: Setting<'a>,
-    /// The name that draws the sample.
+    /// What is read. Its name draws the sample.
     log: &'a Log,
     now: Now,
     /// Where the session at hand began.

@@ -243,7 +243,8 @@ pub const FAULTS: &[Fault] = &[
             }
         });
     }),
-    config("overlap-not-held", INTERLOCKING, "ILK-1", |config| {
+    // What shows first: a train that stood in its route before the start keeps no overlap.
+    config("overlap-not-held", INTERLOCKING, "ILK-28", |config| {
         routes(config, |route| route["overlap"] = json!({"circuits": [], "points": {}}));
     }),
     config("release-early", INTERLOCKING, "ILK-13", |config| {

@@ -222,7 +222,8 @@ fn the_requirements_of_the_fields_are_in_the_specification() {
 fn every_machine_has_a_table_of_its_fields() {
     let mut tables: Vec<&str> = TABLES.iter().map(|table| table.machine).collect();
     let mut machines: Vec<&str> = atc_protocol::machine::KINDS.iter().map(|kind| kind.name).collect();
-    (tables.sort_unstable(), machines.sort_unstable());
+    tables.sort_unstable();
+    machines.sort_unstable();
     assert_eq!(tables, machines);
 }
 

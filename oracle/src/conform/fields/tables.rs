@@ -180,7 +180,7 @@ const INTERLOCKING: Table = Table {
         reason(
             "answer reason",
             |output| output.get("answer")?.get("refused").cloned(),
-            &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24", "ILK-28", "ILK-29", "ILK-30"],
+            &["ILK-1", "ILK-2", "ILK-3", "ILK-4", "ILK-24", "ILK-28", "ILK-29", "ILK-30", "TRK-1"],
         ),
     ],
 };
