@@ -209,18 +209,19 @@ pub fn vectors(machine: &str, set: Set) -> Vec<Vector> {
     all
 }
 
-/// The vector of the minimal set that has this note; none if there is none.
-pub fn noted(machine: &str, note: &str) -> Option<Vector> {
-    let expected = if let Some(name) = note.strip_prefix("the example ") {
-        walk::examples(machine).into_iter().find(|(known, _)| *known == name)?.1.expected().ok()?
+/// The vectors of the minimal set that have this note: one, or the sessions of an example.
+pub fn noted(machine: &str, note: &str) -> Vec<Vector> {
+    let expected: Vec<Expected> = if let Some(name) = note.strip_prefix("the example ") {
+        let its = walk::examples(machine).into_iter().filter(|(known, _)| *known == name);
+        its.filter_map(|(_, case)| case.expected().ok()).collect()
     } else if let Some(number) = note.rsplit_once("walk ").and_then(|(_, number)| number.parse().ok()) {
-        walk::case(machine, SEED, number, Sizes::Small, None)?
+        walk::case(machine, SEED, number, Sizes::Small, None).into_iter().collect()
     } else {
         let names = |directed: &directed::Directed| format!("catches {}", directed.catches.join(", "));
-        let mut all = directed::all().into_iter().filter(|directed| directed.machine == machine);
-        all.find(|directed| names(directed) == note)?.case().expected().ok()?
+        let its = directed::all().into_iter().filter(|directed| directed.machine == machine && names(directed) == note);
+        its.filter_map(|directed| directed.case().expected().ok()).collect()
     };
-    Some(Vector::of(&expected, note.to_owned()))
+    expected.iter().map(|expected| Vector::of(expected, note.to_owned())).collect()
 }
 
 /// The JSON Schema of a vector.
