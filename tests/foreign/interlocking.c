@@ -50,7 +50,7 @@ struct grant {
 static struct {
     int circuits, points, routes, segments, codes;
     char circuit[CIRCUITS][NAME], point[POINTS][NAME];
-    int64_t metres[CIRCUITS], speed[CODES], braking[CODES];
+    int64_t metres[CIRCUITS], line[CIRCUITS], speed[CODES], braking[CODES]; // the line's code in a circuit
     set detectors[POINTS];
     struct route route[ROUTES];
     struct segment segment[SEGMENTS];
@@ -192,6 +192,14 @@ static bool numbers(const struct json *list, int64_t *out, int *count) {
     return true;
 }
 
+static bool read_circuit(const struct json *value, int circuit) {
+    const struct json *limit = json_field(value, "speed_code");
+    plan.line[circuit] = CODES - 1;
+    return name(json_field(value, "name"), plan.circuit[circuit]) &&
+           json_whole(json_field(value, "length_m"), 65535, &plan.metres[circuit]) &&
+           (!limit || json_whole(limit, CODES - 1, &plan.line[circuit]));
+}
+
 static bool read_plan(const struct json *value) {
     const struct json *circuits = json_field(value, "circuits"), *points = json_field(value, "points");
     const struct json *routes = json_field(value, "routes"), *segments = json_field(value, "segments"), *item;
@@ -206,9 +214,7 @@ static bool read_plan(const struct json *value) {
         !numbers(json_field(value, "braking_m"), plan.braking, &distances) || distances != plan.codes)
         return false;
     for (item = json_first(circuits); item; item = json_next(item), plan.circuits++)
-        if (item->kind != J_OBJECT || !name(json_field(item, "name"), plan.circuit[plan.circuits]) ||
-            !json_whole(json_field(item, "length_m"), 65535, &plan.metres[plan.circuits]))
-            return false;
+        if (item->kind != J_OBJECT || !read_circuit(item, plan.circuits)) return false;
     for (item = json_first(points); item; item = json_next(item), plan.points++)
         if (item->kind != J_OBJECT || !name(json_field(item, "name"), plan.point[plan.points]) ||
             !names(json_field(item, "detectors"), find_circuit, &plan.detectors[plan.points]))
@@ -591,6 +597,7 @@ static int circuit_limit(int circuit) {
         }
     }
     if (is_held) over = held;
+    if (plan.line[circuit] < limit && !FAULTY(40)) limit = (int)plan.line[circuit];
     return over < limit ? over : limit;
 }
 

@@ -313,7 +313,13 @@ fn whole(
     let cab = draw.from(0, 2);
     let lengths: Vec<Value> = circuits
         .iter()
-        .map(|name| json!({"name": name, "length_m": draw.one(&[20, 60, 120, 300, 400, 800])}))
+        .map(|name| {
+            let mut circuit = json!({"name": name, "length_m": draw.one(&[20, 60, 120, 300, 400, 800])});
+            if draw.chance(200) {
+                circuit["speed_code"] = draw.from(0, 7).into();
+            }
+            circuit
+        })
         .collect();
     let detectors: Vec<Value> =
         points.iter().map(|(name, circuit)| json!({"name": name, "detectors": [circuit]})).collect();
