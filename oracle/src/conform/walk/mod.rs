@@ -5,6 +5,7 @@
 
 mod aspect;
 mod block;
+mod halts;
 mod interlocking;
 mod mutate;
 mod pattern;
