@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use atc_film::Film;
 use atc_simulation::campaign::{self, Campaign};
+use atc_simulation::driver::Drivers;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::headline;
 use atc_simulation::line::Line;
@@ -69,6 +70,9 @@ pub struct RunArgs {
     /// What trains run on
     #[arg(long, value_enum, default_value = "codes")]
     signal: On,
+    /// What drivers do with the cab signal
+    #[arg(long, value_enum, default_value = "careful")]
+    drivers: Who,
     /// An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
     #[arg(long)]
     clears_at_once: bool,
@@ -85,6 +89,7 @@ impl RunArgs {
             ("--beyond", self.beyond),
             ("--device", self.device != Device::Shortened),
             ("--signal", self.signal != On::Codes),
+            ("--drivers", self.drivers != Who::Careful),
             ("--clears-at-once", self.clears_at_once),
         ];
         options.iter().find(|(_, there)| *there).map(|(option, _)| *option)
@@ -107,6 +112,21 @@ enum On {
     Telegrams,
     /// Telegrams with codes beside them
     Both,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Who {
+    /// They obey it
+    Careful,
+    /// They motor whatever it says, and stop at stations alone: the device on board holds the train
+    Heedless,
+}
+
+const fn drivers(args: &RunArgs) -> Drivers {
+    match args.drivers {
+        Who::Careful => Drivers::Careful,
+        Who::Heedless => Drivers::Heedless,
+    }
 }
 
 const fn signal(args: &RunArgs) -> Signal {
@@ -177,7 +197,17 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         let (kinds, extent, seed) = (vec![*kind], extent(args), args.seed);
         faults = campaign::faults(
             line,
-            &Campaign { runs: 1, kinds, extent, faults: each, trains, seconds, seed, signal: signal(args) },
+            &Campaign {
+                runs: 1,
+                kinds,
+                extent,
+                faults: each,
+                trains,
+                seconds,
+                seed,
+                signal: signal(args),
+                drivers: drivers(args),
+            },
             0,
         )
         .1;
@@ -191,7 +221,8 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
-    Ok(Setting { operate, trains, seed: args.seed, faults, compared: false, signal: signal(args) })
+    let (seed, signal, drivers) = (args.seed, signal(args), drivers(args));
+    Ok(Setting { operate, trains, seed, faults, compared: false, signal, drivers })
 }
 
 /// The film of a run.
@@ -274,6 +305,7 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
         seconds: args.run.time.unwrap_or(600),
         seed: args.run.seed,
         signal: signal(&args.run),
+        drivers: drivers(&args.run),
     };
     let outcomes = campaign::run(line, &campaign, &|_| ())?;
     let mut done = Done::default();

@@ -26,8 +26,8 @@ use std::borrow::Cow;
 use std::fmt;
 
 use schemars::JsonSchema;
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::value::RawValue;
 
 use crate::decimal::shorten;
@@ -53,6 +53,7 @@ pub enum Request<'a> {
 #[serde(deny_unknown_fields)]
 pub struct Start<'a> {
     /// The version of the protocol that the client speaks.
+    #[serde(deserialize_with = "version")]
     pub protocol: u32,
     /// The machine's name.
     #[serde(borrow)]
@@ -60,6 +61,13 @@ pub struct Start<'a> {
     /// The machine's configuration. Absent is the same as `{}`.
     #[serde(borrow)]
     pub config: Option<&'a RawValue>,
+}
+
+/// A version: a whole number, however it is written.
+fn version<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let number = serde_json::Number::deserialize(deserializer)?.to_string();
+    let digits = whole(&number).unwrap_or(number);
+    digits.parse().map_err(|_| D::Error::custom(format_args!("protocol is {digits}; it is {PROTOCOL}")))
 }
 
 /// The body of a stop: no field.
@@ -139,36 +147,59 @@ pub fn body<T: DeserializeOwned>(line: &str, body: &RawValue) -> Result<T, Fault
     let offset = offset(line, body);
     object(body, offset)?;
     read(body.get(), offset).or_else(|fault| {
-        // JSON has one kind of number: 10.0 is the whole number 10, and JSON Schema takes it for one.
+        // JSON has one kind of number: 10.0 and 1e1 are the whole number 10, and JSON Schema takes them for one.
         let text = body.get();
-        let whole = text.contains(".0").then(|| without_fractions(text)).filter(|whole| whole != text);
-        whole.and_then(|whole| read(&whole, offset).ok()).ok_or(fault)
+        let whole = with_whole_numbers(text);
+        if whole == text { Err(fault) } else { read(&whole, offset).map_err(|_| fault) }
     })
 }
 
-/// The text with every number like `10.0` outside strings as `10`.
-fn without_fractions(text: &str) -> String {
+/// The text with every number outside strings that is a whole one, such as `10.0` or `1e1`, in digits alone.
+fn with_whole_numbers(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let (mut in_string, mut escaped) = (false, false);
     let mut rest = text;
     while let Some(letter) = rest.chars().next() {
-        let after_digit = out.ends_with(|before: char| before.is_ascii_digit());
-        if !in_string && letter == '.' && after_digit {
-            let digits = &rest[1..];
-            let zeros = digits.len() - digits.trim_start_matches('0').len();
-            let next = digits[zeros..].chars().next();
-            let ends = next.is_none_or(|next| !next.is_ascii_digit() && next != 'e' && next != 'E');
-            if zeros > 0 && ends {
-                rest = &digits[zeros..];
-                continue;
+        let length = match letter {
+            '-' | '0'..='9' if !in_string => {
+                let of_number = |letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '+' | '.' | 'e' | 'E');
+                rest.find(|letter| !of_number(letter)).unwrap_or(rest.len())
             }
-        }
+            _ => letter.len_utf8(),
+        };
+        let (token, after) = rest.split_at(length);
         in_string ^= letter == '"' && !escaped;
         escaped = in_string && letter == '\\' && !escaped;
-        out.push(letter);
-        rest = &rest[letter.len_utf8()..];
+        match whole(token) {
+            Some(digits) if !in_string => out.push_str(&digits),
+            _ => out.push_str(token),
+        }
+        rest = after;
     }
     out
+}
+
+/// The digits of a number with a fraction or an exponent that is a whole one of at most twenty digits.
+fn whole(number: &str) -> Option<String> {
+    let (sign, unsigned) = number.strip_prefix('-').map_or(("", number), |rest| ("-", rest));
+    let (mantissa, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
+    let (before, behind) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let exponent: i32 = exponent.parse().ok().filter(|exponent| (-40..=40).contains(exponent))?;
+    let all = format!("{before}{behind}");
+    let point = i32::try_from(before.len()).ok()?.checked_add(exponent)?;
+    if unsigned == before
+        || before.is_empty()
+        || mantissa.ends_with('.')
+        || !all.bytes().all(|digit| digit.is_ascii_digit())
+    {
+        return None;
+    }
+    let point = usize::try_from(point.max(0)).ok()?;
+    let (kept, lost) = all.split_at(point.min(all.len()));
+    let digits = format!("{kept}{}", "0".repeat(point - kept.len()));
+    let digits = digits.trim_start_matches('0');
+    let fits = digits.len() <= 20 && lost.bytes().all(|digit| digit == b'0');
+    fits.then(|| if digits.is_empty() { "0".to_owned() } else { format!("{sign}{digits}") })
 }
 
 /// Reads the body of a start, which borrows from `line`.
@@ -210,12 +241,24 @@ fn read<'a, T: Deserialize<'a>>(text: &'a str, offset: usize) -> Result<T, Fault
 
 #[cfg(test)]
 mod tests {
-    use super::{request, without_fractions};
+    use super::{request, with_whole_numbers};
 
     #[test]
-    fn a_fraction_of_nothing_is_left_out_and_no_other() {
-        let text = r#"{"a":10.0,"b":[1.00,2.5,3.0e2],"c":"4.0 \" 5.0","d":-7.0}"#;
-        assert_eq!(without_fractions(text), r#"{"a":10,"b":[1,2.5,3.0e2],"c":"4.0 \" 5.0","d":-7}"#);
+    fn a_whole_number_is_one_however_it_is_written() {
+        for (text, right) in [
+            (
+                r#"{"a":10.0,"b":[1.00,2.5,3.0e2],"c":"4.0 \" 5.0","d":-7.0}"#,
+                r#"{"a":10,"b":[1,2.5,300],"c":"4.0 \" 5.0","d":-7}"#,
+            ),
+            ("[1e0,1E1,100e-1,-2e+2,0e5,0.0,-0.0,12.50e1,1e19]", "[1,10,10,-200,0,0,0,125,10000000000000000000]"),
+            // Neither whole nor numbers: as they are.
+            (
+                "[1e-1,1.5,12.5e0,1e20,1e999,1.,.5,1e,--1,1e1e1,01]",
+                "[1e-1,1.5,12.5e0,1e20,1e999,1.,.5,1e,--1,1e1e1,01]",
+            ),
+        ] {
+            assert_eq!(with_whole_numbers(text), right);
+        }
     }
 
     #[test]

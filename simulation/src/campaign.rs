@@ -6,6 +6,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
+use crate::driver::Drivers;
 use crate::event::Event;
 use crate::fault::{Extent, Fault, Kind};
 use crate::line::Line;
@@ -31,6 +32,8 @@ pub struct Campaign {
     pub seed: u64,
     /// What trains run on.
     pub signal: Signal,
+    /// What drivers do with the cab signal.
+    pub drivers: Drivers,
 }
 
 /// What became of the runs with one kind of fault.
@@ -78,6 +81,7 @@ pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Re
             faults,
             compared: false,
             signal: campaign.signal,
+            drivers: campaign.drivers,
         };
         let mut world = World::new(line, setting)?;
         world.run(u64::from(campaign.seconds) * 1000);

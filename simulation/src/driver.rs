@@ -1,6 +1,16 @@
-//! A driver: obeys the cab signal, stops where the train is to stop, and otherwise runs as fast as may be.
+//! A driver: obeys the cab signal (or motors whatever it says), stops where the train is to stop, and otherwise runs as fast as may be.
 
 use crate::motion::Dynamics;
+
+/// What drivers do with the cab signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drivers {
+    /// They obey it.
+    Careful,
+    /// They motor whatever it says, and brake for the stop at a station alone, at the mark or where nothing is permitted at the platform: the
+    /// device on board is what holds the train.
+    Heedless,
+}
 
 /// What a driver looks at.
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +31,14 @@ const BELOW: f64 = 0.5;
 const COMFORTABLE: f64 = 0.6;
 
 /// The acceleration that the driver asks for, in m/s²: negative to brake.
-pub fn drive(dynamics: &Dynamics, sight: Sight) -> f64 {
-    let aim = if sight.may_leave { (sight.permitted - BELOW).max(0.0) } else { 0.0 };
+pub fn drive(drivers: Drivers, dynamics: &Dynamics, sight: Sight) -> f64 {
+    let aim = match drivers {
+        _ if !sight.may_leave => 0.0,
+        Drivers::Careful => (sight.permitted - BELOW).max(0.0),
+        // At a platform a train has arrived where it may not go on.
+        Drivers::Heedless if sight.to_stop_m.is_some() && sight.permitted <= 0.0 => 0.0,
+        Drivers::Heedless => f64::INFINITY,
+    };
     let to_stop = sight.to_stop_m.map_or(f64::INFINITY, |metres| (2.0 * COMFORTABLE * metres.max(0.0)).sqrt());
     let aim = aim.min(to_stop);
     if sight.speed < aim - 0.3 {

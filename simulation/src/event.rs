@@ -124,6 +124,15 @@ pub enum What {
         /// The circuit.
         circuit: String,
     },
+    /// A train runs faster than the track under it allows.
+    Overspeed {
+        /// The number of the train.
+        train: usize,
+        /// The circuit.
+        circuit: String,
+        /// Its speed in km/h.
+        kmh: f64,
+    },
     /// A train ran over the end of the track.
     EndOfTrack {
         /// The number of the train.
@@ -132,7 +141,7 @@ pub enum What {
 }
 
 impl What {
-    /// Whether this is an accident, or a train past the point where it had to stop.
+    /// Whether this is an accident, or a train past the point where it had to stop or faster than it may be.
     pub const fn is_unsafe(&self) -> bool {
         matches!(
             self,
@@ -140,6 +149,7 @@ impl What {
                 | Self::Derailment { .. }
                 | Self::MovedUnder { .. }
                 | Self::Overrun { .. }
+                | Self::Overspeed { .. }
                 | Self::EndOfTrack { .. }
         )
     }

@@ -377,6 +377,7 @@ fn told(what: &What) -> String {
         What::Derailment { train, point } => format!("DERAILMENT of train {train} at {point}"),
         What::MovedUnder { train, point } => format!("{point} MOVES UNDER train {train}"),
         What::Overrun { train, circuit } => format!("train {train} OVERRUNS into {circuit}"),
+        What::Overspeed { train, circuit, kmh } => format!("train {train} IS TOO FAST in {circuit}: {kmh:.1} km/h"),
         What::EndOfTrack { train } => format!("train {train} OVER THE END OF THE TRACK"),
     }
 }

@@ -5,6 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
+use crate::driver::Drivers;
 use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::generate::Shape;
@@ -119,8 +120,8 @@ type Ended = (Vec<Vec<u64>>, Measured);
 
 fn measure_one(line: &Line, extent: &Extent, (length_ms, operate): (u32, Operate)) -> Result<Ended, String> {
     let faults = interruptions(extent, length_ms);
-    let setting =
-        Setting { operate, trains: extent.trains, seed: extent.seed, faults, compared: true, signal: Signal::Codes };
+    let (trains, seed, signal, drivers) = (extent.trains, extent.seed, Signal::Codes, Drivers::Careful);
+    let setting = Setting { operate, trains, seed, faults, compared: true, signal, drivers };
     let mut world = World::new(line, setting)?;
     world.run(u64::from(extent.seconds) * 1000);
     let mut arrivals = vec![Vec::new(); extent.trains];

@@ -1,14 +1,38 @@
 //! Ground truth: whether trains share ground, and how near they came to what they must not reach. It looks at bodies and
 //! tracks, and at what the ground told the trains; never into a device.
 
+use crate::driver::Drivers;
 use crate::event::What;
 use crate::rolling::Margins;
 use crate::world::World;
+
+/// By how much a train may be faster than the track allows, in m/s: a speed is measured in tenths of km/h, and a brake takes its time. What a train
+/// of heedless drivers gains in that time is on top.
+const OVER: f64 = 1.0 / 3.6;
 
 /// How far a train looks for another one, in m.
 pub const SIGHT_M: f64 = 3_000.0;
 
 impl World<'_> {
+    /// Looks for trains that are faster than the track under any part of them allows.
+    pub(crate) fn judge_speeds(&mut self) {
+        let line = self.line;
+        let gained =
+            line.dynamics.acceleration * f64::from(line.dynamics.brake_delay_ms + line.train_cycle_ms) / 1000.0;
+        let over = if self.setting.drivers == Drivers::Careful { OVER } else { OVER + gained };
+        for number in 0..self.trains.len() {
+            let body = &self.trains[number].body;
+            let broken = body.legs.iter().find(|leg| body.speed > line.limit(leg) + over);
+            let (before, circuit) =
+                (self.trains[number].too_fast, broken.map(|leg| line.track.pieces[leg.piece].circuit));
+            self.trains[number].too_fast = circuit.is_some();
+            if let (Some(circuit), false) = (circuit, before) {
+                let (circuit, kmh) = (line.track.circuits[circuit].name.clone(), self.trains[number].body.speed * 3.6);
+                self.tell(What::Overspeed { train: number, circuit, kmh });
+            }
+        }
+    }
+
     /// Looks for trains that share ground.
     pub(crate) fn judge(&mut self) {
         let track = &self.line.track;

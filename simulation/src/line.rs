@@ -8,7 +8,7 @@ use atc_kernel::interlocking::{Heading, Layout, MAX_CIRCUITS, MAX_CODES};
 use atc_kernel::telegram::{Gradient, SectionId};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Facing, Fixed, Session, SignalPlan};
-use atc_layout::{Compiled, Description, border};
+use atc_layout::{At, Compiled, Description, border};
 use serde::{Deserialize, Serialize};
 
 use crate::fault::consent_life_ms;
@@ -147,6 +147,8 @@ pub struct Line {
     pub residual_ms: u32,
     /// An old rule, to see that a campaign finds it out: a circuit counts as clear at once when it is reported clear.
     pub clears_at_once: bool,
+    /// For each piece the highest speed along it, and over its reverse leg, in m/s.
+    pub limits: Vec<[f64; 2]>,
 }
 
 impl Line {
@@ -220,6 +222,7 @@ impl Line {
             shunt_loss_ms: values(|values| u32::from(values.loss) * values.cycle_ms).min().unwrap_or(0),
             residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
             clears_at_once: false,
+            limits: Vec::new(),
             stations: Vec::new(),
             links,
             track,
@@ -274,6 +277,7 @@ impl Line {
             }
             self.stations.push(Place { name: compiled.names.station.clone(), description, compiled, platforms, paths });
         }
+        self.limits = self.limits();
         Ok(self)
     }
 
@@ -372,6 +376,39 @@ impl Line {
     pub fn counted_brake(&self) -> f64 {
         let of = |place: &Place| f64::from(place.description.station.braking.deceleration_mm_s2.value) / 1000.0;
         self.stations.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The highest speed on a leg of a train's way, in m/s, as the files of the stations have it: that of the line or of routes, and over the reverse
+    /// leg of a point that of reverse points. Where two stations see the same track, the lower one.
+    pub fn limit(&self, leg: &Leg) -> f64 {
+        let joints = &self.track.pieces[leg.piece].joints;
+        let reverse = joints.get(2).is_some_and(|joint| [leg.enter, leg.exit].contains(joint));
+        self.limits[leg.piece][usize::from(reverse)]
+    }
+
+    /// The limits of every piece: along it, and over its reverse leg.
+    fn limits(&self) -> Vec<[f64; 2]> {
+        let mut limits = vec![[f64::INFINITY; 2]; self.track.pieces.len()];
+        for (place, site) in self.stations.iter().zip(&self.track.sites) {
+            let station = &place.description.station;
+            let speed = &station.speed;
+            let kmh = |limit: Option<&At<u16>>| limit.map_or(f64::INFINITY, |limit| f64::from(limit.value));
+            for piece in &site.pieces {
+                let circuit = self.track.pieces[*piece].circuit;
+                let local = site.circuits.iter().position(|at| *at == circuit);
+                let name = local.map(|local| station.circuits[local].name.value.as_str());
+                let mut segments = station.segments.iter();
+                let line = segments.find(|segment| segment.circuits.iter().any(|at| Some(at.value.as_str()) == name));
+                let own = line.map_or(speed.route_kmh.as_ref(), |segment| segment.speed_kmh.as_ref());
+                let straight = kmh(own.or(speed.line_kmh.as_ref()));
+                for (limit, its) in
+                    limits[*piece].iter_mut().zip([straight, straight.min(kmh(speed.reverse_kmh.as_ref()))])
+                {
+                    *limit = limit.min(its / 3.6);
+                }
+            }
+        }
+        limits
     }
 
     /// How many trains there is room for.

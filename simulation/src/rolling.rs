@@ -78,6 +78,8 @@ pub struct Train {
     braking_ms: Option<u64>,
     interruption: Option<usize>,
     counted: bool,
+    /// Whether it is faster than it may be.
+    pub(crate) too_fast: bool,
 }
 
 impl Train {
@@ -103,6 +105,7 @@ impl Train {
             braking_ms: None,
             interruption: None,
             counted: true,
+            too_fast: false,
         }
     }
 
@@ -270,7 +273,8 @@ impl World<'_> {
         train.braking_ms = if brake == Brake::Release { None } else { train.braking_ms.or(Some(now_ms)) };
         let acts = train.braking_ms.is_some_and(|since| now_ms - since >= u64::from(dynamics.brake_delay_ms));
         let permitted = train.cab.permission.speed.map_or(0.0, |speed| f64::from(speed.0) / 36.0);
-        let driven = drive(dynamics, Sight { speed: train.body.speed, permitted, to_stop_m, may_leave });
+        let driven =
+            drive(self.setting.drivers, dynamics, Sight { speed: train.body.speed, permitted, to_stop_m, may_leave });
         let acceleration = match brake {
             Brake::Release => driven,
             _ if !acts => driven.min(0.0),

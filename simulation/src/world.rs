@@ -5,6 +5,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::dispatcher::{Dispatcher, Seen};
+use crate::driver::Drivers;
 use crate::event::{Event, What};
 use crate::fault::{Fault, Kind, consent_life_ms};
 use crate::ground::{PointState, Station, drive};
@@ -28,6 +29,8 @@ pub struct Setting {
     pub compared: bool,
     /// What trains run on.
     pub signal: Signal,
+    /// What drivers do with the cab signal.
+    pub drivers: Drivers,
 }
 
 /// A line at work.
@@ -77,12 +80,13 @@ impl<'a> World<'a> {
         setting.faults.sort_by(|one, other| one.from_ms.total_cmp(&other.from_ms));
         let mut random = Pcg64Mcg::seed_from_u64(setting.seed);
         let kind = setting.signal.line();
-        let device = Device::new(&line.speeds_kmh, line.train_cycle_ms, setting.operate, kind)?;
+        let of = |operate| Device::new(&line.speeds_kmh, line.train_cycle_ms, operate, kind);
+        let device = of(setting.operate)?;
         let rival = match setting.operate {
             Operate::Shortened => Operate::Conventional,
             Operate::Conventional => Operate::Shortened,
         };
-        let rival = Device::new(&line.speeds_kmh, line.train_cycle_ms, rival, kind)?;
+        let rival = of(rival)?;
         let points = line.track.points.iter().map(|point| {
             let least = (point.throw_ms * 5 / 7).max(1);
             PointState { reverse: false, moves_ms: None, stroke_ms: random.random_range(least..=point.throw_ms) }
@@ -161,6 +165,7 @@ impl<'a> World<'a> {
             self.roll(train);
         }
         self.judge();
+        self.judge_speeds();
         self.now_ms += u64::from(self.line.train_cycle_ms);
     }
 

@@ -1,6 +1,7 @@
 //! Faults: none that the line must stand leads to harm; and the campaign sees harm where there is some.
 
 use atc_simulation::campaign::{Campaign, run};
+use atc_simulation::driver::Drivers;
 use atc_simulation::event::What;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::generate::Shape;
@@ -15,7 +16,7 @@ fn line() -> Line {
 
 fn campaign(runs: u64, kinds: &[Kind], extent: Extent) -> Campaign {
     let (kinds, signal) = (kinds.to_vec(), Signal::Codes);
-    Campaign { runs, kinds, extent, faults: 1, trains: 8, seconds: 400, seed: 1, signal }
+    Campaign { runs, kinds, extent, faults: 1, trains: 8, seconds: 400, seed: 1, signal, drivers: Drivers::Careful }
 }
 
 #[test]
@@ -38,6 +39,32 @@ fn no_single_fault_leads_to_harm_on_telegrams() {
             assert!(outcome.arrivals >= 2, "{signal:?}, {kind:?}: {} arrivals", outcome.arrivals);
         }
     }
+}
+
+/// Drivers who motor whatever the cab says: the device on board holds the train, under every single fault.
+#[test]
+fn heedless_drivers_are_held() {
+    for signal in [Signal::Codes, Signal::Telegrams, Signal::Both] {
+        let drivers = Drivers::Heedless;
+        let campaign = Campaign { signal, drivers, ..campaign(22, &Kind::ALL, Extent::Tolerated) };
+        for (kind, outcome) in run(&line(), &campaign, &|_| ()).expect("a campaign") {
+            assert_eq!((outcome.runs, outcome.unsafe_runs), (2, 0), "{signal:?}, {kind:?}: {:?}", outcome.first);
+            assert!(outcome.arrivals >= 2, "{signal:?}, {kind:?}: {} arrivals", outcome.arrivals);
+        }
+    }
+}
+
+/// And where the brake does not act, that is seen: too fast over the points of a station.
+#[test]
+fn heedless_drivers_without_a_brake_are_seen() {
+    let mut line = line();
+    (line.dynamics.service, line.dynamics.emergency) = (0.0, 0.0);
+    let (operate, drivers, faults) = (Operate::Shortened, Drivers::Heedless, Vec::new());
+    let setting = Setting { operate, trains: 2, seed: 1, faults, compared: false, signal: Signal::Telegrams, drivers };
+    let mut world = World::new(&line, setting).expect("a world");
+    world.run(600_000);
+    let last = world.events.last().expect("an event");
+    assert!(matches!(last.what, What::Overspeed { kmh, .. } if kmh > 60.0), "{last:?}");
 }
 
 /// Also on telegrams: a train that is lost for far longer than is tolerated, and the old rule of the test below.
@@ -89,6 +116,7 @@ fn the_truth_is_judged_apart_from_the_devices() {
         faults: Vec::new(),
         compared: false,
         signal: Signal::Codes,
+        drivers: Drivers::Careful,
     };
     let world = || World::new(&line, setting.clone()).expect("a world");
 
@@ -105,7 +133,14 @@ fn the_truth_is_judged_apart_from_the_devices() {
     // A train that runs on without any authority overruns its stop point, and the point behind it if that does not lie for it.
     let mut overran = world();
     overran.trains[0].body.speed = 30.0;
-    overran.run(60_000);
+    let too_fast = |world: &mut World| {
+        world.run(60_000);
+        let last = world.events.last().expect("an event");
+        assert!(matches!(last.what, What::Overspeed { train: 0, kmh, .. } if kmh > 100.0), "{last:?}");
+        world.is_unsafe = false;
+        world.run(60_000);
+    };
+    too_fast(&mut overran);
     let last = overran.events.last().expect("an event");
     assert!(matches!(last.what, What::Overrun { train: 0, .. }), "{last:?}");
 
@@ -116,7 +151,7 @@ fn the_truth_is_judged_apart_from_the_devices() {
     }
     derailed.trains[0].body.speed = 30.0;
     derailed.trains[0].told_ms.fill(60_000);
-    derailed.run(60_000);
+    too_fast(&mut derailed);
     let last = derailed.events.last().expect("an event");
     assert!(matches!(last.what, What::Derailment { train: 0, .. }), "{last:?}");
 }

@@ -38,7 +38,7 @@ pub struct Skip {
 pub struct Known {
     /// The machine.
     pub machine: String,
-    /// The field, as a report names it, without the entry below a map: `display_km_h`, `fault`, `start`, `cycles`.
+    /// The field, as a report names it, without the entry below a map: `display_km_h`, `fault`, `start`, `cycles`; or a word alone: `fault name`.
     pub field: String,
     /// Why.
     pub reason: String,
@@ -65,7 +65,7 @@ impl Profile {
         for known in listed {
             let Some(table) = TABLES.iter().find(|table| table.machine == known.machine) else { continue };
             let base = |name: &'static str| name.split(' ').next().unwrap_or_default();
-            let mut fields: Vec<_> = table.fields.iter().map(|field| base(field.name)).collect();
+            let mut fields: Vec<_> = table.fields.iter().flat_map(|field| [base(field.name), field.name]).collect();
             fields.extend(["start", "cycles"]);
             fields.dedup();
             if !fields.contains(&known.field.as_str()) {
@@ -100,7 +100,8 @@ impl Profile {
 
 impl Known {
     fn is(&self, machine: &str, difference: &Difference) -> bool {
-        self.machine == machine && self.field == difference.base()
+        let whole = difference.field.split('/').next();
+        self.machine == machine && (self.field == difference.base() || Some(self.field.as_str()) == whole)
     }
 }
 

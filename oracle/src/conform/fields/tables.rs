@@ -57,9 +57,9 @@ const BLOCK: Table = Table {
     start: &["BLK-8"],
     cycles: &["BLK-8"],
     fields: &[
-        set("occupied", Danger::Fewer, &["BLK-1", "BLK-2", "BLK-5"]),
+        set("occupied", Danger::Fewer, &["BLK-1", "BLK-2", "BLK-4", "BLK-5", "BLK-6"]),
         output("behind_hold_sections", Danger::Lower, &["BLK-5"]),
-        output("agree", Danger::Appears, &["BLK-1", "BLK-2"]),
+        output("agree", Danger::Appears, &["BLK-1", "BLK-2", "BLK-4"]),
         output("count", Danger::Lower, &["BLK-4", "BLK-6", "BLK-7"]),
         Field {
             get: Some(|output| there(output, "fault", "a fault")),
@@ -193,14 +193,17 @@ const TRAIN: Table = Table {
         output(
             "display_km_h",
             Danger::Higher,
-            &["TRN-1", "TRN-2", "CODE-1", "CODE-2", "CODE-3", "ACC-1", "ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-7"],
+            &[
+                "TRN-1", "TRN-2", "CODE-1", "CODE-2", "CODE-3", "ACC-1", "ACC-2", "ACC-3", "ACC-4", "ACC-5", "ACC-7",
+                "DUP-1",
+            ],
         ),
         output(
             "permitted_km_h",
             Danger::Higher,
             &[
                 "TRN-2", "TRN-3", "TRN-4", "TRN-5", "TRN-6", "TRN-9", "TRN-11", "TRN-12", "PER-1", "PER-3", "PER-4",
-                "PER-5", "PER-6", "PER-7", "PER-8", "TEL-6", "TEL-8", "PAT-1",
+                "PER-5", "PER-6", "PER-7", "PER-8", "TEL-6", "TEL-8", "PAT-1", "DUP-1",
             ],
         ),
         Field { level: Level::Reason, ..output("basis", Danger::No, &["PER-1", "PER-3", "PER-6", "PER-8", "TRN-12"]) },

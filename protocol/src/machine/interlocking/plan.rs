@@ -42,7 +42,7 @@ pub struct PlanConfig {
     /// For how many cycles a train may still slide once it is wholly on the last circuit of a route.
     #[serde(default)]
     pub standstill_cycles: u16,
-    /// Whether the rules of engineering are checked as well.
+    /// Whether the rules of engineering that are about a plan alone are checked as well (spec/protocol.md).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub rules: bool,
     /// The speed of each code from 0 (stop), in km/h; at most 8.

@@ -28,53 +28,13 @@ pub struct Config {
     pub codes: Codes,
     /// The brake.
     pub supervision: supervision::Config,
-    /// In how many channels the device runs: 1, or 2 that are compared in every cycle (spec/duplex.md).
-    #[serde(skip_serializing_if = "Channels::is_one")]
-    #[schemars(with = "u32", range(min = 1, max = 2))]
-    pub channels: Channels,
+    /// In how many channels the device runs: 1, or 2 that are compared in every cycle (spec/duplex.md); null or absent: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 2))]
+    pub channels: Option<u32>,
     /// The position; null or absent: the train does not measure it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position: Option<position::Config>,
-}
-
-/// In how many channels the device runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "u32", into = "u32")]
-pub enum Channels {
-    /// One.
-    #[default]
-    One,
-    /// Two, and their comparison.
-    Two,
-}
-
-impl Channels {
-    // The form of serde's `skip_serializing_if`.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-    fn is_one(&self) -> bool {
-        *self == Self::One
-    }
-}
-
-impl TryFrom<u32> for Channels {
-    type Error = String;
-
-    fn try_from(channels: u32) -> Result<Self, String> {
-        match channels {
-            1 => Ok(Self::One),
-            2 => Ok(Self::Two),
-            _ => Err(format!("channels is {channels}; it must be 1 or 2")),
-        }
-    }
-}
-
-impl From<Channels> for u32 {
-    fn from(channels: Channels) -> Self {
-        match channels {
-            Channels::One => 1,
-            Channels::Two => 2,
-        }
-    }
 }
 
 /// The times of aspect acceptance: those of `aspect-acceptance`.

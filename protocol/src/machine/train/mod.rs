@@ -2,7 +2,7 @@
 
 mod config;
 
-pub use config::{AcceptanceTimes, Channels, Codes, Config, Pair};
+pub use config::{AcceptanceTimes, Codes, Config, Pair};
 
 use atc_kernel::Machine as _;
 use atc_kernel::aspect::MAX_ASPECTS;
@@ -172,7 +172,10 @@ impl OnBoard {
             return Ok(cab);
         };
         let started = Duplex::initial(&self.train);
-        for channel in lost {
+        for (place, channel) in lost.iter().enumerate() {
+            if lost[..place].contains(channel) {
+                return Err("lost names a channel a second time; each is named once".to_owned());
+            }
             match channel {
                 Channel::A => device.a = started.a,
                 Channel::B => device.b = started.b,
@@ -196,7 +199,11 @@ impl Machine for OnBoard {
 
     fn open(config: &Config) -> Result<Self, String> {
         let train = config.train()?;
-        let duplex = (config.channels == Channels::Two).then(|| Duplex::initial(&train));
+        let duplex = match config.channels {
+            None | Some(1) => None,
+            Some(2) => Some(Duplex::initial(&train)),
+            Some(channels) => return Err(format!("channels is {channels}; it must be 1 or 2")),
+        };
         Ok(Self { train, state: train.initial(), duplex })
     }
 

@@ -126,6 +126,7 @@ fn the_page_is_readable_at_1280_and_at_2560_pixels() {
         faults: Vec::new(),
         compared: false,
         signal: atc_simulation::onboard::Signal::Codes,
+        drivers: atc_simulation::driver::Drivers::Careful,
     };
     let mut world = atc_simulation::world::World::new(&line, setting).expect("a world");
     let simulated = atc_simulation::film::of(&mut world, 300_000, 1_000).expect("a film").page();

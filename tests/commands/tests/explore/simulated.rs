@@ -3,6 +3,7 @@
 use atc_film::Class;
 use atc_kernel::supervision::Brake;
 use atc_simulation::campaign::{Campaign, faults};
+use atc_simulation::driver::Drivers;
 use atc_simulation::fault::{Extent, Kind};
 use atc_simulation::film;
 use atc_simulation::generate::Shape;
@@ -11,7 +12,8 @@ use atc_simulation::onboard::{Operate, Signal};
 use atc_simulation::world::{Setting, World};
 
 fn setting(trains: usize, faults: Vec<atc_simulation::fault::Fault>, seed: u64) -> Setting {
-    Setting { operate: Operate::Shortened, trains, seed, faults, compared: false, signal: Signal::Codes }
+    let (operate, signal, drivers) = (Operate::Shortened, Signal::Codes, Drivers::Careful);
+    Setting { operate, trains, seed, faults, compared: false, signal, drivers }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "distances on a line")]
@@ -78,6 +80,7 @@ fn an_accident_is_the_end_of_its_film() {
         seconds: 600,
         seed: 1,
         signal: Signal::Codes,
+        drivers: Drivers::Careful,
     };
     let accident = (0..campaign.runs).find_map(|run| {
         let (_, faults) = faults(&line, &campaign, run);

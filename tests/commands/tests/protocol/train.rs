@@ -111,7 +111,15 @@ fn a_device_in_two_channels_stops_for_good_once_they_differ() {
         assert!(after[50..71].iter().all(|brake| brake == "emergency"));
         assert_eq!(after[70..130], brakes(1, &running)[..]);
     }
-    // A channel that is not there.
+    // A channel that is not there, one that is there twice, and other numbers of channels.
     let said = brakes(1, &[&["a"]]);
     assert!(said[0].contains("lost names a channel; this device has one channel"), "{}", said[0]);
+    let said = brakes(2, &[&["b", "b"]]);
+    assert!(said[0].contains("lost names a channel a second time"), "{}", said[0]);
+    for (channels, right) in
+        [("0", "rejected"), ("3", "rejected"), ("2.0", "started"), ("1e0", "started"), ("\"2\"", "malformed")]
+    {
+        let said = converse(&[&start("train", &format!("{{\"channels\":{channels}}}"))]);
+        assert!(said[0].starts_with(&format!("{{\"{right}\"")), "{channels}: {}", said[0]);
+    }
 }
