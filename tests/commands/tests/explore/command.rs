@@ -142,9 +142,9 @@ fn harm_is_exit_code_1_and_a_page() {
     assert_eq!(output.status.code(), Some(1));
     let event: Value =
         serde_json::from_str(said(&output.stderr).trim().trim_start_matches("UNSAFE: ")).expect("an event");
-    assert_eq!(event["event"], "overrun");
+    assert_eq!(event["event"], "overspeed");
     let page = fs::read_to_string(folder.path().join("film.html")).expect("a page");
-    assert!(page.contains("OVERRUNS into"));
+    assert!(page.contains("IS TOO FAST in"));
 }
 
 #[test]
@@ -222,6 +222,15 @@ A simulated line:
           - both:      Telegrams with codes beside them
           
           [default: codes]
+
+      --drivers <DRIVERS>
+          What drivers do with the cab signal
+
+          Possible values:
+          - careful:  They obey it
+          - heedless: They motor whatever it says, and stop at stations alone: the device on board holds the train
+          
+          [default: careful]
 
       --clears-at-once
           An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear

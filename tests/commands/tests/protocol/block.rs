@@ -149,7 +149,9 @@ fn every_malformed_step() {
         (present("[16]"), "there is no section 16; sections are numbered 0 to 15"),
         (present("[-1]"), "there is no section -1"),
         (present("[9223372036854775807]"), "there is no section 9223372036854775807"),
-        (present("[1e1]"), "expected i64"),
+        // 1e1 is the number 10.
+        (present("[1e1]"), "present names section 10; the sections of this block are 0 to 2"),
+        (present("[15e-1]"), "expected i64"),
         (present("[0,2,0]"), "section 0 a second time; each section is named once"),
         (present("[true]"), "boolean `true`"),
         (present("null"), "null, expected a list of section numbers"),

@@ -122,4 +122,6 @@ fn a_device_in_two_channels_stops_for_good_once_they_differ() {
         let said = converse(&[&start("train", &format!("{{\"channels\":{channels}}}"))]);
         assert!(said[0].starts_with(&format!("{{\"{right}\"")), "{channels}: {}", said[0]);
     }
+    let said = converse(&[r#"{"start":{"protocol":1.0,"machine":"speed-supervision"}}"#]);
+    assert!(said[0].starts_with("{\"started\""), "{}", said[0]);
 }
