@@ -1,5 +1,6 @@
 //! `oracle conform` and `oracle vectors` on the command line.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -324,16 +325,34 @@ pub(crate) fn vectors(args: &VectorsArgs) -> Result<(), Failure> {
         write(&out.join(name), text)?;
     }
     let count: usize = files.iter().filter(|file| is_lines(&file.0)).map(|file| file.1.lines().count()).sum();
-    let covered: std::collections::BTreeSet<String> = files
-        .last()
-        .and_then(|(_, list)| serde_json::from_str::<Value>(list).ok())
+    let list = files.last().and_then(|(_, list)| serde_json::from_str::<Value>(list).ok()).unwrap_or_default();
+    let listed = list["files"].as_array().map_or(&[][..], Vec::as_slice);
+    let covered: std::collections::BTreeSet<&str> = listed
         .iter()
-        .flat_map(|list| list["files"].as_array().cloned().unwrap_or_default())
-        .flat_map(|file| file["requirements"].as_array().cloned().unwrap_or_default())
-        .filter_map(|id| id.as_str().map(str::to_owned))
+        .flat_map(|file| file["requirements"].as_array().into_iter().flatten())
+        .filter_map(Value::as_str)
         .collect();
+    let mut said = String::new();
+    for file in listed {
+        let limits = file["coverage"]["limits"].as_array().map_or(&[][..], Vec::as_slice);
+        let open: Vec<&str> = limits
+            .iter()
+            .filter(|limit| limit["vector"].is_null())
+            .filter_map(|limit| limit["change"].as_str())
+            .collect();
+        let transitions = file["coverage"]["transitions"].as_object().into_iter().flatten();
+        let count: usize = transitions.filter_map(|(_, seen)| seen.as_array()).map(Vec::len).sum();
+        let name = file["machine"].as_str().unwrap_or_default();
+        let (number, decided) = (limits.len(), limits.len() - open.len());
+        let _ =
+            write!(said, "{name}: {decided} of {number} sides of limits are decided, {count} transitions of outputs");
+        if !open.is_empty() {
+            let _ = write!(said, "; not {}", open.join(", "));
+        }
+        said.push('\n');
+    }
     print(&format!(
-        "{count} vectors of {} machines in {}, about {} requirements\n",
+        "{said}{count} vectors of {} machines in {}, about {} requirements\n",
         with.len(),
         out.display(),
         covered.len()

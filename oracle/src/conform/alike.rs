@@ -82,7 +82,47 @@ const GUESSES: &[(&str, &[(Change, &str)])] = &[
             (One("stay_cycles"), "ILK-14"),
         ],
     ),
+    (
+        "train",
+        &[
+            (Cycle("operate_ms"), "ACC-1"),
+            (Cycle("recovery_ms"), "ACC-4"),
+            (Cycle("mask_ms"), "ACC-6"),
+            (Cycle("interruption_ms"), "ACC-8"),
+            (Cycle("shortened_operate_ms"), "ACC-8"),
+            (Cycle("fresh_ms"), "PER-1"),
+            (Cycle("life_ms"), "PER-8"),
+            (Cycle("fixed_life_ms"), "PER-8"),
+            (Cycle("memory_ms"), "TEL-6"),
+            (One("window"), "TEL-6"),
+            (One("run"), "TEL-6"),
+        ],
+    ),
+    (
+        "wayside",
+        &[
+            (Cycle("life_ms"), "WAY-8"),
+            (One("clear_cycles"), "TRK-1"),
+            (One("turn_cycles"), "ILK-19"),
+            (One("start_cycles"), "ILK-24"),
+            (One("drive_cycles"), "ILK-5"),
+            (One("release_cycles"), "ILK-13"),
+            (One("stay_cycles"), "ILK-14"),
+            (One("tail_hold_sections"), "BLK-5"),
+            (One("max_trains"), "BLK-3"),
+        ],
+    ),
 ];
+
+/// Configurations of a machine in which one limit is a cycle, or one, off: with words for it, and the requirement.
+pub(super) fn limits(machine: &str, config: &Value) -> Vec<(Value, String, &'static str)> {
+    let guesses = GUESSES.iter().find(|(name, _)| *name == machine).map_or(&[][..], |(_, guesses)| guesses);
+    let off = guesses.iter().filter(|(change, _)| !matches!(change, Ignored(..)));
+    let each = off.flat_map(|(change, requirement)| {
+        change.changed(config).into_iter().map(move |(config, says)| (config, says, *requirement))
+    });
+    each.collect()
+}
 
 /// The guesses that fit a case and the replies of the other side to its steps.
 pub fn alike(expected: &Expected, replies: &[String], level: Level) -> Vec<Alike> {
@@ -122,7 +162,8 @@ fn fits(machine: &str, level: Level, guess: &Expected, replies: &[String]) -> bo
 impl Change {
     /// The configurations with this change, each with words for it.
     fn changed(&self, config: &Value) -> Vec<(Value, String)> {
-        let cycle = config["cycle_ms"].as_i64().unwrap_or(10);
+        let cycle = ["/cycle_ms", "/permitted/cycle_ms", "/layout/plan/cycle_ms"];
+        let cycle = cycle.iter().find_map(|at| config.pointer(at)?.as_i64()).unwrap_or(10);
         let (name, steps): (_, &[(i64, &str)]) = match self {
             Cycle(name) => (name, &[(-1, "one cycle shorter"), (1, "one cycle longer")]),
             One(name) => (name, &[(-1, "one less"), (1, "one more")]),

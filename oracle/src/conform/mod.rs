@@ -5,12 +5,13 @@
 //!   [`play`], and what is found is made shorter by [`shrink`].
 //! * [`fields`]: what is compared, and which requirements speak of it. [`profile`]: what is known to differ.
 //! * [`alike`]: which small change of the kernel gives the same replies.
-//! * [`report`]: text, JSON, JUnit, HTML, badge. [`vectors`]: cases in files; [`directed`]: those that a search found.
+//! * [`report`]: text, JSON, JUnit, HTML, badge. [`vectors`]: cases in files; [`directed`]: those that a search found; [`coverage`]: what they cover.
 //!
 //! It goes through [`atc_protocol::Session`] and [`crate::chart`] as any client does; neither knows of it.
 
 pub mod alike;
 pub mod case;
+pub mod coverage;
 pub mod directed;
 pub mod fields;
 pub mod play;

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest as _, Sha256};
 
 use super::case::{Case, Expected};
+use super::coverage::coverage;
 use super::directed;
 use super::fields::{self, Level, TABLES};
 use super::walk::{self, Sizes};
@@ -246,6 +247,7 @@ pub fn files(machines: &[&str], set: Set) -> Vec<(String, String)> {
         list.push(json!({
             "file": name, "machine": machine, "vectors": vectors.len(), "steps": steps,
             "requirements": covered, "sha256": hex(&Sha256::digest(text.as_bytes())),
+            "coverage": coverage(machine, &vectors),
         }));
         files.push((name, text));
     }

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use atc_commands::faulty::{FAULTS, Faulty};
+use atc_oracle::conform::coverage::coverage;
 use atc_oracle::conform::fields::{Level, TABLES};
 use atc_oracle::conform::play::Finding;
 use atc_oracle::conform::profile::{Known, Profile};
@@ -214,6 +215,21 @@ fn the_requirements_of_the_fields_are_in_the_specification() {
             assert!(headings.contains(&format!("\n## {id} ")), "{}: there is no requirement {id}", table.machine);
         }
         assert!(table.fields.iter().all(|field| !field.requirements.is_empty()), "{}", table.machine);
+    }
+}
+
+/// Each limit of these machines, a cycle or one less and more, is decided by a vector of the minimal set.
+#[test]
+fn the_minimal_vectors_decide_every_limit() {
+    for (machine, limits, transitions) in
+        [("aspect-acceptance", 10, 4), ("block-count", 6, 25), ("permitted-speed", 12, 25)]
+    {
+        let all = vectors::vectors(machine, vectors::Set::Minimal);
+        let covered = coverage(machine, &all);
+        assert_eq!((covered.limits.len(), covered.open()), (limits, Vec::new()), "{machine}");
+        assert!(covered.count() >= transitions, "{machine}: {} transitions", covered.count());
+        // A set of one vector decides less.
+        assert!(!coverage(machine, &all[..1]).open().is_empty(), "{machine}");
     }
 }
 
