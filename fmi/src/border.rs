@@ -232,6 +232,13 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     }
 }
 
+/// Null, and a message that the unit has no such interface.
+fn no_instance(call: LogMessage, environment: *mut c_void, interface: &str) -> *mut c_void {
+    let log = Log { call, environment };
+    log.say(Status::Error, &format!("this unit has no {interface}; it is for co-simulation"));
+    ptr::null_mut()
+}
+
 /// Not supported: null, and a message.
 #[unsafe(no_mangle)]
 pub extern "C" fn fmi3InstantiateModelExchange(
@@ -243,9 +250,7 @@ pub extern "C" fn fmi3InstantiateModelExchange(
     instanceEnvironment: *mut c_void,
     logMessage: LogMessage,
 ) -> *mut c_void {
-    let log = Log { call: logMessage, environment: instanceEnvironment };
-    log.say(Status::Error, "this unit has no model exchange; it is for co-simulation");
-    ptr::null_mut()
+    no_instance(logMessage, instanceEnvironment, "model exchange")
 }
 
 /// Not supported: null, and a message.
@@ -262,9 +267,7 @@ pub extern "C" fn fmi3InstantiateScheduledExecution(
     _lockPreemption: Callback,
     _unlockPreemption: Callback,
 ) -> *mut c_void {
-    let log = Log { call: logMessage, environment: instanceEnvironment };
-    log.say(Status::Error, "this unit has no scheduled execution; it is for co-simulation");
-    ptr::null_mut()
+    no_instance(logMessage, instanceEnvironment, "scheduled execution")
 }
 
 /// Frees an instance and the states that it keeps. Null, and what is no instance, is passed over.

@@ -1,8 +1,7 @@
 //! The unit as a file: a zip archive with the XML, the library and the configuration.
 
-use std::fs;
 use std::io::{self, Cursor, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
@@ -68,43 +67,3 @@ const PAGE: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\"
 <p>The on-board device of an automatic train control system, as an FMI 3.0 co-simulation unit. Variables, rules and limits \
 are in <a href=\"README.md\">README.md</a>, the configuration is in <code>resources/config.json</code>.</p>\n\
 <p>Licence: <a href=\"licenses/LICENSE-MIT\">MIT</a> or <a href=\"licenses/LICENSE-APACHE\">Apache-2.0</a>.</p>\n</html>\n";
-
-/// Writes a file. Over a plain file goes a new one that was written beside it, so that nothing half-written ever has its name; what is no
-/// plain file, such as a pipe or a device, is written to as it is.
-///
-/// # Errors
-/// The file cannot be written, or is there and read-only.
-pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    match fs::metadata(path) {
-        Ok(there) if there.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
-        Ok(there) if !there.is_file() => through(path, bytes),
-        Ok(there) if there.permissions().readonly() => {
-            Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is there and read-only"))
-        }
-        // A link stays one: what it leads to is replaced.
-        Ok(_) => fs::canonicalize(path).and_then(|file| replace(&file, bytes)),
-        Err(_) if path.is_symlink() => through(path, bytes),
-        Err(_) => replace(path, bytes),
-    }
-}
-
-fn through(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
-    file.write_all(bytes)?;
-    file.flush()
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the umask takes away what it takes away. A file that was there keeps what it had.
-        let any = || fs::Permissions::from_mode(0o666);
-        builder.permissions(fs::metadata(path).map_or_else(|_| any(), |old| old.permissions()));
-    }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.persist(path).map(drop).map_err(|error| error.error)
-}

@@ -8,7 +8,7 @@ use atc_fmi::border::*;
 use atc_fmi::instance::Status;
 use atc_fmi::rounding::{down, nearest, up, value};
 use atc_fmi::variables::{BASIS, BRAKE, Place, VARIABLES};
-use atc_fmi::{cycle, description, package};
+use atc_fmi::{cycle, description};
 use atc_protocol::machine::permitted::Basis;
 use atc_protocol::machine::supervision::Brake;
 use atc_protocol::names::Named as _;
@@ -110,18 +110,6 @@ fn the_xml_is_well_formed_and_has_each_variable_once() {
 fn a_token_is_of_one_configuration() {
     let (one, other) = (description::token(b"{}"), description::token(b"{ }"));
     assert!(one != other && one.len() == 38 && one.starts_with('{'), "{one}");
-}
-
-#[test]
-fn a_file_is_replaced_and_a_folder_is_not() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("unit.fmu");
-    for text in [&b"one"[..], b"two"] {
-        package::write(&file, text).expect("it is written");
-        assert_eq!(std::fs::read(&file).expect("a file"), text);
-    }
-    assert!(package::write(folder.path(), b"one").is_err());
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
 }
 
 /// What was logged, kept where the callback finds it.

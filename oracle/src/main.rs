@@ -377,44 +377,9 @@ fn read(path: &Path) -> Result<String, Failure> {
     text.map_err(|error| Failure::Read(path.to_owned(), error))
 }
 
-/// Writes a file. Over one that is there goes a new one that was written beside it, so that nothing half-written ever has its name; what is
-/// no plain file, such as a pipe or a device, is written to as it is.
+/// Writes a file, never half of it.
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    let failed = |error| Failure::Write(path.to_owned(), error);
-    match fs::metadata(path) {
-        Ok(there) if !there.is_file() => through(path, text),
-        Ok(there) if there.permissions().readonly() => {
-            Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is there and read-only"))
-        }
-        // A link stays one: what it leads to is replaced.
-        Ok(_) => fs::canonicalize(path).and_then(|file| replace(&file, text)),
-        // A link that leads nowhere yet.
-        Err(_) if path.is_symlink() => through(path, text),
-        Err(_) => replace(path, text),
-    }
-    .map_err(failed)
-}
-
-fn through(path: &Path, text: &str) -> io::Result<()> {
-    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
-    file.write_all(text.as_bytes())?;
-    file.flush()
-}
-
-fn replace(path: &Path, text: &str) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the umask takes away what it takes away. A file that was there keeps what it had.
-        builder.permissions(
-            fs::metadata(path).map_or_else(|_| fs::Permissions::from_mode(0o666), |old| old.permissions()),
-        );
-    }
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(text.as_bytes())?;
-    file.persist(path).map(drop).map_err(|error| error.error)
+    atc_files::write(path, text.as_bytes()).map_err(|error| Failure::Write(path.to_owned(), error))
 }
 
 /// Says something on standard error. Nobody may be listening.

@@ -1,7 +1,7 @@
 //! WAV files, in and out: so that anyone can listen to a signal, plot it, or feed a recording.
 
 use std::fmt;
-use std::io::ErrorKind;
+use std::io::{Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
@@ -102,20 +102,9 @@ pub fn write(path: &Path, recording: &Recording, coding: Coding) -> Result<(), W
         Coding::Float32 => (32, SampleFormat::Float),
     };
     let spec = WavSpec { channels: 1, sample_rate: rate as u32, bits_per_sample, sample_format };
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
     let writing = |e: &dyn fmt::Display| error(format!("cannot be written: {e}"));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // As for any new file: the umask takes away what it takes away.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(|e| writing(&e))?;
-    let mut writer = WavWriter::new(std::io::BufWriter::new(file.as_file_mut()), spec).map_err(|e| writing(&e))?;
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = WavWriter::new(&mut bytes, spec).map_err(|e| writing(&e))?;
     for &sample in &recording.samples {
         let written = match coding {
             Coding::Pcm16 => writer.write_sample((f64::from(sample) * 32768.0).round() as i16),
@@ -124,6 +113,5 @@ pub fn write(path: &Path, recording: &Recording, coding: Coding) -> Result<(), W
         written.map_err(|e| writing(&e))?;
     }
     writer.finalize().map_err(|e| writing(&e))?;
-    file.persist(path).map_err(|e| writing(&e.error))?;
-    Ok(())
+    atc_files::write(path, bytes.get_ref()).map_err(|e| writing(&e))
 }

@@ -54,5 +54,5 @@ fn pack(args: &Args) -> Result<(), String> {
         said(&library, &format!("{error}; it is built with this program: cargo build --release -p atc-fmi"))
     })?;
     let unit = package::archive(&text, cycle_ms, &bytes).map_err(|error| said(&args.output, &error))?;
-    package::write(&args.output, &unit).map_err(|error| said(&args.output, &error))
+    atc_files::write(&args.output, &unit).map_err(|error| said(&args.output, &error))
 }

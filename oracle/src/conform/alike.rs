@@ -29,95 +29,82 @@ enum Change {
 
 use Change::{Cycle, Ignored, One};
 
-/// The guesses for each machine, and the requirement of each.
-const GUESSES: &[(&str, &[(Change, &str)])] = &[
-    (
-        "aspect-acceptance",
-        &[
-            (Cycle("operate_ms"), "ACC-1"),
-            (Cycle("recovery_ms"), "ACC-4"),
-            (Cycle("mask_ms"), "ACC-6"),
-            (Cycle("interruption_ms"), "ACC-8"),
-            (Cycle("shortened_operate_ms"), "ACC-8"),
-            (Ignored("interruption_ms", 0), "ACC-8"),
-            (Ignored("mask_ms", 0), "ACC-6"),
-        ],
-    ),
-    ("speed-supervision", &[(Ignored("release_margin_km_h", 0), "SUP-1"), (Ignored("maximum_km_h", 6553), "SUP-2")]),
-    (
-        "block-count",
-        &[
-            (Cycle("pass_ms"), "BLK-3"),
-            (One("tail_hold_sections"), "BLK-5"),
-            (Ignored("tail_hold_sections", 0), "BLK-5"),
-            (One("max_trains"), "BLK-3"),
-        ],
-    ),
+/// A change, and the requirement of it.
+type Guess = (Change, &'static str);
+
+/// The times of aspect acceptance.
+const ACCEPTANCE: &[Guess] = &[
+    (Cycle("operate_ms"), "ACC-1"),
+    (Cycle("recovery_ms"), "ACC-4"),
+    (Cycle("mask_ms"), "ACC-6"),
+    (Cycle("interruption_ms"), "ACC-8"),
+    (Cycle("shortened_operate_ms"), "ACC-8"),
+];
+
+/// The lives and counters of telegrams.
+const TELEGRAMS: &[Guess] = &[
+    (Cycle("fresh_ms"), "PER-1"),
+    (Cycle("life_ms"), "PER-8"),
+    (Cycle("fixed_life_ms"), "PER-8"),
+    (Cycle("memory_ms"), "TEL-6"),
+    (One("window"), "TEL-6"),
+    (One("run"), "TEL-6"),
+];
+
+/// The times of a station.
+const STATION: &[Guess] = &[
+    (One("clear_cycles"), "TRK-1"),
+    (One("turn_cycles"), "ILK-19"),
+    (One("start_cycles"), "ILK-24"),
+    (One("drive_cycles"), "ILK-5"),
+    (One("release_cycles"), "ILK-13"),
+    (One("stay_cycles"), "ILK-14"),
+];
+
+/// The numbers of a block.
+const BLOCK: &[Guess] = &[(One("tail_hold_sections"), "BLK-5"), (One("max_trains"), "BLK-3")];
+
+/// The guesses for each machine, group by group.
+const GUESSES: &[(&str, &[&[Guess]])] = &[
+    ("aspect-acceptance", &[ACCEPTANCE, &[(Ignored("interruption_ms", 0), "ACC-8"), (Ignored("mask_ms", 0), "ACC-6")]]),
+    ("speed-supervision", &[&[(Ignored("release_margin_km_h", 0), "SUP-1"), (Ignored("maximum_km_h", 6553), "SUP-2")]]),
+    ("block-count", &[&[(Cycle("pass_ms"), "BLK-3")], BLOCK, &[(Ignored("tail_hold_sections", 0), "BLK-5")]]),
     (
         "permitted-speed",
         &[
-            (Cycle("fresh_ms"), "PER-1"),
-            (Cycle("life_ms"), "PER-8"),
-            (Cycle("fixed_life_ms"), "PER-8"),
-            (Cycle("memory_ms"), "TEL-6"),
-            (One("window"), "TEL-6"),
-            (One("run"), "TEL-6"),
-            (Ignored("run", 1), "TEL-6"),
-            (Ignored("margin_m", 0), "PER-4"),
-            (Ignored("worst_gradient_permille", 0), "PER-5"),
+            TELEGRAMS,
+            &[
+                (Ignored("run", 1), "TEL-6"),
+                (Ignored("margin_m", 0), "PER-4"),
+                (Ignored("worst_gradient_permille", 0), "PER-5"),
+            ],
         ],
     ),
-    ("train-position", &[(Ignored("tolerance_db", 0), "POS-1"), (Ignored("floor_db", -300), "POS-2")]),
+    ("train-position", &[&[(Ignored("tolerance_db", 0), "POS-1"), (Ignored("floor_db", -300), "POS-2")]]),
     (
         "interlocking",
         &[
-            (One("clear_cycles"), "TRK-1"),
-            (One("turn_cycles"), "ILK-19"),
-            (One("start_cycles"), "ILK-24"),
-            (Ignored("start_cycles", 0), "ILK-24"),
-            (One("settle_cycles"), "ILK-23"),
-            (Ignored("settle_cycles", 0), "ILK-23"),
-            (One("drive_cycles"), "ILK-5"),
-            (One("release_cycles"), "ILK-13"),
-            (One("stay_cycles"), "ILK-14"),
+            STATION,
+            &[
+                (Ignored("start_cycles", 0), "ILK-24"),
+                (One("settle_cycles"), "ILK-23"),
+                (Ignored("settle_cycles", 0), "ILK-23"),
+            ],
         ],
     ),
-    (
-        "train",
-        &[
-            (Cycle("operate_ms"), "ACC-1"),
-            (Cycle("recovery_ms"), "ACC-4"),
-            (Cycle("mask_ms"), "ACC-6"),
-            (Cycle("interruption_ms"), "ACC-8"),
-            (Cycle("shortened_operate_ms"), "ACC-8"),
-            (Cycle("fresh_ms"), "PER-1"),
-            (Cycle("life_ms"), "PER-8"),
-            (Cycle("fixed_life_ms"), "PER-8"),
-            (Cycle("memory_ms"), "TEL-6"),
-            (One("window"), "TEL-6"),
-            (One("run"), "TEL-6"),
-        ],
-    ),
-    (
-        "wayside",
-        &[
-            (Cycle("life_ms"), "WAY-8"),
-            (One("clear_cycles"), "TRK-1"),
-            (One("turn_cycles"), "ILK-19"),
-            (One("start_cycles"), "ILK-24"),
-            (One("drive_cycles"), "ILK-5"),
-            (One("release_cycles"), "ILK-13"),
-            (One("stay_cycles"), "ILK-14"),
-            (One("tail_hold_sections"), "BLK-5"),
-            (One("max_trains"), "BLK-3"),
-        ],
-    ),
+    ("train", &[ACCEPTANCE, TELEGRAMS]),
+    ("wayside", &[&[(Cycle("life_ms"), "WAY-8")], STATION, BLOCK]),
 ];
+
+/// The guesses for a machine.
+fn guesses(machine: &str) -> impl Iterator<Item = &'static Guess> {
+    let its = GUESSES.iter().find(|(name, _)| *name == machine).map_or(&[][..], |(_, groups)| groups);
+    its.iter().copied().flatten()
+}
 
 /// Configurations of a machine in which one limit is a cycle, or one, off: with words for it, and the requirement.
 pub(super) fn limits(machine: &str, config: &Value) -> Vec<(Value, String, &'static str)> {
-    let guesses = GUESSES.iter().find(|(name, _)| *name == machine).map_or(&[][..], |(_, guesses)| guesses);
-    let off = guesses.iter().filter(|(change, _)| !matches!(change, Ignored(..)));
+    let off = guesses(machine).filter(|(change, _)| !matches!(change, Ignored(..)));
     let each = off.flat_map(|(change, requirement)| {
         change.changed(config).into_iter().map(move |(config, says)| (config, says, *requirement))
     });
@@ -127,7 +114,6 @@ pub(super) fn limits(machine: &str, config: &Value) -> Vec<(Value, String, &'sta
 /// The guesses that fit a case and the replies of the other side to its steps.
 pub fn alike(expected: &Expected, replies: &[String], level: Level) -> Vec<Alike> {
     let machine = expected.case.machine.as_str();
-    let guesses = GUESSES.iter().find(|(name, _)| *name == machine).map_or(&[][..], |(_, guesses)| guesses);
     // Only where every reply is there: the last one is the one that differs.
     if replies.is_empty() || replies.len() != expected.case.steps.len() {
         return Vec::new();
@@ -136,7 +122,7 @@ pub fn alike(expected: &Expected, replies: &[String], level: Level) -> Vec<Alike
     let started: Value = serde_json::from_str(&expected.start).unwrap_or_default();
     let config = &started["started"]["config"];
     let mut fitting: Vec<Alike> = Vec::new();
-    for (change, requirement) in guesses {
+    for (change, requirement) in guesses(machine) {
         for (changed, says) in change.changed(config) {
             let mut case = expected.case.clone();
             case.config = changed;
@@ -211,7 +197,7 @@ fn replace(value: &mut Value, name: &str, new: &dyn Fn(Option<i64>) -> Option<i6
 /// The requirements that the guesses name.
 #[cfg(test)]
 fn named() -> Vec<&'static str> {
-    GUESSES.iter().flat_map(|(_, guesses)| guesses.iter().map(|(_, requirement)| *requirement)).collect()
+    GUESSES.iter().flat_map(|(machine, _)| guesses(machine)).map(|(_, requirement)| *requirement).collect()
 }
 
 #[cfg(test)]

@@ -11,9 +11,6 @@ use super::alike::limits;
 use super::fields::{Shape, table};
 use super::vectors::Vector;
 
-/// How many vectors are tried for a limit: one that none of these decides is taken for open.
-const TRIES: usize = 1000;
-
 /// A limit, and the vector that decides it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
@@ -49,16 +46,15 @@ impl Coverage {
 /// What the vectors of a machine cover.
 pub fn coverage(machine: &str, vectors: &[Vector]) -> Coverage {
     let mut coverage = Coverage::default();
-    let mut found: BTreeMap<(String, &'static str), (usize, Option<String>)> = BTreeMap::new();
+    let mut found: BTreeMap<(String, &'static str), Option<String>> = BTreeMap::new();
     for vector in vectors.iter().filter(|vector| !vector.rejected) {
         transitions(machine, vector, &mut coverage.transitions);
         let Ok(right) = vector.expected().case.expected() else { continue };
         // The started reply has every default.
         let started: Value = serde_json::from_str(&right.start).unwrap_or_default();
         for (config, change, requirement) in limits(machine, &started["started"]["config"]) {
-            let (tries, decided) = found.entry((change, requirement)).or_default();
-            if decided.is_none() && *tries < TRIES {
-                *tries += 1;
+            let decided = found.entry((change, requirement)).or_default();
+            if decided.is_none() {
                 let mut case = right.case.clone();
                 case.config = config;
                 // A number that the kernel does not take is no other limit.
@@ -67,7 +63,7 @@ pub fn coverage(machine: &str, vectors: &[Vector]) -> Coverage {
             }
         }
     }
-    let limit = |((change, requirement), (_, vector))| Limit { change, requirement, vector };
+    let limit = |((change, requirement), vector)| Limit { change, requirement, vector };
     coverage.limits = found.into_iter().map(limit).collect();
     coverage
 }
