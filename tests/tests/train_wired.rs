@@ -101,9 +101,11 @@ enum Wrong {
     Unknown,
     /// What was known is kept when the train changes ends.
     Kept,
+    /// A train that may not run is released at a stand.
+    Creeps,
 }
 
-const WRONG: [Wrong; 13] = [
+const WRONG: [Wrong; 14] = [
     Wrong::Unaccepted,
     Wrong::OtherTable,
     Wrong::Carrier,
@@ -117,6 +119,7 @@ const WRONG: [Wrong; 13] = [
     Wrong::Against,
     Wrong::Unknown,
     Wrong::Kept,
+    Wrong::Creeps,
 ];
 
 /// One cycle of the parts, in the order of the picture in `spec/train.md`; `last` is what was permitted before.
@@ -196,7 +199,13 @@ fn glue(
         speed => speed.map(|speed| i32::from(speed.0)),
     };
     let given = Speeds { measured: seen.speed, permitted: permitted_speed.map(RawKmhTenths) };
-    let brake = supervision::step(parts.supervision, state.brake, given);
+    // TRN-13.
+    let stands = permission.speed == Some(KmhTenths(0)) && !is(Wrong::Creeps);
+    let brake = supervision::step(parts.supervision, state.brake, given).max(if stands {
+        Brake::Service
+    } else {
+        Brake::Release
+    });
     let facing = seen.facing;
     (
         State { acceptance, permitted, position: place, brake, facing },

@@ -4,7 +4,7 @@
 //! ([`crate::permitted`]), position and supervision. Here they are put together once, so that nobody has to do it again: no
 //! code is used that was not accepted, no rank without its table, no distance in another section than its own.
 //!
-//! Requirements: `spec/train.md`, TRN-1 to TRN-12. Read in this order: [`Parts`] and [`Train`] (parameters), [`Antennas`],
+//! Requirements: `spec/train.md`, TRN-1 to TRN-13. Read in this order: [`Parts`] and [`Train`] (parameters), [`Antennas`],
 //! [`Cab`], [`State`] with its `is_valid`, and the step: [`State::facing`], [`Train::receive`], then [`Train::act`].
 
 mod parameters;
@@ -183,7 +183,10 @@ impl<const N: usize> Train<N> {
             //# The measured speed MUST be supervised against the permission of the same cycle, and no permission MUST command the emergency brake.
             permitted: permission.speed.map(|speed| RawKmhTenths(i32::from(speed.0))),
         };
-        let brake = supervision::step(parts.supervision, state.brake, speeds);
+        let supervised = supervision::step(parts.supervision, state.brake, speeds);
+        //= spec/train.md#trn-13-a-train-that-is-to-stand
+        //# While no speed above 0 is permitted, the brake MUST be commanded, also at a stand.
+        let brake = if permission.speed == Some(KmhTenths(0)) { supervised.max(Brake::Service) } else { supervised };
         (
             State { acceptance, permitted, position, brake, facing: state.facing },
             Cab { display, permission, position, brake },

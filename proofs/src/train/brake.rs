@@ -103,10 +103,10 @@ harness! {
 
 harness! {
     /// No permission is an emergency brake, not a service brake. Otherwise a train that measures a plausible speed is braked by the service brake
-    /// if it is above the permission, and the brake is released only if it is not.
+    /// if it is above the permission, and the brake is released only if it is not. A train that may not run is held, also at a stand.
     t_trn_5(e)
     theorem "T-TRN-5";
-    requirements ["TRN-7"];
+    requirements ["TRN-7", "TRN-13"];
     assumptions ["four-speeds", "printed-sizes"];
     bound STEADY;
     cases 1;
@@ -114,8 +114,10 @@ harness! {
     solver kissat;
     claims {
         Emergency: "without a permission the emergency brake is commanded, at any speed",
+        Implausible: "without a plausible speed the emergency brake is commanded, whatever is permitted",
         Service: "above the permission, at a plausible speed, the service brake is commanded",
         Released: "a brake that is released has a plausible speed, not above the permission",
+        Held: "a brake that is released has a permission above 0",
         Nothing: "without a code and without a fresh telegram nothing is permitted",
         Kept: "the command is what is remembered",
     }
@@ -123,6 +125,8 @@ harness! {
         Nothing: "nothing is permitted",
         Zero: "a speed of 0 is permitted, and the train runs",
         Released: "the brake is released, and the train runs",
+        Stands: "the brake is released, and the train stands",
+        Held: "a speed of 0 is permitted, and the train stands",
     }
     {
         let Some(line) = any_line(e) else { return };
@@ -132,16 +136,22 @@ harness! {
         let plausible = measured.is_some_and(|speed| 0 <= speed && speed <= maximum);
         let above = |speed: KmhTenths| measured.is_some_and(|measured| measured > i32::from(speed.0));
         e.claim(Claim::Emergency as u32, cab.permission.speed.is_some() || cab.brake == Brake::Emergency);
+        e.claim(Claim::Implausible as u32, plausible || cab.brake == Brake::Emergency);
         let service = cab.permission.speed.is_some_and(|speed| plausible && above(speed));
         e.claim(Claim::Service as u32, !service || cab.brake == Brake::Service);
         let not_above = cab.permission.speed.is_some_and(|speed| plausible && !above(speed));
         e.claim(Claim::Released as u32, cab.brake != Brake::Release || not_above);
+        let runs = cab.permission.speed.is_some_and(|speed| speed.0 > 0);
+        e.claim(Claim::Held as u32, cab.brake != Brake::Release || runs);
         let fresh = cycle.after.permitted.target.is_some_and(|target| target.age.0 <= line.settings.fresh.0);
         let heard = cab.display.is_some() || fresh;
         e.claim(Claim::Nothing as u32, heard || cab.permission.speed.is_none());
         e.claim(Claim::Kept as u32, cycle.after.brake == cab.brake);
         e.cover(Cover::Nothing as u32, cab.permission.speed.is_none());
-        e.cover(Cover::Zero as u32, cab.permission.speed == Some(KmhTenths(0)) && cab.brake == Brake::Service);
+        let (zero, stands) = (cab.permission.speed == Some(KmhTenths(0)), measured == Some(0));
+        e.cover(Cover::Zero as u32, zero && cab.brake == Brake::Service && !stands);
         e.cover(Cover::Released as u32, cab.brake == Brake::Release && measured > Some(0));
+        e.cover(Cover::Stands as u32, cab.brake == Brake::Release && stands);
+        e.cover(Cover::Held as u32, zero && cab.brake == Brake::Service && stands);
     }
 }

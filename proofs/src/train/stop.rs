@@ -141,10 +141,10 @@ harness! {
 harness! {
     /// A ghost train has a true distance to its stopping point, and what the device keeps of it is no longer (`t_trn_1_distance`). Where the brake is not
     /// commanded after a cycle, and the permission rests on telegrams, the train, at the speed that it measures, still stops within that distance less
-    /// the margin: v² ≤ 2·b·d.
+    /// the margin: v² ≤ 2·b·d. Within the margin the brake is commanded, also at a stand: a train that creeps does not come to its point.
     t_trn_1(e)
     theorem "T-TRN-1";
-    requirements ["TRN-7"];
+    requirements ["TRN-7", "TRN-13"];
     assumptions ["four-speeds", "printed-sizes", "gravity", "sub-data-worst", "speed-not-under"];
     built_in &[
         ("gravity", "the train slows down by 901 mm/s²: 1000 less 10 thousandths of gravity"),
@@ -157,12 +157,13 @@ harness! {
     solver kissat;
     apart [0 1 2 3 4];
     claims {
-        Stops: "the brake released, and a permission by telegrams: 125·v² ≤ 324·b·d, with the true distance less the margin, and v = 0 within the margin",
+        Stops: "the brake released, and a permission by telegrams: 125·v² ≤ 324·b·d, with the true distance less the margin",
+        Held: "the brake released, and a permission by telegrams: the train is not within the margin",
         Nowhere: "without a target no permission above 0 rests on telegrams",
     }
     covers {
-        Runs: "the train runs on a fresh telegram, or is so near that it must stand",
-        Last: "it runs on the last pattern, with a code, or is so near that it must stand",
+        Runs: "the train runs on a fresh telegram, or stands so near that it is held",
+        Last: "it runs on the last pattern, with a code, or stands so near that it is held",
         Braked: "the brake is commanded, for the train is too fast",
     }
     {
@@ -212,12 +213,13 @@ harness! {
         let speed = received.speed.map_or(0, |speed| u16::try_from(speed.0).unwrap_or(u16::MAX));
         let (speed, left) = (u64::from(speed), u64::try_from(now - MARGIN_MM).unwrap_or(0));
         e.claim(Claim::Stops as u32, !runs || 125_000 * speed * speed <= 324 * 901 * left);
+        e.claim(Claim::Held as u32, !runs || left > 0);
         let stopped = cab.permission.speed.is_none_or(|speed| speed.0 == 0);
         e.claim(Claim::Nowhere as u32, known.is_some() || !telegrams || stopped);
-        let near = case < 2;
+        let held = case < 2 && sound && telegrams && speed == 0 && cab.brake == Brake::Service;
         let last = cab.permission.basis == Basis::RunningDown;
-        e.cover(Cover::Runs as u32, runs && !last && (speed > 0 || near));
-        e.cover(Cover::Last as u32, runs && last && (speed > 0 || near));
+        e.cover(Cover::Runs as u32, !last && (held || runs && speed > 0));
+        e.cover(Cover::Last as u32, last && (held || runs && speed > 0));
         e.cover(Cover::Braked as u32, telegrams && cab.brake == Brake::Service && speed > 0);
     }
 }

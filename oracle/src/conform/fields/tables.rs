@@ -208,7 +208,7 @@ const TRAIN: Table = Table {
         ),
         Field { level: Level::Reason, ..output("basis", Danger::No, &["PER-1", "PER-3", "PER-6", "PER-8", "TRN-12"]) },
         output("position_m", Danger::Narrower, &["POS-1", "POS-2", "POS-4", "TRN-6", "TRN-12"]),
-        output("brake", Danger::WeakerBrake, &["TRN-7", "SUP-1", "SUP-2", "DUP-1"]),
+        output("brake", Danger::WeakerBrake, &["TRN-7", "TRN-13", "SUP-1", "SUP-2", "DUP-1"]),
     ],
 };
 
