@@ -47,7 +47,7 @@ pub struct ExploreArgs {
     kernel: Option<PathBuf>,
     #[command(flatten, next_help_heading = "A simulated line")]
     run: RunArgs,
-    /// Draws so many faults of the kind of --faults, as the run of a campaign with this seed has them
+    /// Draws so many of each kind of --faults, as the run of a campaign with this seed has them
     #[arg(long, value_name = "FAULTS")]
     each: Option<usize>,
 }

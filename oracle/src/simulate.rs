@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use atc_film::Film;
-use atc_simulation::campaign::{self, Campaign};
+use atc_simulation::campaign::{self, Campaign, Cause};
+use atc_simulation::defect::Defect;
 use atc_simulation::driver::Drivers;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::headline;
@@ -22,7 +23,9 @@ use clap::{Args, ValueEnum};
     name = \"My line\"\n  [[station]]\n  layout = \"west.toml\"        # a layout file, beside this one\n  [[station]]\n  layout = \"east.toml\"\n\n  \
     [generated]                 # in place of [[station]]\n  tracks = [2, 2, 2]\n  blocks = [4, 4]\n\n\
     Faults: interruption, misread-code, false-occupancy, shunt-loss, missed-detection, late-point, lost-telegram, \
-    delayed-telegram, repeated-code, restart-station, restart-train.")]
+    delayed-telegram, repeated-code, restart-station, restart-train.\n\n\
+    Wrong parts: clears-at-once, starts-at-once, codes-too-high (ground); pattern-too-high, telegrams-live-on, \
+    codes-at-once, codes-live-on (on board).")]
 pub struct SimulateArgs {
     /// The line: stations and trains (TOML)
     #[arg(required_unless_present = "headline", value_name = "LINE.toml")]
@@ -35,9 +38,14 @@ pub struct SimulateArgs {
     /// Runs so many times with one fault each, and tells in how many runs something unsafe happened
     #[arg(long, value_name = "RUNS")]
     campaign: Option<u64>,
-    /// How many faults each run of a campaign has, all of one kind
-    #[arg(long, default_value_t = 1, requires = "campaign", value_name = "FAULTS")]
-    each: usize,
+    /// In a campaign, two things are wrong in each run: two faults at about the same time and place, a wrong part and a
+    /// fault, or two wrong parts (and each wrong part alone)
+    #[arg(long, requires = "campaign", conflicts_with_all = ["faults", "defects"])]
+    pairs: bool,
+    /// How many faults each run of a campaign has, all of one kind; with --pairs so many pairs [default: 1]. Without
+    /// --campaign: draws so many of each kind of --faults as the run of a campaign with this seed has them
+    #[arg(long, value_name = "FAULTS")]
+    each: Option<usize>,
     /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
     #[arg(long, conflicts_with = "campaign")]
     headline: bool,
@@ -73,9 +81,9 @@ pub struct RunArgs {
     /// What drivers do with the cab signal
     #[arg(long, value_enum, default_value = "careful")]
     drivers: Who,
-    /// An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
-    #[arg(long)]
-    clears_at_once: bool,
+    /// Parts that are wrong all the time
+    #[arg(long, value_delimiter = ',', value_parser = defect, value_name = "PART,…")]
+    defects: Vec<Defect>,
 }
 
 impl RunArgs {
@@ -90,7 +98,7 @@ impl RunArgs {
             ("--device", self.device != Device::Shortened),
             ("--signal", self.signal != On::Codes),
             ("--drivers", self.drivers != Who::Careful),
-            ("--clears-at-once", self.clears_at_once),
+            ("--defects", !self.defects.is_empty()),
         ];
         options.iter().find(|(_, there)| *there).map(|(option, _)| *option)
     }
@@ -142,6 +150,11 @@ fn kind(name: &str) -> Result<Kind, String> {
     Kind::named(name).ok_or_else(|| format!("there is no such fault; there are {}", known()))
 }
 
+fn defect(name: &str) -> Result<Defect, String> {
+    let known = || Defect::ALL.map(Defect::name).join(", ");
+    Defect::named(name).ok_or_else(|| format!("there is no such wrong part; there are {}", known()))
+}
+
 /// What came of the command.
 #[derive(Default)]
 pub struct Done {
@@ -161,18 +174,12 @@ pub fn run(args: &SimulateArgs) -> Result<Done, String> {
         return measure(args);
     }
     let file = args.file.as_ref().ok_or("a line file is needed")?;
-    let line = opened(file, &args.run)?;
+    let line = Line::read(file)?;
     let trains = trains(&args.run, &line);
     match args.campaign {
         Some(runs) => many(args, &line, (trains, runs)),
         None => one(args, &line, trains),
     }
-}
-
-fn opened(file: &Path, args: &RunArgs) -> Result<Line, String> {
-    let mut line = Line::read(file)?;
-    line.clears_at_once = args.clears_at_once;
-    Ok(line)
 }
 
 fn trains(args: &RunArgs, line: &Line) -> usize {
@@ -186,31 +193,16 @@ const fn extent(args: &RunArgs) -> Extent {
 /// For how many seconds a run goes on if nothing else is said.
 const SECONDS: u32 = 1_800;
 
-/// `each`: draws so many faults of the one kind that is named, as the run of a campaign with this seed has them.
+/// `each`: draws so many faults of each kind that is named, as the run of a campaign with this seed has them.
 fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> Result<Setting, String> {
     let seconds = args.time.unwrap_or(SECONDS);
     let mut faults = Vec::new();
     if let Some(each) = each {
-        let [kind] = args.faults.as_slice() else {
-            return Err(format!("--each {each} is of one kind: name it with --faults"));
-        };
-        let (kinds, extent, seed) = (vec![*kind], extent(args), args.seed);
-        faults = campaign::faults(
-            line,
-            &Campaign {
-                runs: 1,
-                kinds,
-                extent,
-                faults: each,
-                trains,
-                seconds,
-                seed,
-                signal: signal(args),
-                drivers: drivers(args),
-            },
-            0,
-        )
-        .1;
+        if args.faults.is_empty() {
+            return Err(format!("--each {each}: name the kinds of faults with --faults"));
+        }
+        let causes = vec![Cause { kinds: args.faults.clone(), ..Cause::default() }];
+        faults = campaign::faults(line, &campaign_of(args, (1, causes, each), (trains, seconds)), 0).1;
     }
     let single = if each.is_none() { args.faults.as_slice() } else { &[] };
     for (number, kind) in single.iter().enumerate() {
@@ -221,8 +213,18 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
-    let (seed, signal, drivers) = (args.seed, signal(args), drivers(args));
-    Ok(Setting { operate, trains, seed, faults, compared: false, signal, drivers })
+    let (seed, signal, drivers, defects) = (args.seed, signal(args), drivers(args), args.defects.clone());
+    Ok(Setting { operate, trains, seed, faults, compared: false, signal, drivers, defects })
+}
+
+/// A campaign of so many runs, causes and faults in each; with so many trains, for so many seconds.
+fn campaign_of(
+    args: &RunArgs,
+    (runs, causes, faults): (u64, Vec<Cause>, usize),
+    (trains, seconds): (usize, u32),
+) -> Campaign {
+    let (extent, seed, signal, drivers) = (extent(args), args.seed, signal(args), drivers(args));
+    Campaign { runs, causes, extent, faults, trains, seconds, seed, signal, drivers }
 }
 
 /// The film of a run.
@@ -237,7 +239,7 @@ pub struct Made {
 
 /// Runs a line and films it, second by second.
 pub fn film(file: &Path, args: &RunArgs, each: Option<usize>, title: Option<&str>) -> Result<Made, String> {
-    let line = opened(file, args)?;
+    let line = Line::read(file)?;
     let mut world = World::new(&line, setting(args, &line, trains(args, &line), each)?)?;
     let end_ms = u64::from(args.time.unwrap_or(SECONDS)) * 1000;
     let mut film = atc_simulation::film::of(&mut world, end_ms, 1_000)?;
@@ -260,7 +262,7 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
     if args.profile >= trains {
         return Err(format!("--profile {}: the trains are 0 to {}", args.profile, trains.saturating_sub(1)));
     }
-    let mut world = World::new(line, setting(&args.run, line, trains, None)?)?;
+    let mut world = World::new(line, setting(&args.run, line, trains, args.each)?)?;
     let start = Instant::now();
     let record = Record::of(&mut world, u64::from(seconds) * 1000, 1_000);
     let took = start.elapsed().as_secs_f64();
@@ -295,35 +297,29 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
 }
 
 fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Result<Done, String> {
-    let kinds = if args.run.faults.is_empty() { Kind::ALL.to_vec() } else { args.run.faults.clone() };
-    let campaign = Campaign {
-        runs,
-        kinds,
-        extent: extent(&args.run),
-        faults: args.each,
-        trains,
-        seconds: args.run.time.unwrap_or(600),
-        seed: args.run.seed,
-        signal: signal(&args.run),
-        drivers: drivers(&args.run),
+    let (kinds, defects) = (&args.run.faults, &args.run.defects);
+    let causes = match (args.pairs, kinds.is_empty()) {
+        (true, _) => Cause::pairs(),
+        (false, true) => Kind::ALL.map(Cause::from).to_vec(),
+        (false, false) => kinds.iter().copied().map(Cause::from).collect(),
     };
+    let causes = causes.into_iter().map(|cause| Cause { defects: [defects.clone(), cause.defects].concat(), ..cause });
+    let seconds = args.run.time.unwrap_or(600);
+    let campaign = campaign_of(&args.run, (runs, causes.collect(), args.each.unwrap_or(1)), (trains, seconds));
     let outcomes = campaign::run(line, &campaign, &|_| ())?;
     let mut done = Done::default();
-    let _ = writeln!(done.text, "{:<18} {:>7} {:>7} {:>9}  first unsafe run", "fault", "runs", "unsafe", "arrivals");
-    for (kind, outcome) in &outcomes {
+    let names: Vec<String> = outcomes.keys().map(Cause::to_string).collect();
+    let wide = names.iter().map(String::len).max().unwrap_or(0).max(18);
+    let _ = writeln!(done.text, "{:<wide$} {:>7} {:>7} {:>9}  first unsafe run", "fault", "runs", "unsafe", "arrivals");
+    for (name, outcome) in names.iter().zip(outcomes.values()) {
         let first = match &outcome.first {
             Some((seed, event)) => {
                 format!("seed {seed}: {}", serde_json::to_string(event).map_err(|error| error.to_string())?)
             }
             None => String::new(),
         };
-        let row = format!(
-            "{:<18} {:>7} {:>7} {:>9}  {first}",
-            kind.name(),
-            outcome.runs,
-            outcome.unsafe_runs,
-            outcome.arrivals
-        );
+        let row =
+            format!("{name:<wide$} {:>7} {:>7} {:>9}  {first}", outcome.runs, outcome.unsafe_runs, outcome.arrivals);
         let _ = writeln!(done.text, "{}", row.trim_end());
         done.is_unsafe |= outcome.unsafe_runs > 0;
     }

@@ -1,28 +1,77 @@
-//! A fault campaign: one fault in each run, at a random time; and whether anything unsafe came of it.
+//! A fault campaign: what is wrong in each run, at a random time; and whether anything unsafe came of it.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use rand::SeedableRng;
+use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
+use crate::defect::Defect;
 use crate::driver::Drivers;
 use crate::event::Event;
 use crate::fault::{Extent, Fault, Kind};
 use crate::line::Line;
-use crate::onboard::{Operate, Signal};
+use crate::onboard::Signal;
 use crate::world::{Setting, World};
+
+/// What is wrong in a run: parts that are, all the time, and faults of the line, at about the same time.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Cause {
+    /// The parts.
+    pub defects: Vec<Defect>,
+    /// The kinds of faults.
+    pub kinds: Vec<Kind>,
+}
+
+impl Cause {
+    /// Every pair of faults, two of one kind among them; every defect alone, with each fault, and with each other.
+    pub fn pairs() -> Vec<Self> {
+        let mut causes = Vec::new();
+        for (number, one) in Kind::ALL.into_iter().enumerate() {
+            causes.extend(Kind::ALL[number..].iter().map(|other| Self { kinds: vec![one, *other], ..Self::default() }));
+        }
+        for (number, one) in Defect::ALL.into_iter().enumerate() {
+            let alone = Self { defects: vec![one], ..Self::default() };
+            causes.extend(Kind::ALL.map(|kind| Self { kinds: vec![kind], ..alone.clone() }));
+            causes.extend(
+                Defect::ALL[number + 1..].iter().map(|other| Self { defects: vec![one, *other], ..Self::default() }),
+            );
+            causes.push(alone);
+        }
+        causes
+    }
+}
+
+impl From<Kind> for Cause {
+    fn from(kind: Kind) -> Self {
+        Self { kinds: vec![kind], ..Self::default() }
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = self.defects.iter().map(|defect| defect.name()).chain(self.kinds.iter().map(|kind| kind.name()));
+        out.write_str(&names.collect::<Vec<_>>().join(" + "))
+    }
+}
+
+impl Serialize for Cause {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
 
 /// What a campaign is made of.
 #[derive(Clone, Debug)]
 pub struct Campaign {
     /// How many runs.
     pub runs: u64,
-    /// The kinds of faults; each run has one of them, in turn.
-    pub kinds: Vec<Kind>,
+    /// What is wrong; each run has one of them, in turn.
+    pub causes: Vec<Cause>,
     /// Whether the faults are such as the line must stand.
     pub extent: Extent,
-    /// How many faults of its kind a run has.
+    /// How many faults of its first kind a run has.
     pub faults: usize,
     /// How many trains there are.
     pub trains: usize,
@@ -36,7 +85,7 @@ pub struct Campaign {
     pub drivers: Drivers,
 }
 
-/// What became of the runs with one kind of fault.
+/// What became of the runs in which one thing was wrong.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Outcome {
     /// How many there were.
@@ -50,43 +99,58 @@ pub struct Outcome {
 }
 
 /// What became of a campaign.
-pub type Outcomes = BTreeMap<Kind, Outcome>;
+pub type Outcomes = BTreeMap<Cause, Outcome>;
 
-/// The faults of one run of a campaign.
-pub fn faults(line: &Line, campaign: &Campaign, run: u64) -> (Kind, Vec<Fault>) {
-    let kinds = u64::try_from(campaign.kinds.len()).unwrap_or(1).max(1);
-    let kind = campaign.kinds[usize::try_from(run % kinds).unwrap_or(0)];
+/// The faults of one run of a campaign. Those of the second kind begin while one of the first is there, or little before or after.
+pub fn faults<'a>(line: &Line, campaign: &'a Campaign, run: u64) -> (&'a Cause, Vec<Fault>) {
+    const APART_MS: f64 = 3_000.0;
+    let causes = u64::try_from(campaign.causes.len()).unwrap_or(1).max(1);
+    let cause = &campaign.causes[usize::try_from(run % causes).unwrap_or(0)];
     let mut random = Pcg64Mcg::seed_from_u64(campaign.seed + run);
     // Nothing moves for about a minute after the start.
     let window = (60_000.0, f64::from(campaign.seconds) * 1000.0 - 1.0);
-    let draw = |_| Fault::draw(kind, campaign.extent, line, window, &mut random);
-    (kind, (0..campaign.faults).map(draw).collect())
+    let mut faults: Vec<Fault> = Vec::new();
+    for kind in &cause.kinds {
+        if faults.is_empty() {
+            let draw = |_| Fault::draw(*kind, campaign.extent, line, window, &mut random);
+            faults = (0..campaign.faults).map(draw).collect();
+            continue;
+        }
+        for number in 0..faults.len() {
+            let first = faults[number];
+            let near = (first.from_ms - APART_MS, first.from_ms + first.lasts_ms.min(60_000.0) + APART_MS);
+            let fault = Fault::draw(*kind, campaign.extent, line, near, &mut random);
+            // Mostly of the same train, or at the same place.
+            let which = if random.random_range(0..4) > 0 { first.which } else { fault.which };
+            faults.push(Fault { which, ..fault });
+        }
+    }
+    (cause, faults)
+}
+
+/// What one run of a campaign is made of.
+pub fn setting<'a>(line: &Line, campaign: &'a Campaign, run: u64) -> (&'a Cause, Setting) {
+    let (cause, faults) = faults(line, campaign, run);
+    let Campaign { trains, signal, drivers, .. } = *campaign;
+    let (seed, defects) = (campaign.seed + run, cause.defects.clone());
+    (cause, Setting { trains, seed, faults, signal, drivers, defects, ..Setting::default() })
 }
 
 /// Runs a campaign, on both cores; `watch` hears of each run that is over.
 ///
 /// # Errors
-/// What is wrong with the campaign: no kinds, or more trains than there is room for.
+/// What is wrong with the campaign: no causes, or more trains than there is room for.
 pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Result<Outcomes, String> {
-    if campaign.kinds.is_empty() || campaign.seconds <= 60 {
-        return Err("a campaign needs a kind of fault, and more than 60 s".to_owned());
+    if campaign.causes.is_empty() || campaign.seconds <= 60 {
+        return Err("a campaign needs something that is wrong, and more than 60 s".to_owned());
     }
-    let one = |run: u64| -> Result<(Kind, u64, Vec<Event>), String> {
-        let (kind, faults) = faults(line, campaign, run);
-        let seed = campaign.seed + run;
-        let setting = Setting {
-            operate: Operate::Shortened,
-            trains: campaign.trains,
-            seed,
-            faults,
-            compared: false,
-            signal: campaign.signal,
-            drivers: campaign.drivers,
-        };
+    let one = |run: u64| -> Result<(Cause, u64, Vec<Event>), String> {
+        let (cause, setting) = setting(line, campaign, run);
+        let seed = setting.seed;
         let mut world = World::new(line, setting)?;
         world.run(u64::from(campaign.seconds) * 1000);
         watch(run);
-        Ok((kind, seed, world.events))
+        Ok((cause.clone(), seed, world.events))
     };
     let workers = 2;
     let halves: Vec<Result<Vec<_>, String>> = std::thread::scope(|scope| {
@@ -101,8 +165,8 @@ pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Re
     }
     ended.sort_by_key(|(_, seed, _)| *seed);
     let mut outcomes = Outcomes::new();
-    for (kind, seed, events) in ended {
-        let outcome = outcomes.entry(kind).or_default();
+    for (cause, seed, events) in ended {
+        let outcome = outcomes.entry(cause).or_default();
         outcome.runs += 1;
         let arrived = |event: &&Event| matches!(event.what, crate::event::What::Arrived { .. });
         outcome.arrivals += events.iter().filter(arrived).count() as u64;

@@ -84,6 +84,7 @@ struct Section {
 }
 
 /// The dispatcher of a line.
+#[derive(Clone)]
 pub struct Dispatcher<'a> {
     line: &'a Line,
     /// One for each train.

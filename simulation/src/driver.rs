@@ -40,7 +40,7 @@ pub fn drive(drivers: Drivers, dynamics: &Dynamics, sight: Sight) -> f64 {
         Drivers::Heedless => f64::INFINITY,
     };
     let to_stop = sight.to_stop_m.map_or(f64::INFINITY, |metres| (2.0 * COMFORTABLE * metres.max(0.0)).sqrt());
-    let aim = aim.min(to_stop);
+    let aim = if drivers == Drivers::Careful { aim.min(to_stop) } else { aim };
     if sight.speed < aim - 0.3 {
         dynamics.acceleration
     } else if sight.speed > aim + 1.0 {

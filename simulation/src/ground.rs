@@ -2,6 +2,7 @@
 //! telegrams between them.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
@@ -74,24 +75,33 @@ pub struct View {
 }
 
 /// A device of any size.
-pub trait Device: Send {
+pub trait Device: Send + Sync {
     /// One cycle.
     fn step(&mut self, input: Input, heard: Heard) -> Reply;
     /// Starts it anew.
     fn restart(&mut self);
     /// What it remembers.
     fn view(&self) -> View;
+    /// Another one that remembers the same.
+    fn copied(&self) -> Box<dyn Device>;
+}
+
+impl Clone for Box<dyn Device> {
+    fn clone(&self) -> Self {
+        self.as_ref().copied()
+    }
 }
 
 /// The kernel's device for one layout.
+#[derive(Clone)]
 pub struct Held<const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: Box<Layout<R, P, N, S>>,
+    layout: Arc<Layout<R, P, N, S>>,
     memory: Memory<R, S>,
 }
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Held<R, P, N, S> {
     /// The device, just started.
-    pub const fn new(layout: Box<Layout<R, P, N, S>>) -> Self {
+    pub const fn new(layout: Arc<Layout<R, P, N, S>>) -> Self {
         Self { layout, memory: Memory::INITIAL }
     }
 }
@@ -118,11 +128,16 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
     fn view(&self) -> View {
         viewed(&self.layout, &self.memory)
     }
+
+    fn copied(&self) -> Box<dyn Device> {
+        Box::new(self.clone())
+    }
 }
 
 /// The kernel's whole device for one layout, with its transmitters; no line is counted.
+#[derive(Clone)]
 pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: Box<Layout<R, P, N, S>>,
+    layout: Arc<Layout<R, P, N, S>>,
     equipment: Equipment<0>,
     state: Option<WaysideState<0, R, S>>,
 }
@@ -132,7 +147,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Speaking<R,
     ///
     /// # Errors
     /// The rule that the equipment breaks.
-    pub fn new(layout: Box<Layout<R, P, N, S>>, equipment: Equipment<0>) -> Result<Self, WaysideError> {
+    pub fn new(layout: Arc<Layout<R, P, N, S>>, equipment: Equipment<0>) -> Result<Self, WaysideError> {
         Wayside::new(&layout, &equipment)?;
         Ok(Self { layout, equipment, state: None })
     }
@@ -177,6 +192,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
 
     fn view(&self) -> View {
         self.state.as_ref().map_or_else(View::default, |state| viewed(&self.layout, &state.device))
+    }
+
+    fn copied(&self) -> Box<dyn Device> {
+        Box::new(self.clone())
     }
 }
 
@@ -236,6 +255,7 @@ struct Message {
 }
 
 /// A station at work.
+#[derive(Clone)]
 pub struct Station {
     device: Box<dyn Device>,
     /// What is sent in the circuits now.

@@ -5,12 +5,11 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
-use crate::driver::Drivers;
 use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::generate::Shape;
 use crate::line::Line;
-use crate::onboard::{Operate, Signal};
+use crate::onboard::Operate;
 use crate::world::{Setting, World};
 
 /// How much is measured.
@@ -120,8 +119,8 @@ type Ended = (Vec<Vec<u64>>, Measured);
 
 fn measure_one(line: &Line, extent: &Extent, (length_ms, operate): (u32, Operate)) -> Result<Ended, String> {
     let faults = interruptions(extent, length_ms);
-    let (trains, seed, signal, drivers) = (extent.trains, extent.seed, Signal::Codes, Drivers::Careful);
-    let setting = Setting { operate, trains, seed, faults, compared: true, signal, drivers };
+    let (trains, seed) = (extent.trains, extent.seed);
+    let setting = Setting { operate, trains, seed, faults, compared: true, ..Setting::default() };
     let mut world = World::new(line, setting)?;
     world.run(u64::from(extent.seconds) * 1000);
     let mut arrivals = vec![Vec::new(); extent.trains];

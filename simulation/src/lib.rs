@@ -11,9 +11,10 @@
 //! | [`motion`], [`driver`] | trains as bodies, and who drives them |
 //! | [`onboard`], [`ground`] | the kernel's devices |
 //! | [`dispatcher`] | who asks for routes and turns lines |
-//! | [`fault`] | what fails, when, for how long |
+//! | [`fault`], [`defect`] | what fails, when, for how long; what is wrong all the time |
 //! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
 //! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
+//! | [`splitting`], [`rare`] | how likely something rare is; faults that come by chance |
 //! | [`record`], [`diagram`], [`charts`], [`film`] | pictures; a run as a film |
 //!
 //! A run is the same every time for one seed.
@@ -22,6 +23,7 @@
 
 pub mod campaign;
 pub mod charts;
+pub mod defect;
 pub mod diagram;
 pub mod dispatcher;
 pub mod driver;
@@ -35,7 +37,9 @@ mod judge;
 pub mod line;
 pub mod motion;
 pub mod onboard;
+pub mod rare;
 pub mod record;
 pub mod rolling;
+pub mod splitting;
 pub mod track;
 pub mod world;

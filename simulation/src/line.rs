@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use atc_kernel::aspect::AspectId;
 use atc_kernel::interlocking::{Heading, Layout, MAX_CIRCUITS, MAX_CODES};
@@ -11,6 +12,7 @@ use atc_kernel::wayside::{Equipment, Facing, Fixed, Session, SignalPlan};
 use atc_layout::{At, Compiled, Description, border};
 use serde::{Deserialize, Serialize};
 
+use crate::defect::Defect;
 use crate::fault::consent_life_ms;
 use crate::generate::Shape;
 use crate::ground::{Device, Held, Speaking};
@@ -143,10 +145,10 @@ pub struct Line {
     pub telegram_age_ms: u32,
     /// The longest loss of shunt that is tolerated.
     pub shunt_loss_ms: u32,
+    /// For how long a circuit must be reported clear before it counts as clear: the least of all stations.
+    pub clear_ms: u32,
     /// For how long a train may run on after its authority was taken away.
     pub residual_ms: u32,
-    /// An old rule, to see that a campaign finds it out: a circuit counts as clear at once when it is reported clear.
-    pub clears_at_once: bool,
     /// For each piece the highest speed along it, and over its reverse leg, in m/s.
     pub limits: Vec<[f64; 2]>,
 }
@@ -220,8 +222,8 @@ impl Line {
             speeds_kmh: first.speeds_kmh.to_vec(),
             telegram_age_ms: values(|values| values.telegram_age_ms).min().unwrap_or(0),
             shunt_loss_ms: values(|values| u32::from(values.loss) * values.cycle_ms).min().unwrap_or(0),
+            clear_ms: values(|values| u32::from(values.clear) * values.cycle_ms).min().unwrap_or(0),
             residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
-            clears_at_once: false,
             limits: Vec::new(),
             stations: Vec::new(),
             links,
@@ -339,13 +341,13 @@ impl Line {
         platforms
     }
 
-    /// The device of a station, of the smallest size that holds its layout.
+    /// The device of a station, of the smallest size that holds its layout, with what is wrong in it.
     ///
     /// # Errors
     /// What the kernel says of the layout; it was checked when it was compiled.
-    pub fn device(&self, station: usize, telegrams: bool) -> Result<Box<dyn Device>, String> {
+    pub fn device(&self, station: usize, telegrams: bool, defects: &[Defect]) -> Result<Box<dyn Device>, String> {
         let equipment = if telegrams { Some(self.equipment(station)?) } else { None };
-        let made = (&self.stations[station].description, self.clears_at_once, equipment.as_ref());
+        let made = (&self.stations[station].description, defects, equipment.as_ref());
         let few = sized::<8, 4, 2, 2>(made).or_else(|_| sized::<24, 4, 10, 2>(made));
         few.or_else(|_| sized::<64, 16, 32, 8>(made))
     }
@@ -418,18 +420,17 @@ impl Line {
 }
 
 fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
-    (description, clears_at_once, equipment): (&Description, bool, Option<&Equipment<0>>),
+    (description, defects, equipment): (&Description, &[Defect], Option<&Equipment<0>>),
 ) -> Result<Box<dyn Device>, String> {
     let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
     let mut plan = compiled.plan;
-    let layout = if clears_at_once {
-        plan.clear = 1;
+    let layout = if defects.iter().filter(|defect| defect.spoil(&mut plan)).count() > 0 {
         Layout::with_what_proofs_need(*plan)
     } else {
         Layout::new(*plan)
     };
     let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
-    let layout = Box::new(layout);
+    let layout = Arc::new(layout);
     let Some(equipment) = equipment else { return Ok(Box::new(Held::new(layout))) };
     let speaking = Speaking::new(layout, *equipment);
     Ok(Box::new(speaking.map_err(|broken| format!("{}: {broken:?}", compiled.names.station))?))

@@ -17,6 +17,8 @@ use atc_kernel::telegram::{Frame, Gradient, Sequence};
 use atc_kernel::time::{Cycle, Millis, Ticks};
 use atc_kernel::train::{Antennas, Cab, Carrier, Parts, State, Train};
 
+use crate::defect::Defect;
+
 /// The ranks of a line: code 0 is stop, and there are up to 7 more.
 const RANKS: usize = MAX_CODES;
 
@@ -137,21 +139,24 @@ impl OnBoard {
 }
 
 impl Device {
-    /// The device for a line whose codes 1, 2, … name these speeds in km/h (0: no such code), in cycles of `cycle_ms`.
+    /// The device for a line whose codes 1, 2, … name these speeds in km/h (0: no such code), in cycles of `cycle_ms`; with
+    /// what is wrong in it.
     ///
     /// # Errors
     /// What is wrong with the speeds or the cycle.
-    pub fn new(speeds_kmh: &[u16], cycle_ms: u32, operate: Operate, line: LineKind) -> Result<Self, String> {
+    pub fn new(
+        speeds_kmh: &[u16],
+        cycle_ms: u32,
+        (operate, line): (Operate, LineKind),
+        defects: &[Defect],
+    ) -> Result<Self, String> {
         let words = words(speeds_kmh)?;
-        let times = Times::from_millis(Millis(cycle_ms), TimesMs::default())
-            .map_err(|error| format!("a cycle of {cycle_ms} ms on board: {error:?}"))?;
-        let times = if operate == Operate::Conventional { times.conventional() } else { times };
         let cycle = Cycle::new(Millis(cycle_ms));
         let ticks = |ms: u32| cycle.and_then(|cycle| cycle.at_most(Millis(ms))).unwrap_or(Ticks(1));
         let life = ticks(LIFE_MS);
         let sequence = Sequence::new(4, 1, life).map_err(|error| format!("telegrams: {error:?}"))?;
         let ranks = u8::try_from(words.aspects.speeds().len()).map_err(|_| "more speeds than ranks")?;
-        let settings = Settings {
+        let mut settings = Settings {
             speeds: words.aspects,
             // The line is as fast everywhere: no section has a lower limit.
             lowest: AspectId::new(ranks - 1).ok_or("more speeds than ranks")?,
@@ -163,6 +168,13 @@ impl Device {
             fixed_life: ticks(FIXED_LIFE_MS),
             sequence,
         };
+        let mut times = TimesMs::default();
+        for defect in defects {
+            defect.spoil_on_board(&mut times, &mut settings, cycle_ms);
+        }
+        let times = Times::from_millis(Millis(cycle_ms), times)
+            .map_err(|error| format!("a cycle of {cycle_ms} ms on board: {error:?}"))?;
+        let times = if operate == Operate::Conventional { times.conventional() } else { times };
         let permitted = Permitted::new(settings).map_err(|error| format!("telegrams: {error:?}"))?;
         let position = if line == LineKind::Digital { Some(position().ok_or("no table of levels")?) } else { None };
         let acceptance = Acceptance { times };

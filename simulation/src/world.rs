@@ -4,6 +4,7 @@ use atc_kernel::interlocking::{CircuitSet, Positions, RouteSet, SegmentSet};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use crate::defect::Defect;
 use crate::dispatcher::{Dispatcher, Seen};
 use crate::driver::Drivers;
 use crate::event::{Event, What};
@@ -31,9 +32,27 @@ pub struct Setting {
     pub signal: Signal,
     /// What drivers do with the cab signal.
     pub drivers: Drivers,
+    /// What is wrong all the time.
+    pub defects: Vec<Defect>,
+}
+
+impl Default for Setting {
+    fn default() -> Self {
+        Self {
+            operate: Operate::Shortened,
+            trains: 1,
+            seed: 1,
+            faults: Vec::new(),
+            compared: false,
+            signal: Signal::Codes,
+            drivers: Drivers::Careful,
+            defects: Vec::new(),
+        }
+    }
 }
 
 /// A line at work.
+#[derive(Clone)]
 pub struct World<'a> {
     /// The line.
     pub line: &'a Line,
@@ -62,6 +81,8 @@ pub struct World<'a> {
     pub(crate) rival: Device,
     /// What was reported occupied in the last cycle of the ground.
     pub reported: Vec<bool>,
+    /// For how long each circuit with a train has not been reported, in ms.
+    pub unheard_ms: Vec<u32>,
     pub(crate) setting: Setting,
     proceed: Vec<RouteSet>,
     begun: usize,
@@ -80,7 +101,7 @@ impl<'a> World<'a> {
         setting.faults.sort_by(|one, other| one.from_ms.total_cmp(&other.from_ms));
         let mut random = Pcg64Mcg::seed_from_u64(setting.seed);
         let kind = setting.signal.line();
-        let of = |operate| Device::new(&line.speeds_kmh, line.train_cycle_ms, operate, kind);
+        let of = |operate| Device::new(&line.speeds_kmh, line.train_cycle_ms, (operate, kind), &setting.defects);
         let device = of(setting.operate)?;
         let rival = match setting.operate {
             Operate::Shortened => Operate::Conventional,
@@ -95,7 +116,7 @@ impl<'a> World<'a> {
         let mut stations = Vec::new();
         for (number, place) in line.stations.iter().enumerate() {
             stations.push(Station::new(
-                line.device(number, setting.signal != Signal::Codes)?,
+                line.device(number, setting.signal != Signal::Codes, &setting.defects)?,
                 place.compiled.model.segments.len(),
             ));
         }
@@ -123,6 +144,7 @@ impl<'a> World<'a> {
             device,
             rival,
             reported: vec![false; line.track.circuits.len()],
+            unheard_ms: vec![0; line.track.circuits.len()],
             setting,
             begun: 0,
         };
@@ -172,6 +194,35 @@ impl<'a> World<'a> {
     pub(crate) fn tell(&mut self, what: What) {
         self.is_unsafe |= what.is_unsafe();
         self.events.push(Event { at_ms: self.now_ms, what });
+    }
+
+    /// A fault that nobody planned: it begins now, or later than all the others.
+    pub fn fail(&mut self, fault: Fault) {
+        let now = self.now();
+        self.setting.faults.retain(|old| old.from_ms + old.lasts_ms >= now);
+        self.begun = self.setting.faults.len();
+        self.setting.faults.push(fault);
+    }
+
+    /// How near the run is to harm by trains that are not reported, for [`crate::rare`]: up to 0.6 the longest share of the time after
+    /// which the circuit of such a train counts as clear; 0.8 if another train is told to go there; 1 for harm.
+    pub fn nearness(&self) -> f64 {
+        if self.is_unsafe {
+            return 1.0;
+        }
+        let clear_ms = self.line.clear_ms;
+        let longest = self.unheard_ms.iter().copied().max().unwrap_or(0).min(clear_ms);
+        let circuit = |leg: &crate::motion::Leg| self.line.track.pieces[leg.piece].circuit;
+        let forgotten = |circuit: usize| self.unheard_ms[circuit] >= clear_ms;
+        let meets = |train: &Train| {
+            let told = train.told_ms.iter().enumerate().filter(|(_, told)| **told > 0 && **told + 200 > self.now_ms);
+            let on = |place: usize| train.body.legs.iter().any(|leg| circuit(leg) == place);
+            told.map(|(place, _)| place).any(|place| forgotten(place) && !on(place))
+        };
+        if longest == clear_ms && self.trains.iter().any(meets) {
+            return 0.8;
+        }
+        0.6 * f64::from(longest) / f64::from(clear_ms.max(1))
     }
 
     /// The faults of a kind that are there now, for `length_ms`.
@@ -251,6 +302,10 @@ impl<'a> World<'a> {
         let line = self.line;
         let length = f64::from(line.cycle_ms);
         let reported = self.report();
+        for (circuit, ms) in self.unheard_ms.iter_mut().enumerate() {
+            let unheard = self.on_circuit[circuit] > 0 && !reported[circuit];
+            *ms = if unheard { ms.saturating_add(line.cycle_ms) } else { 0 };
+        }
         let track = &line.track;
         let seen: Vec<Seen> = self
             .trains

@@ -5,26 +5,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use atc_kernel::permitted::Basis;
-use atc_simulation::driver::Drivers;
 use atc_simulation::event::What;
 use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::{Operate, Signal};
+use atc_simulation::onboard::Signal;
 use atc_simulation::record::Record;
 use atc_simulation::world::{Setting, World};
 use atc_simulation::{charts, diagram};
 
 fn setting(trains: usize, seed: u64, faults: Vec<Fault>) -> Setting {
-    Setting {
-        operate: Operate::Shortened,
-        trains,
-        seed,
-        faults,
-        compared: false,
-        signal: Signal::Codes,
-        drivers: Drivers::Careful,
-    }
+    Setting { trains, seed, faults, ..Setting::default() }
 }
 
 fn example(name: &str) -> PathBuf {

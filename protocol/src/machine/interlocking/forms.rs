@@ -244,7 +244,7 @@ pub struct Telegram {
 pub enum Answer {
     /// It is carried out.
     Accepted(Accepted),
-    /// Nothing has changed.
+    /// Nothing has changed, but that a segment that is to be turned away is no longer permitted to the neighbour (ILK-20).
     Refused(Refused),
 }
 

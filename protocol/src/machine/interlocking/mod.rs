@@ -10,7 +10,7 @@ mod words;
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
+    self as kernel, CircuitId, CircuitSet, Combined, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
     SegmentSet, SpeedCode, Station,
 };
 use atc_layout::Names;
@@ -201,11 +201,6 @@ impl Interlocked {
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
-    /// The circuits that count as occupied, from the shared table of this cycle.
-    pub fn occupied(table: &kernel::Table<64>, epoch: Epoch) -> CircuitSet {
-        table.read(epoch).map_or(CircuitSet::ALL, |contents| contents.occupied)
-    }
-
     fn output(&self, input: kernel::Input, commands: &kernel::Commands<64>, all_telegrams: bool) -> Output {
         let (output, movements) = (&commands.interlocking, &commands.telegrams);
         let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
@@ -216,7 +211,6 @@ impl Interlocked {
             let heading = movement.heading.map(Heading);
             Some((name.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
         });
-        let occupied = Self::occupied(&output.table, self.memory.cycle);
         Output {
             silent,
             routes: self.phases(),
@@ -225,7 +219,7 @@ impl Interlocked {
             telegrams: telegrams.collect::<BTreeMap<_, _>>(),
             permits: self.segments_of(output.permits),
             confirmed: self.circuits_of(output.confirmed),
-            answer: self.answer(input, occupied, output.answer),
+            answer: self.answer(input, self.counted(), output.answer),
         }
     }
 }

@@ -68,6 +68,13 @@ impl Interlocked {
         drives.collect()
     }
 
+    /// The circuits that count as occupied after the cycle whose state is remembered.
+    pub(in crate::machine) fn counted(&self) -> CircuitSet {
+        let clear = self.layout.plan().clear;
+        let ages = self.state().track.clear_for().into_iter().enumerate();
+        ages.fold(CircuitSet::EMPTY, |set, (number, age)| set.or(CircuitSet::nth(number).only_if(age < clear)))
+    }
+
     /// What became of the request, with what is in the way. `occupied` are the circuits that count as occupied.
     pub(in crate::machine) fn answer(
         &self,

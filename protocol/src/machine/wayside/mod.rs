@@ -114,7 +114,7 @@ impl Ground {
             proceed: self.station.names_of_routes(done.proceed),
             drives: self.station.sides(done.drives),
             confirmed: self.station.names_of_circuits(done.confirmed),
-            answer: self.station.answer(done.told, done.told.occupied, done.answer),
+            answer: self.station.answer(done.told, self.station.counted(), done.answer),
             messages: told.filter_map(|(name, message)| Some((name.clone(), (*message)?.into()))).collect(),
             line,
             transmissions,

@@ -93,7 +93,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         ),
         (&[&line, "--trace", "x"], "--trace is for a session"),
         (&[&line, "--trains", "99"], "99 trains: 1 to 5 are possible"),
-        (&[&line, "--each", "3"], "--each 3 is of one kind: name it with --faults"),
+        (&[&line, "--each", "3"], "--each 3: name the kinds of faults with --faults"),
     ];
     for (arguments, expected) in cases {
         let output = explore(folder.path(), &[*arguments, &["-o", "film.html"]].concat());
@@ -232,11 +232,11 @@ A simulated line:
           
           [default: careful]
 
-      --clears-at-once
-          An old rule in the ground's devices: a circuit counts as clear as soon as it is reported clear
+      --defects <PART,…>
+          Parts that are wrong all the time
 
       --each <FAULTS>
-          Draws so many faults of the kind of --faults, as the run of a campaign with this seed has them
+          Draws so many of each kind of --faults, as the run of a campaign with this seed has them
 
 What can be shown:
   session.jsonl   what `oracle serve` read, with its replies if these were kept

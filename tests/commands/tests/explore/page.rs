@@ -119,15 +119,7 @@ const READABLE: &str = "(() => {
 fn the_page_is_readable_at_1280_and_at_2560_pixels() {
     let line =
         atc_simulation::line::Line::read(&super::file("simulation/examples/four-stations.toml")).expect("a line");
-    let setting = atc_simulation::world::Setting {
-        operate: atc_simulation::onboard::Operate::Shortened,
-        trains: 20,
-        seed: 1,
-        faults: Vec::new(),
-        compared: false,
-        signal: atc_simulation::onboard::Signal::Codes,
-        drivers: atc_simulation::driver::Drivers::Careful,
-    };
+    let setting = atc_simulation::world::Setting { trains: 20, ..Default::default() };
     let mut world = atc_simulation::world::World::new(&line, setting).expect("a world");
     let simulated = atc_simulation::film::of(&mut world, 300_000, 1_000).expect("a film").page();
     for page in [example(), simulated] {

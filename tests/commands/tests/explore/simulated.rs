@@ -2,18 +2,18 @@
 
 use atc_film::Class;
 use atc_kernel::supervision::Brake;
-use atc_simulation::campaign::{Campaign, faults};
+use atc_simulation::campaign::{self, Campaign, Cause};
+use atc_simulation::defect::Defect;
 use atc_simulation::driver::Drivers;
 use atc_simulation::fault::{Extent, Kind};
 use atc_simulation::film;
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
-use atc_simulation::onboard::{Operate, Signal};
+use atc_simulation::onboard::Signal;
 use atc_simulation::world::{Setting, World};
 
 fn setting(trains: usize, faults: Vec<atc_simulation::fault::Fault>, seed: u64) -> Setting {
-    let (operate, signal, drivers) = (Operate::Shortened, Signal::Codes, Drivers::Careful);
-    Setting { operate, trains, seed, faults, compared: false, signal, drivers }
+    Setting { trains, seed, faults, ..Setting::default() }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "distances on a line")]
@@ -67,13 +67,10 @@ fn the_last_frame_is_the_world() {
 /// An old rule (a circuit is clear as soon as it is reported clear) leads to an accident: its film ends with it.
 #[test]
 fn an_accident_is_the_end_of_its_film() {
-    let line = Line {
-        clears_at_once: true,
-        ..Line::generate("Four", &Shape { tracks: vec![4; 3], blocks: vec![4; 2] }).expect("a line")
-    };
+    let line = Line::generate("Four", &Shape { tracks: vec![4; 3], blocks: vec![4; 2] }).expect("a line");
     let campaign = Campaign {
         runs: 8,
-        kinds: vec![Kind::ShuntLoss],
+        causes: vec![Cause { defects: vec![Defect::ClearsAtOnce], kinds: vec![Kind::ShuntLoss] }],
         extent: Extent::Tolerated,
         faults: 150,
         trains: 8,
@@ -83,8 +80,8 @@ fn an_accident_is_the_end_of_its_film() {
         drivers: Drivers::Careful,
     };
     let accident = (0..campaign.runs).find_map(|run| {
-        let (_, faults) = faults(&line, &campaign, run);
-        let mut world = World::new(&line, setting(8, faults, campaign.seed + run)).expect("a world");
+        let (_, setting) = campaign::setting(&line, &campaign, run);
+        let mut world = World::new(&line, setting).expect("a world");
         let film = film::of(&mut world, 600_000, 1_000).expect("a film");
         world.is_unsafe.then(|| (film, world.now_ms, world.events.last().cloned().expect("an event")))
     });

@@ -50,6 +50,29 @@ fn told(output: &Value, circuit: &str) -> Option<u64> {
     output["transmissions"][circuit]["right"]["main"]["beyond_exit_m"].as_u64()
 }
 
+/// A circuit that has just become clear still counts as occupied, and is named as what is in the way.
+#[test]
+fn what_is_not_clear_for_long_enough_is_in_the_way() {
+    let quiet = |occupied: &[&str]| {
+        let blocks = [block(false, false, false), block(false, false, false)];
+        json!({"occupied": occupied, "detected": {"P": "normal"}, "blocks": blocks})
+    };
+    let mut first = quiet(&[]);
+    first["orders"] = json!({"unblock": ALL, "lift": ALL});
+    let mut reset = quiet(&[]);
+    for block in reset["blocks"].as_array_mut().expect("blocks") {
+        block["reset"] = json!(0);
+    }
+    let mut turn = quiet(&[]);
+    turn["request"] = json!({"turn": "East", "to": "away"});
+    let mut steps = vec![first, reset];
+    steps.extend((0..8).map(|_| quiet(&[])));
+    steps.extend([quiet(&["E2"]), turn]);
+    let said = run(&steps);
+    let answer = &said[said.len() - 1]["output"]["answer"];
+    assert_eq!(*answer, json!({"refused": "direction", "because": ["E2"]}));
+}
+
 /// An ordinary train: from the line over both counted sections into the station, and out of it.
 ///
 /// ```text
