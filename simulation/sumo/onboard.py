@@ -1,0 +1,128 @@
+"""The device on board: the kernel's `train`, on telegrams with codes beside them; and a driver who obeys the cab."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import atc
+from ground import codes
+from line import Line
+from motion import ACCELERATION, COMFORTABLE, EMERGENCY, SERVICE, STEP_S
+
+# The level difference of the position signals: so many dB a knot, and up to so many more.
+KNOT_M, KNOTS, SLOPE_DB, WIDTH_DB = 25.6, 17, 2.56, 0.2
+POSITION = {
+    "table": {
+        "spacing_m": KNOT_M,
+        "lowest_db": [round(knot * SLOPE_DB, 2) for knot in range(KNOTS)],
+        "highest_db": [round(knot * SLOPE_DB + WIDTH_DB, 2) for knot in range(KNOTS)],
+    },
+    "tolerance_db": 0.05,
+    "floor_db": -60,
+}
+# What the odometer may be off.
+ODOMETER = 0.01
+BRAKE_DELAY_S = 0.5
+# How far a driver stays below the permitted speed.
+BELOW = 0.5
+
+
+def config(line: Line) -> dict[str, Any]:
+    """The device. A transmitter sends the frames of both directions in turn: one of a train's own comes every 200 ms."""
+    permitted = {
+        "cycle_ms": round(STEP_S * 1000),
+        "speeds_km_h": line.speeds_km_h,
+        "lowest_limit_km_h": line.speeds_km_h[-1],
+        "worst_gradient_permille": 0,
+        "brake_mm_s2": 800,
+        "margin_m": 10,
+        "fresh_ms": 500,
+        "life_ms": 700,
+        "fixed_life_ms": 10000,
+        "memory_ms": 700,
+        "window": 4,
+        "run": 1,
+    }
+    return {"codes": codes(line), "permitted": permitted, "position": POSITION}
+
+
+@dataclass
+class OnBoard:
+    """The device of one train, and its driver."""
+
+    line: Line
+    cab: dict[str, Any] = field(init=False, default_factory=dict)
+    braking_s: float = field(init=False, default=0.0)
+
+    def __post_init__(self) -> None:
+        self.machine = atc.Machine("train", config(self.line))
+        self.told = False
+        self.heard: dict[str, Any] = {}
+        self.circuit = ""
+
+    def restart(self) -> None:
+        """The driver goes to the other end, where another device starts."""
+        self.machine.restart()
+        self.told, self.heard, self.circuit, self.braking_s = False, {}, "", 0.0
+
+    def step(self, met: "Met") -> None:
+        """One cycle. A code counts that was heard throughout it, and a frame that was heard from its begin to its end."""
+        whole = met.circuit == self.circuit
+        code = codes_of(met.feed)
+        heard = code if whole and code == self.heard else {}
+        frames = met.feed if whole and met.frame_ends and met.feed else {}
+        self.heard, self.circuit = code, met.circuit
+        level = round(WIDTH_DB / 2 + met.to_exit_m * SLOPE_DB / KNOT_M, 2) if met.to_exit_m is not None else None
+        step = {
+            "main": {"code_hz": heard.get("main_hz"), "telegram": told("main", frames)},
+            "sub": {"code_hz": heard.get("sub_hz"), "telegram": told("sub", frames)},
+            "first_db": level,
+            "second_db": None if level is None else 0,
+            "moved_m": [round(met.moved_m * (1 - ODOMETER), 3), round(met.moved_m * (1 + ODOMETER), 3)],
+            "speed_km_h": round(met.speed * 3.6, 1),
+            "line": None if self.told else "digital",
+            "facing": met.heading,
+        }
+        self.told = True
+        self.cab = self.machine.step(step)
+        self.braking_s = 0.0 if self.cab["brake"] == "release" else self.braking_s + STEP_S
+
+    def speed(self, speed: float, may_leave: bool, to_stop_m: float | None) -> float:
+        """The speed in the next step, by the brake if it acts, or else by the driver."""
+        wanted = self.driven(speed, may_leave, to_stop_m)
+        if self.cab["brake"] == "release":
+            return wanted
+        if self.braking_s <= BRAKE_DELAY_S:
+            return min(wanted, speed)
+        return max(0.0, speed - (EMERGENCY if self.cab["brake"] == "emergency" else SERVICE) * STEP_S)
+
+    def driven(self, speed: float, may_leave: bool, to_stop_m: float | None) -> float:
+        permitted = (self.cab["permitted_km_h"] or 0) / 3.6
+        aim = max(0.0, permitted - BELOW) if may_leave else 0.0
+        if to_stop_m is not None:
+            aim = min(aim, (2 * COMFORTABLE * max(0.0, to_stop_m)) ** 0.5)
+        if speed > aim + 1:
+            return max(0.0, speed - SERVICE * STEP_S)
+        if speed > aim:
+            return max(0.0, speed - COMFORTABLE * STEP_S)
+        return speed + ACCELERATION * STEP_S if speed < aim - 0.3 else speed
+
+
+@dataclass(frozen=True)
+class Met:
+    """What a train meets in one cycle."""
+
+    circuit: str
+    heading: str
+    feed: dict[str, Any] | None
+    frame_ends: bool
+    to_exit_m: float | None
+    moved_m: float
+    speed: float
+
+
+def codes_of(feed: dict[str, Any] | None) -> dict[str, Any]:
+    return {carrier: feed[carrier] for carrier in ("main_hz", "sub_hz")} if feed else {}
+
+
+def told(kind: str, frames: dict[str, Any]) -> dict[str, Any] | None:
+    return {kind: frames[kind]} if kind in frames else None
