@@ -6,7 +6,7 @@ from typing import Any
 import atc
 from line import EAST, WEST, Line, on_the_ground
 
-# Code frequencies of both carriers: speed `i` of the line has the `i`-th of each.
+# Code frequencies of both carriers: speed `i` of the line has the `i`-th of each. A line may have fewer speeds.
 MAIN_HZ = [10, 12.5, 15, 18.5, 22, 29, 36, 41.5]
 SUB_HZ = [9, 12, 16.5, 21, 24, 27, 32, 38.5]
 # For how long consent between stations counts.
@@ -112,7 +112,7 @@ class Ground:
 
 def codes(line: Line) -> dict[str, Any]:
     """The pairs of codes, as trains and stations have them."""
-    pairs = zip(MAIN_HZ, SUB_HZ, line.speeds_km_h)
+    pairs = zip(MAIN_HZ, SUB_HZ, line.speeds_km_h, strict=False)
     named = [{"main_hz": main, "sub_hz": sub, "speed_km_h": speed} for main, sub, speed in pairs]
     return {"tolerance_hz": 0.4, "pairs": named}
 

@@ -1,4 +1,4 @@
-"""The line: the layouts of both stations, joined into pieces of track. A piece of track is an edge of SUMO's network."""
+"""The line: the layouts of both stations, joined into pieces of track. A piece is an edge of SUMO's network."""
 
 import tomllib
 from dataclasses import dataclass
@@ -66,7 +66,7 @@ class Line:
     @property
     def cycle_s(self) -> float:
         """The cycle of the devices of the stations."""
-        return self.layouts[WEST]["times"]["cycle_ms"] / 1000
+        return float(self.layouts[WEST]["times"]["cycle_ms"]) / 1000
 
     def circuits(self, station: str) -> dict[str, str]:
         """The circuits that a station sees: the name on the ground, and its own name."""

@@ -69,9 +69,10 @@ def share_ground(line: Line, one: Body, other: Body) -> bool:
             if name == there and west < its_east and its_west < east:
                 return True
             piece, its = line.pieces[name], line.pieces[there]
-            if piece.point is not None and piece.point == its.point and name != there:
-                if from_toe_m(piece, (west, east)) < FOULING_M and from_toe_m(its, (its_west, its_east)) < FOULING_M:
-                    return True
+            legs_of_one = piece.point is not None and piece.point == its.point and name != there
+            nearest = max(from_toe_m(piece, (west, east)), from_toe_m(its, (its_west, its_east)))
+            if legs_of_one and nearest < FOULING_M:
+                return True
     return False
 
 

@@ -24,7 +24,8 @@ def build(line: Line, folder: Path, signals: str) -> Path:
     write(connections, "connections", uncontrolled(line))
     network = folder / "line.net.xml"
     files = ["-n", nodes, "-e", edges, "-x", connections, "-o", network]
-    done = subprocess.run([PROGRAMS / "netconvert", *files], capture_output=True, text=True)
+    command = [str(part) for part in (PROGRAMS / "netconvert", *files)]
+    done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         raise RuntimeError(f"netconvert: {done.stderr.strip()}")
     return network

@@ -27,7 +27,7 @@ BELOW = 0.5
 
 
 def config(line: Line) -> dict[str, Any]:
-    """The device. A transmitter sends the frames of both directions in turn: one of a train's own comes every 200 ms."""
+    """The device. A transmitter sends the frames of both directions in turn, so a train gets one every 200 ms."""
     permitted = {
         "cycle_ms": round(STEP_S * 1000),
         "speeds_km_h": line.speeds_km_h,
@@ -65,7 +65,7 @@ class OnBoard:
         self.told, self.heard, self.circuit, self.braking_s = False, {}, "", 0.0
 
     def step(self, met: "Met") -> None:
-        """One cycle. A code counts that was heard throughout it, and a frame that was heard from its begin to its end."""
+        """One cycle. A code counts that was heard throughout it, and a frame that was heard from begin to end."""
         whole = met.circuit == self.circuit
         code = codes_of(met.feed)
         heard = code if whole and code == self.heard else {}

@@ -7,6 +7,7 @@ mod javascript;
 mod side;
 mod small;
 mod station;
+mod sumo;
 mod wheel;
 
 use std::process::Command;

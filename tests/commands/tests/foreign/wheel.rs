@@ -44,11 +44,11 @@ pub fn libraries(target: &Path) -> Result<(), String> {
     run(build.env("CARGO_TARGET_DIR", target).current_dir(folder())).map(drop)
 }
 
-/// The wheel, packed as `maturin build` does it.
-fn packed(target: &Path, bin: &Path) -> Result<PathBuf, String> {
+/// The wheel, packed as `maturin build` does it, in a folder of its own: tests run beside each other.
+pub fn packed(target: &Path, bin: &Path, place: &Path) -> Result<PathBuf, String> {
     let library = target.join("debug/lib_atc.so");
     libraries(target)?;
-    let (unpacked, wheels) = (target.join("python/unpacked"), target.join("python/wheels"));
+    let (unpacked, wheels) = (place.join("unpacked"), place.join("wheels"));
     let said = |error: std::io::Error| error.to_string();
     for place in [&unpacked, &wheels] {
         let _ = fs::remove_dir_all(place);
@@ -82,7 +82,7 @@ fn the_wheel_holds_what_its_page_promises() {
         }
     };
     let python = bin.join("python");
-    let wheel = packed(&target, &bin).unwrap_or_else(|why| panic!("{why}"));
+    let wheel = packed(&target, &bin, &target.join("python")).unwrap_or_else(|why| panic!("{why}"));
     let install = ["install", "--quiet", "--no-index", "--no-deps", "--force-reinstall"];
     run(Command::new(bin.join("pip")).args(install).arg(&wheel)).unwrap_or_else(|why| panic!("{why}"));
     let asked = |script: &Path| run(Command::new(&python).arg("-B").arg(script)).unwrap_or_else(|why| panic!("{why}"));
