@@ -1,13 +1,15 @@
 """The dispatcher. It keeps a free track for each train that leaves, in every way of a run; and where our devices are in
 charge it asks them for routes, and for the direction of the line. It knows nothing of what is safe."""
 
+import random
 from collections import deque
 from dataclasses import dataclass, field
 
 from line import EAST, WEST, Line, Platform
 from motion import Body
 
-DWELL_S = 30.0
+# How long a train stands at a platform: so long at least, and at most.
+DWELL_S = (20.0, 40.0)
 # How long it waits after a refusal; and after how long a signal that does not show proceed is given up.
 AGAIN_S, PATIENCE_S = 1.0, 20.0
 SEGMENT = "Line"
@@ -43,8 +45,8 @@ class Arrival:
 class Dispatcher:
     """Sends the trains to and fro."""
 
-    def __init__(self, line: Line, trains: dict[str, Platform]) -> None:
-        self.line = line
+    def __init__(self, line: Line, trains: dict[str, Platform], seed: int) -> None:
+        self.line, self.random = line, random.Random(seed)
         self.agents = {train: Agent(platform, place * 5.0) for place, (train, platform) in enumerate(trains.items())}
         self.owners = {platform.key: train for train, platform in trains.items()}
         self.arrivals: list[Arrival] = []
@@ -85,7 +87,7 @@ class Dispatcher:
             self.arrivals.append(Arrival(now, moved - agent.ready_s, now - moved))
             # A train that goes back never leaves the route at its end, which would release it.
             withdrawal = (agent.target.station, {"withdraw": agent.target.enter})
-            self.agents[train] = Agent(agent.target, now + DWELL_S, jobs=deque([withdrawal]))
+            self.agents[train] = Agent(agent.target, now + self.random.uniform(*DWELL_S), jobs=deque([withdrawal]))
 
     def requests(self, now: float, proceed: dict[str, list[str]], fronts: dict[str, str]) -> dict[str, Request]:
         """What is asked of each station in this cycle: of the trains that wait to leave, only the first one asks."""

@@ -1,6 +1,7 @@
 """The ground: the device of each station is the kernel's `wayside`, with its point, its transmitters, its neighbour."""
 
 from dataclasses import dataclass, field
+from random import Random
 from typing import Any
 
 import atc
@@ -11,13 +12,15 @@ MAIN_HZ = [10, 12.5, 15, 18.5, 22, 29, 36, 41.5]
 SUB_HZ = [9, 12, 16.5, 21, 24, 27, 32, 38.5]
 # For how long consent between stations counts.
 CONSENT_MS = 1000
-STROKE_MS = 5000
+# How long the stroke of a point takes: so long at least, and at most. The layouts count on 7 s.
+STROKE_MS = (5000, 7000)
 
 
 @dataclass
 class Point:
     """A point as it lies."""
 
+    stroke_ms: int
     position: str = "normal"
     moves_ms: int = 0
 
@@ -32,6 +35,7 @@ class Station:
     line: Line
     name: str
     session: int
+    random: Random
     points: dict[str, Point] = field(init=False)
     output: dict[str, Any] = field(init=False, default_factory=dict)
     messages: dict[str, Any] = field(init=False, default_factory=dict)
@@ -40,7 +44,7 @@ class Station:
     def __post_init__(self) -> None:
         layout = self.line.layouts[self.name]
         self.names = self.line.circuits(self.name)
-        self.points = {point["name"]: Point() for point in layout["point"]}
+        self.points = {point["name"]: Point(self.random.randint(*STROKE_MS)) for point in layout["point"]}
         config = {"layout": layout, "life_ms": CONSENT_MS, "session": self.session, "signals": self.signals()}
         self.machine = atc.Machine("wayside", config)
 
@@ -81,7 +85,7 @@ class Station:
         for name, point in self.points.items():
             point.moves_ms = max(0, point.moves_ms - round(self.line.cycle_s * 1000))
             if point.moves_ms == 0 and drives.get(name, point.position) != point.position:
-                point.position, point.moves_ms = drives[name], STROKE_MS
+                point.position, point.moves_ms = drives[name], point.stroke_ms
 
 
 @dataclass
@@ -89,9 +93,12 @@ class Ground:
     """Both stations."""
 
     line: Line
+    seed: int
 
     def __post_init__(self) -> None:
-        self.stations = {name: Station(self.line, name, session) for session, name in enumerate((WEST, EAST), 1)}
+        random = Random(self.seed)
+        names = enumerate((WEST, EAST), 1)
+        self.stations = {name: Station(self.line, name, session, random) for session, name in names}
 
     def step(self, occupied: set[str], requests: dict[str, dict[str, str]]) -> None:
         """One cycle of both; then each hears what the other has said."""

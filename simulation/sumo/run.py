@@ -35,12 +35,12 @@ BEFORE_THE_EXIT_M = 10.0
 class Run:
     """One way of running the line."""
 
-    def __init__(self, line: Line, way: str, trains: int, mutant: bool) -> None:
-        self.line, self.way, self.mutant = line, way, mutant
+    def __init__(self, line: Line, way: str, trains: int, seed: int, mutant: bool) -> None:
+        self.line, self.way, self.seed, self.mutant = line, way, seed, mutant
         self.starts = starts(line, trains)
-        self.dispatcher = Dispatcher(line, self.starts)
+        self.dispatcher = Dispatcher(line, self.starts, seed)
         self.judge = Judge(line)
-        self.ground = Ground(line) if way == OURS else None
+        self.ground = Ground(line, seed) if way == OURS else None
         self.onboard = {train: OnBoard(line) for train in self.starts} if way == OURS else {}
         self.headings: dict[str, str] = {}
         self.steps = 0
@@ -169,6 +169,7 @@ class Run:
         return {
             "way": self.way,
             "mutant": self.mutant,
+            "seed": self.seed,
             "trains": len(self.starts),
             "seconds": seconds,
             "collisions": len(judge.sumo_collisions),
@@ -228,11 +229,12 @@ def main() -> int:
     parser.add_argument("--way", choices=WAYS, action="append", help="a way of running the line [default: all]")
     parser.add_argument("--seconds", type=float, default=3600, help="the simulated time")
     parser.add_argument("--trains", type=int, choices=[2, 3], default=3)
+    parser.add_argument("--seed", type=int, default=1, help="of the stops at platforms, and the strokes of points")
     parser.add_argument("--mutant", action="store_true", help="our devices lose sight of a train on the line")
     asked = parser.parse_args()
     status, line = 0, track.read()
     for way in asked.way or WAYS:
-        run = Run(line, way, asked.trains, asked.mutant and way == OURS)
+        run = Run(line, way, asked.trains, asked.seed, asked.mutant and way == OURS)
         print(json.dumps(run.run(asked.seconds)), flush=True)
         status |= way == OURS and run.judge.is_unsafe
     return int(status)
