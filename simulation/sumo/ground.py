@@ -5,11 +5,9 @@ from random import Random
 from typing import Any
 
 import atc
-from line import EAST, WEST, Line, on_the_ground
 
-# Code frequencies of both carriers: speed `i` of the line has the `i`-th of each. A line may have fewer speeds.
-MAIN_HZ = [10, 12.5, 15, 18.5, 22, 29, 36, 41.5]
-SUB_HZ = [9, 12, 16.5, 21, 24, 27, 32, 38.5]
+from line import EAST, WEST, Line
+
 # For how long consent between stations counts.
 CONSENT_MS = 1000
 # How long the stroke of a point takes: so long at least, and at most. The layouts count on 7 s.
@@ -49,18 +47,15 @@ class Station:
         self.machine = atc.Machine("wayside", config)
 
     def signals(self) -> dict[str, Any]:
-        """What the transmitters say. A circuit has one pair of section numbers for both stations."""
-        layout = self.line.layouts[self.name]
-        numbers = section_numbers(self.line)
-        circuits = {}
-        for circuit in layout["circuit"]:
-            number = numbers[on_the_ground(layout, circuit["name"])]
-            facing = {"gradient_permille": 0, "curve_km_h": self.line.speeds_km_h[-1]}
-            circuits[circuit["name"]] = {
-                "left": {"section": number + 1, **facing},
-                "right": {"section": number, **facing},
-            }
-        return {"speeds_km_h": self.line.speeds_km_h, "codes": codes(self.line), "circuits": circuits}
+        """What the transmitters say."""
+        data = self.line.data
+        sections = {section["number"]: section for section in data["section"]}
+        own = [telegram for telegram in data["telegram"] if telegram["station"] == self.name]
+        circuits = {
+            telegram["circuit"]: {heading: facing(sections[telegram[heading]]) for heading in ("left", "right")}
+            for telegram in own
+        }
+        return {"speeds_km_h": data["signal"]["speeds_km_h"], "codes": data["codes"], "circuits": circuits}
 
     def step(self, occupied: set[str], request: dict[str, str] | None) -> None:
         """One cycle. The transmitters take its frames and codes at once, and send them until the next one."""
@@ -117,14 +112,7 @@ class Ground:
         return feeds[0] if len(feeds) == 1 else None
 
 
-def codes(line: Line) -> dict[str, Any]:
-    """The pairs of codes, as trains and stations have them."""
-    pairs = zip(MAIN_HZ, SUB_HZ, line.speeds_km_h, strict=False)
-    named = [{"main_hz": main, "sub_hz": sub, "speed_km_h": speed} for main, sub, speed in pairs]
-    return {"tolerance_hz": 0.4, "pairs": named}
-
-
-def section_numbers(line: Line) -> dict[str, int]:
-    """The section number of each circuit for trains to the right; for those to the left it is the next one."""
-    names = {name for station in line.layouts for name in line.circuits(station)}
-    return {name: 2 * place for place, name in enumerate(sorted(names))}
+def facing(section: dict[str, Any]) -> dict[str, Any]:
+    """What trains of one heading are told of a circuit."""
+    gradient, limit = section["gradient_permille"], section["limit_km_h"]
+    return {"section": section["number"], "gradient_permille": gradient, "curve_km_h": limit}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 
 import traci
+
 from ground import Ground
 from line import Line
 from motion import STEP_S, Body, share_ground

@@ -43,6 +43,7 @@ class Platform:
 class Line:
     """Two stations and the single line between them."""
 
+    data: dict[str, Any]
     layouts: dict[str, dict[str, Any]]
     pieces: dict[str, Piece]
     blocks: tuple[str, ...]
@@ -57,11 +58,6 @@ class Line:
     def entry_block(self, target: Platform) -> str:
         """The block, last but one, in which a train is when its route into the station is asked for."""
         return self.blocks[-2] if target.station == EAST else self.blocks[1]
-
-    @property
-    def speeds_km_h(self) -> list[float]:
-        """The speeds of the codes, 0 first: the same in both layouts."""
-        return [0, *self.layouts[WEST]["braking"]["speeds_kmh"]]
 
     @property
     def cycle_s(self) -> float:
@@ -80,14 +76,15 @@ def on_the_ground(layout: dict[str, Any], circuit: str) -> str:
 
 
 def read() -> Line:
-    """The line of `west.toml` and `east.toml`."""
-    files = {name: FOLDER / f"{name.lower()}.toml" for name in (WEST, EAST)}
-    layouts = {name: tomllib.loads(file.read_text()) for name, file in files.items()}
+    """The line of `line.toml`, and of its layouts."""
+    data = tomllib.loads((FOLDER / "line.toml").read_text())
+    files = [tomllib.loads((FOLDER / station["file"]).read_text()) for station in data["station"]]
+    layouts = {layout["name"]: layout for layout in files}
     pieces = {piece.name: piece for layout in layouts.values() for piece in pieces_of(layout)}
     on_line = [name for layout in layouts.values() for name in layout["segment"][0]["circuits"]]
     platforms = [platform for layout in layouts.values() for platform in platforms_of(layout, pieces)]
     blocks = tuple(sorted(set(on_line)))
-    return Line(layouts, pieces, blocks, {platform.key: platform for platform in platforms})
+    return Line(data, layouts, pieces, blocks, {platform.key: platform for platform in platforms})
 
 
 def pieces_of(layout: dict[str, Any]) -> list[Piece]:

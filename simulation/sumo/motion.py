@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from line import WEST, Line, Piece
 from traci import constants as tc
+
+from line import WEST, Line, Piece
 
 STEP_S = 0.1
 LENGTH_M = 160.0

@@ -1,48 +1,47 @@
-"""The device on board: the kernel's `train`, on telegrams with codes beside them; and a driver who obeys the cab."""
+"""The device on board: the kernel's `train`, on telegrams with codes beside them; and its driver."""
 
 from dataclasses import dataclass, field
 from typing import Any
 
 import atc
-from ground import codes
+
 from line import Line
 from motion import ACCELERATION, COMFORTABLE, EMERGENCY, SERVICE, STEP_S
 
-# The level difference of the position signals: so many dB a knot, and up to so many more.
-KNOT_M, KNOTS, SLOPE_DB, WIDTH_DB = 25.6, 17, 2.56, 0.2
-POSITION = {
-    "table": {
-        "spacing_m": KNOT_M,
-        "lowest_db": [round(knot * SLOPE_DB, 2) for knot in range(KNOTS)],
-        "highest_db": [round(knot * SLOPE_DB + WIDTH_DB, 2) for knot in range(KNOTS)],
-    },
-    "tolerance_db": 0.05,
-    "floor_db": -60,
-}
+# What `line.toml` says of telegrams for the device on board. The rest of that table is for the ground.
+PERMITTED = (
+    *("speeds_km_h", "lowest_limit_km_h", "worst_gradient_permille", "brake_mm_s2", "margin_m"),
+    *("fresh_ms", "life_ms", "fixed_life_ms", "memory_ms", "window", "run"),
+)
 # What the odometer may be off.
 ODOMETER = 0.01
 BRAKE_DELAY_S = 0.5
 # How far a driver stays below the permitted speed.
 BELOW = 0.5
+# What a heedless driver aims at.
+HEEDLESS = 40.0
 
 
 def config(line: Line) -> dict[str, Any]:
-    """The device. A transmitter sends the frames of both directions in turn, so a train gets one every 200 ms."""
-    permitted = {
-        "cycle_ms": round(STEP_S * 1000),
-        "speeds_km_h": line.speeds_km_h,
-        "lowest_limit_km_h": line.speeds_km_h[-1],
-        "worst_gradient_permille": 0,
-        "brake_mm_s2": 800,
-        "margin_m": 10,
-        "fresh_ms": 500,
-        "life_ms": 700,
-        "fixed_life_ms": 10000,
-        "memory_ms": 700,
-        "window": 4,
-        "run": 1,
+    """The configuration of the device."""
+    data = line.data
+    position = {"tolerance_db": data["position"]["tolerance_db"], "floor_db": data["position"]["floor_db"]}
+    table = {name: data["position"][name] for name in ("spacing_m", "lowest_db", "highest_db")}
+    return {
+        "acceptance": data["times"],
+        "supervision": data["supervision"],
+        "codes": data["codes"],
+        "permitted": {"cycle_ms": data["cycle_ms"], **{name: data["signal"][name] for name in PERMITTED}},
+        "position": {"table": table, **position},
     }
-    return {"codes": codes(line), "permitted": permitted, "position": POSITION}
+
+
+def level_db(line: Line, to_exit_m: float) -> float:
+    """The level difference of the position signals at a distance: in the middle of what the table has."""
+    position = line.data["position"]
+    knot, part = divmod(to_exit_m / position["spacing_m"], 1)
+    ends = [(position["lowest_db"][at] + position["highest_db"][at]) / 2 for at in (int(knot), int(knot) + 1)]
+    return float(round(ends[0] + (ends[1] - ends[0]) * part, 2))
 
 
 @dataclass
@@ -50,6 +49,7 @@ class OnBoard:
     """The device of one train, and its driver."""
 
     line: Line
+    heedless: bool
     cab: dict[str, Any] = field(init=False, default_factory=dict)
     braking_s: float = field(init=False, default=0.0)
 
@@ -71,7 +71,7 @@ class OnBoard:
         heard = code if whole and code == self.heard else {}
         frames = met.feed if whole and met.frame_ends and met.feed else {}
         self.heard, self.circuit = code, met.circuit
-        level = round(WIDTH_DB / 2 + met.to_exit_m * SLOPE_DB / KNOT_M, 2) if met.to_exit_m is not None else None
+        level = None if met.to_exit_m is None else level_db(self.line, met.to_exit_m)
         step = {
             "main": {"code_hz": heard.get("main_hz"), "telegram": told("main", frames)},
             "sub": {"code_hz": heard.get("sub_hz"), "telegram": told("sub", frames)},
@@ -96,8 +96,11 @@ class OnBoard:
         return max(0.0, speed - (EMERGENCY if self.cab["brake"] == "emergency" else SERVICE) * STEP_S)
 
     def driven(self, speed: float, may_leave: bool, to_stop_m: float | None) -> float:
+        """What the driver does. A heedless one motors whatever the cab says, and the device holds the train."""
         permitted = (self.cab["permitted_km_h"] or 0) / 3.6
-        aim = max(0.0, permitted - BELOW) if may_leave else 0.0
+        stopped_at_platform = to_stop_m is not None and permitted <= 0
+        aim = HEEDLESS if self.heedless and not stopped_at_platform else max(0.0, permitted - BELOW)
+        aim = aim if may_leave else 0.0
         if to_stop_m is not None:
             aim = min(aim, (2 * COMFORTABLE * max(0.0, to_stop_m)) ** 0.5)
         if speed > aim + 1:

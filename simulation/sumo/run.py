@@ -13,9 +13,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import traci
+
 import line as track
 import network
-import traci
 from dispatcher import Dispatcher
 from ground import Ground
 from judge import Judge
@@ -35,13 +36,14 @@ BEFORE_THE_EXIT_M = 10.0
 class Run:
     """One way of running the line."""
 
-    def __init__(self, line: Line, way: str, trains: int, seed: int, mutant: bool) -> None:
+    def __init__(self, line: Line, way: str, trains: int, seed: int, heedless: bool, mutant: bool) -> None:
         self.line, self.way, self.seed, self.mutant = line, way, seed, mutant
+        self.heedless = heedless
         self.starts = starts(line, trains)
         self.dispatcher = Dispatcher(line, self.starts, seed)
         self.judge = Judge(line)
         self.ground = Ground(line, seed) if way == OURS else None
-        self.onboard = {train: OnBoard(line) for train in self.starts} if way == OURS else {}
+        self.onboard = {train: OnBoard(line, heedless) for train in self.starts} if way == OURS else {}
         self.headings: dict[str, str] = {}
         self.steps = 0
         self.unseen: str | None = None
@@ -169,6 +171,7 @@ class Run:
         return {
             "way": self.way,
             "mutant": self.mutant,
+            "heedless": self.heedless,
             "seed": self.seed,
             "trains": len(self.starts),
             "seconds": seconds,
@@ -230,11 +233,13 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=3600, help="the simulated time")
     parser.add_argument("--trains", type=int, choices=[2, 3], default=3)
     parser.add_argument("--seed", type=int, default=1, help="of the stops at platforms, and the strokes of points")
+    parser.add_argument("--heedless", action="store_true", help="drivers motor whatever our cabs say")
     parser.add_argument("--mutant", action="store_true", help="our devices lose sight of a train on the line")
     asked = parser.parse_args()
     status, line = 0, track.read()
     for way in asked.way or WAYS:
-        run = Run(line, way, asked.trains, asked.seed, asked.mutant and way == OURS)
+        ours = way == OURS
+        run = Run(line, way, asked.trains, asked.seed, asked.heedless and ours, asked.mutant and ours)
         print(json.dumps(run.run(asked.seconds)), flush=True)
         status |= way == OURS and run.judge.is_unsafe
     return int(status)
