@@ -94,7 +94,7 @@ class Dispatcher:
         requests: dict[str, Request] = {}
         self.asked = {}
         for train, agent in self.agents.items():
-            self.lose_patience(now, agent, proceed, fronts[train])
+            self.lose_patience(now, agent, proceed, fronts.get(train, ""))
             if not agent.jobs or agent.again_s > now:
                 continue
             station, request = agent.jobs[0]

@@ -2,7 +2,7 @@
 
 python run.py --way ours --seconds 3600     # prints one line of JSON for each way; without --way all of them
 
-The exit status is 1 if anything unsafe happened where our devices are in charge.
+The exit status is 1 if anything unsafe happened where our devices are in charge, and 2 if a run did not come about.
 """
 
 import argparse
@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import atc
 import traci
 
 import line as track
@@ -37,14 +38,15 @@ class Run:
     """One way of running the line."""
 
     def __init__(self, line: Line, way: str, trains: int, seed: int, heedless: bool, mutant: bool) -> None:
-        self.line, self.way, self.seed, self.mutant = line, way, seed, mutant
-        self.heedless = heedless
+        self.line, self.way = line, way
+        self.seed, self.heedless, self.mutant = seed, heedless, mutant
         self.starts = starts(line, trains)
         self.dispatcher = Dispatcher(line, self.starts, seed)
         self.judge = Judge(line)
         self.ground = Ground(line, seed) if way == OURS else None
         self.onboard = {train: OnBoard(line, heedless) for train in self.starts} if way == OURS else {}
         self.headings: dict[str, str] = {}
+        self.ways: dict[str, list[str]] = {}
         self.steps = 0
         self.unseen: str | None = None
 
@@ -106,7 +108,7 @@ class Run:
         """Gives a train its way. SUMO turns one that has arrived round where it stands."""
         agent = self.dispatcher.agents[train]
         assert agent.target is not None
-        way = self.line.way(agent.at, agent.target)
+        way = self.ways[train] = self.line.way(agent.at, agent.target)
         if traci.vehicle.isStopped(train):
             traci.vehicle.resume(train)
         arrived = traci.vehicle.getRoadID(train) not in way
@@ -148,8 +150,8 @@ class Run:
         to_exit_m = None if piece.point else piece.length_m - body.position_m
         feed = ground.feed(piece.circuit, body.heading)
         device.step(Met(piece.circuit, body.heading, feed, frame_ends, to_exit_m, body.speed * STEP_S, body.speed))
-        turned = agent.target is not None and body.ahead != () or body.piece in self.target_pieces(train)
-        speed = device.speed(body.speed, turned, self.to_stop_m(train, body))
+        may_leave = agent.target is not None and body.edge in self.ways.get(train, [])
+        speed = device.speed(body.speed, may_leave, self.to_stop_m(train, body))
         traci.vehicle.setSpeed(train, speed)
 
     def target_pieces(self, train: str) -> tuple[str, ...]:
@@ -227,22 +229,39 @@ def mean(values: list[float]) -> float | None:
     return round(sum(values) / len(values), 1) if values else None
 
 
+def duration(text: str) -> float:
+    """A simulated time: more than nothing, and no more than a day."""
+    seconds = float(text)
+    if not 0 < seconds <= 86400:
+        raise argparse.ArgumentTypeError(f"{text}: a time is above 0 and at most 86400 seconds")
+    return seconds
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--way", choices=WAYS, action="append", help="a way of running the line [default: all]")
-    parser.add_argument("--seconds", type=float, default=3600, help="the simulated time")
+    parser.add_argument("--seconds", type=duration, default=3600, help="the simulated time")
     parser.add_argument("--trains", type=int, choices=[2, 3], default=3)
     parser.add_argument("--seed", type=int, default=1, help="of the stops at platforms, and the strokes of points")
     parser.add_argument("--heedless", action="store_true", help="drivers motor whatever our cabs say")
     parser.add_argument("--mutant", action="store_true", help="our devices lose sight of a train on the line")
     asked = parser.parse_args()
     status, line = 0, track.read()
-    for way in asked.way or WAYS:
-        ours = way == OURS
-        run = Run(line, way, asked.trains, asked.seed, asked.heedless and ours, asked.mutant and ours)
-        print(json.dumps(run.run(asked.seconds)), flush=True)
-        status |= way == OURS and run.judge.is_unsafe
+    try:
+        for way in asked.way or WAYS:
+            status |= unsafe(line, way, asked)
+    except (OSError, RuntimeError, atc.Refused, traci.TraCIException, traci.FatalTraCIError) as error:
+        print(f"run.py: {error}", file=sys.stderr)
+        return 2
     return int(status)
+
+
+def unsafe(line: Line, way: str, asked: argparse.Namespace) -> bool:
+    """Runs one way, and prints what happened; whether it was unsafe where our devices are in charge."""
+    ours = way == OURS
+    run = Run(line, way, asked.trains, asked.seed, asked.heedless and ours, asked.mutant and ours)
+    print(json.dumps(run.run(asked.seconds)), flush=True)
+    return ours and run.judge.is_unsafe
 
 
 if __name__ == "__main__":
