@@ -47,7 +47,7 @@ fn opposing_trains_of_sumo_collide_but_not_under_our_devices() {
     let oracle = device::oracle();
     let target = Path::new(&oracle).parent().and_then(Path::parent).expect("in target/debug").to_owned();
     // What both devices count on is held against the layouts; the runs use the same files.
-    run(Command::new(&oracle).args(["line", "check"]).arg(folder().join("line.toml")))
+    run(Command::new(oracle).args(["line", "check"]).arg(folder().join("line.toml")))
         .unwrap_or_else(|why| panic!("{why}"));
     let place = target.join("python/sumo");
     let made = environment(&target).and_then(|bin| Ok((simulator(&bin, &place)?, bin)));
