@@ -144,6 +144,9 @@ pub fn files(case: &Case) -> Result<Vec<(String, String)>, Fault> {
     for plot in &case.measurements.plots {
         files.push((format!("plots/{}.svg", plot.name), format!("{}\n", plot.svg)));
     }
+    for film in &case.measurements.films {
+        files.push((format!("films/{}.html", film.name), film.page.clone()));
+    }
     if let Some(station) = &case.station {
         files.push((STATION.to_owned(), html::station_page(case, station)));
         files.push(("station/layout.toml".to_owned(), station.layout.clone()));

@@ -14,6 +14,7 @@
 //! | [`fault`], [`defect`] | what fails, when, for how long; what is wrong all the time |
 //! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
 //! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
+//! | [`cut_sets`] | what a case is shown of faults: single ones, and two that together lead to harm |
 //! | [`splitting`], [`rare`] | how likely something rare is; faults that come by chance |
 //! | [`record`], [`diagram`], [`charts`], [`film`] | pictures; a run as a film |
 //!
@@ -23,6 +24,7 @@
 
 pub mod campaign;
 pub mod charts;
+pub mod cut_sets;
 pub mod defect;
 pub mod diagram;
 pub mod dispatcher;

@@ -1,6 +1,7 @@
 //! Faults: none that the line must stand leads to harm; and the campaign sees harm where there is some.
 
 use atc_simulation::campaign::{Campaign, Cause, Outcome, run};
+use atc_simulation::cut_sets;
 use atc_simulation::defect::Defect;
 use atc_simulation::driver::Drivers;
 use atc_simulation::event::What;
@@ -111,7 +112,7 @@ fn a_train_that_may_not_run_does_not_creep() {
             // Blocks of the line are called L1-2.
             let circuit =
                 |train: &Train| &line.track.circuits[line.track.pieces[train.body.front().piece].circuit].name;
-            let on_the_line = |train: &&Train| circuit(train).contains("L");
+            let on_the_line = |train: &&Train| circuit(train).contains('L');
             let waits =
                 |train: &Train| train.body.speed <= 0.0 && train.cab.permission.speed.is_some_and(|it| it.0 == 0);
             waits_ms += if world.trains.iter().filter(on_the_line).any(waits) { 10 } else { 0 };
@@ -219,4 +220,14 @@ fn a_fault_lasts_as_long_as_it_says() {
     let fault = Fault { kind: Kind::Interruption, from_ms: 1_003.5, lasts_ms: 20.0, which: 0, much: 0 };
     let cycles: Vec<u32> = (99..106).filter(|cycle| fault.meets(f64::from(*cycle) * 10.0, 10.0)).collect();
     assert_eq!(cycles, [100, 101, 102], "what begins between two cycles is in one more of them");
+}
+
+/// Every cut set comes to harm, and neither of its two alone does.
+#[test]
+fn cut_sets_lead_to_harm_and_nothing_less_does() {
+    for set in cut_sets::all() {
+        let (row, page) = set.show().expect("a line");
+        assert!(row.harm.is_some() && row.alone == [None, None], "{row:?}");
+        assert!(page.html.contains(&row.name), "{}", row.name);
+    }
 }

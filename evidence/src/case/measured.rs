@@ -15,6 +15,9 @@ pub struct Measurements {
     pub figures: Vec<Figure>,
     /// The plots.
     pub plots: Vec<Plot>,
+    /// Pages that play accidents.
+    #[serde(default)]
+    pub films: Vec<Film>,
     /// How long the run took, in seconds; 0 if it is not known.
     pub seconds: f64,
 }
@@ -39,6 +42,18 @@ pub struct Figure {
     pub at_most: Option<f64>,
     /// The evidence (`measured:…`) that the target belongs to.
     pub evidence: Option<String>,
+}
+
+/// A page that plays an accident of the simulated line: a whole HTML document, which needs nothing beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Film {
+    /// Its file in `films/`, without the end.
+    pub name: String,
+    /// What happens in it.
+    pub caption: String,
+    /// The page.
+    pub page: String,
 }
 
 /// A drawing of what was measured.

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub use evidence::{Claim, Cover, EngineResult, Evidence, Kind};
 pub use faults::{CutSet, Excluded, FailureMode, SecondOpinion};
 pub use line::{Derived, Line, LineBlock, LineSection, LineTime};
-pub use measured::{Figure, Measurements, Plot};
+pub use measured::{Figure, Film, Measurements, Plot};
 pub use register::{Accident, Condition, Hazard, Requirement, Technique, Tool};
 pub use run::{Phase, Run};
 pub use station::{Asked, Confirm, DataCheck, Finding, NeededRule, Origin, Outcome, Station, StationCondition};

@@ -34,6 +34,16 @@ pub fn render(case: &Case) -> Markup {
                     (row(case, figure))
                 }
             }
+            @if !measured.films.is_empty() {
+                p { "Accidents of the simulated line, each a page that plays it. Two things are wrong in each; neither alone leads to harm in the                      same run." }
+                table {
+                    thead { tr { th style="width:32%" { "Film" } th { "What happens" } } }
+                    @for film in &measured.films {
+                        @let file = format!("films/{}.html", film.name);
+                        tr { td { a href=(file) { (file) } } td { (film.caption) } }
+                    }
+                }
+            }
             @for plot in &measured.plots {
                 figure id={ "plot-" (plot.name) } {
                     figcaption { (plot.caption) " (" code { "plots/" (plot.name) ".svg" } ")" }

@@ -4,6 +4,7 @@
 
 mod bench;
 mod figures;
+mod harm;
 mod line;
 
 pub use bench::Bench;
@@ -75,6 +76,16 @@ pub const TARGETS: &[Target] = &[
         "code",
         "A device with the shortened operate time never brakes where the conventional one, that hears the same, does not.",
     ),
+    target(
+        harm::SINGLE,
+        "interlocking",
+        "On the simulated line no single fault leads to harm, on codes, on telegrams and on both, under drivers who obey nothing.",
+    ),
+    target(
+        harm::CUT_SETS,
+        "interlocking",
+        "The known pairs of wrong parts and faults do lead to harm there, so that it can be seen; and neither of the two alone does.",
+    ),
 ];
 
 /// The evidence id of a target.
@@ -101,6 +112,9 @@ pub struct Ran {
     /// What the shortened operate time buys on a simulated line; nothing if that was not measured.
     #[serde(default)]
     pub headline: Option<Headline>,
+    /// What faults lead to there; nothing if nobody looked.
+    #[serde(default)]
+    pub harm: Option<harm::Shown>,
     /// Its plots: name and drawing.
     pub plots: Vec<(String, String)>,
     /// [`HERE`], or the folder.
@@ -146,7 +160,10 @@ pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -
             let last = text.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
             Run::Failed(format!("the measurement ended with an error: {last}"))
         }
-        Ok(Some(_)) => match line::measure(folder).map_or_else(Run::Failed, |()| read(folder, HERE)) {
+        Ok(Some(_)) => match line::measure(folder)
+            .and_then(|()| harm::measure(folder))
+            .map_or_else(Run::Failed, |()| read(folder, HERE))
+        {
             Run::Ran(ran) => Run::Ran(Box::new(Ran { seconds: start.elapsed().as_secs_f64(), ..*ran })),
             other => other,
         },
@@ -168,6 +185,10 @@ pub fn read(folder: &Path, source: &str) -> Run {
         Ok(headline) => headline,
         Err(error) => return Run::Failed(error),
     };
+    let harm = match harm::read(folder) {
+        Ok(harm) => harm,
+        Err(error) => return Run::Failed(error),
+    };
     let mut plots = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -180,14 +201,14 @@ pub fn read(folder: &Path, source: &str) -> Run {
         }
     }
     plots.sort();
-    Run::Ran(Box::new(Ran { bench, headline, plots, source: source.to_owned(), seconds: 0.0 }))
+    Run::Ran(Box::new(Ran { bench, headline, harm, plots, source: source.to_owned(), seconds: 0.0 }))
 }
 
 /// Leaves nothing of the raw results but the figures and the log: the plots are in the case.
 pub fn tidy(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
-        let keep = ["bench.json", "bench.log", line::FILE].iter().any(|name| path.ends_with(name));
+        let keep = ["bench.json", "bench.log", line::FILE, harm::FILE].iter().any(|name| path.ends_with(name));
         if !keep {
             // What stays is in the way of nobody.
             let _ = fs::remove_file(&path);
@@ -207,16 +228,20 @@ pub fn evidence(run: &Run) -> (Vec<Evidence>, Measurements) {
         Run::Ran(ran) => {
             let mut figures = figures::all(&ran.bench);
             figures.extend(ran.headline.as_ref().map(line::figures).unwrap_or_default());
+            figures.extend(ran.harm.as_ref().map(harm::figures).unwrap_or_default());
             let judged = TARGETS.iter().map(|target| {
-                let (verdict, detail, reason) = match (line::is_of(target), &ran.headline) {
-                    (true, None) => (Verdict::NotRun, String::new(), Some("the line was not measured".to_owned())),
-                    (true, Some(headline)) => {
+                let absent = || (Verdict::NotRun, String::new(), Some("the line was not measured".to_owned()));
+                let (verdict, detail, reason) = if line::is_of(target) {
+                    ran.headline.as_ref().map_or_else(absent, |headline| {
                         judge(target, &figures, &|_| line::contradiction(headline), &|_| line::vacuous(headline))
-                    }
-                    (false, _) => {
-                        let bench = &ran.bench;
-                        judge(target, &figures, &|name| bench.contradiction(name), &|name| bench.vacuous(name))
-                    }
+                    })
+                } else if harm::is_of(target) {
+                    ran.harm.as_ref().map_or_else(absent, |shown| {
+                        judge(target, &figures, &|_| harm::contradiction(shown), &|_| harm::vacuous(shown))
+                    })
+                } else {
+                    let bench = &ran.bench;
+                    judge(target, &figures, &|name| bench.contradiction(name), &|name| bench.vacuous(name))
                 };
                 one(target, verdict, detail, reason)
             });
@@ -231,6 +256,7 @@ pub fn evidence(run: &Run) -> (Vec<Evidence>, Measurements) {
                 conditions: figures::conditions(&ran.bench),
                 figures: figures.clone(),
                 plots: plots.collect(),
+                films: ran.harm.as_ref().map(harm::films).unwrap_or_default(),
                 seconds: ran.seconds,
             };
             (evidence, measurements)

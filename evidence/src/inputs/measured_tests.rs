@@ -57,6 +57,19 @@ fn line() -> Value {
     })
 }
 
+/// What faults led to on the line, with every target met.
+fn harm() -> Value {
+    let single =
+        |signal: &str| json!({ "signal": signal, "runs": 55, "unsafe_runs": 0, "arrivals": 250, "first": null });
+    json!({
+        "seen": {
+            "singles": [single("codes"), single("telegrams")],
+            "cut_sets": [{ "name": "both", "happens": "It is hurt.", "both": ["a", "b"], "harm": "harm", "alone": [null, null] }],
+        },
+        "pages": [{ "name": "both", "caption": "It is hurt.", "html": "<!doctype html>" }]
+    })
+}
+
 /// A good run but for the line; `Value::Null` if that was not measured.
 fn with_line(line: &Value) -> Run {
     let Run::Ran(mut ran) = ran(&good()) else { panic!("a run") };
@@ -68,7 +81,8 @@ fn ran(bench: &Value) -> Run {
     let bench: Bench = serde_json::from_value(bench.clone()).expect("a run");
     let headline = serde_json::from_value(line()).expect("a headline");
     let plots = vec![("bit-errors".to_owned(), "<?xml version=\"1.0\"?>\n<svg>curve</svg>\n".to_owned())];
-    Run::Ran(Box::new(Ran { bench, headline, plots, source: "run here".to_owned(), seconds: 1.0 }))
+    let harm = serde_json::from_value(harm()).expect("what was seen");
+    Run::Ran(Box::new(Ran { bench, headline, harm, plots, source: "run here".to_owned(), seconds: 1.0 }))
 }
 
 /// The verdict of a target after a change at a JSON pointer.
@@ -96,9 +110,10 @@ fn a_good_run_meets_every_target_and_is_called_measured() {
         assert!(figure.at_most.is_none() || figure.unit != "s", "{}", figure.name);
     }
     assert_eq!(measured.plots[0].svg, "<svg>curve</svg>");
+    assert_eq!(measured.films[0].page, "<!doctype html>");
     let engine = engine(&all, &measured);
     assert_eq!((engine.name.as_str(), engine.verdict), ("waveform", Verdict::Measured));
-    assert!(engine.summary.contains("11 of 11 targets met"), "{}", engine.summary);
+    assert!(engine.summary.contains("13 of 13 targets met"), "{}", engine.summary);
 }
 
 #[test]
@@ -144,6 +159,35 @@ fn what_is_measured_of_the_line_can_be_missed_vacuous_or_not_run() {
     assert_eq!(changed("/rows/1/shortened/interruptions", json!(69)), [Verdict::Undecided; 2]);
     assert_eq!(changed("/rows/0/shortened/interruptions", json!(19)), [Verdict::Vacuous; 2]);
     assert_eq!(changed("/rows", json!([])), [Verdict::Vacuous; 2]);
+    assert_eq!(verdicts(&Value::Null), [Verdict::NotRun; 2]);
+}
+
+#[test]
+fn what_faults_lead_to_can_be_harm_vacuous_or_not_run() {
+    let verdicts = |harm: &Value| {
+        let Run::Ran(mut ran) = ran(&good()) else { panic!("a run") };
+        ran.harm = serde_json::from_value(harm.clone()).expect("what was seen");
+        let (all, _) = evidence(&Run::Ran(ran));
+        ["line-single-faults", "line-cut-sets"]
+            .map(|name| all.iter().find(|one| one.title == name).expect("a target").verdict)
+    };
+    let changed = |changes: &[(&str, Value)]| {
+        let mut harm = harm();
+        for (at, to) in changes {
+            *harm.pointer_mut(at).unwrap_or_else(|| panic!("{at} is not there")) = to.clone();
+        }
+        verdicts(&harm)
+    };
+    assert_eq!(changed(&[]), [Verdict::Measured; 2]);
+    let unsafe_run = ("/seen/singles/1/unsafe_runs", json!(1));
+    assert_eq!(changed(std::slice::from_ref(&unsafe_run)), [Verdict::Undecided; 2], "nothing says what happened");
+    let first = ("/seen/singles/1/first", json!("a train"));
+    assert_eq!(changed(&[unsafe_run, first]), [Verdict::Failed, Verdict::Measured]);
+    assert_eq!(changed(&[("/seen/cut_sets/0/harm", Value::Null)]), [Verdict::Measured, Verdict::Failed]);
+    assert_eq!(changed(&[("/seen/cut_sets/0/alone/1", json!("harm"))]), [Verdict::Measured, Verdict::Failed]);
+    assert_eq!(changed(&[("/seen/singles/0/arrivals", json!(100))]), [Verdict::Vacuous; 2]);
+    assert_eq!(changed(&[("/seen/singles", json!([]))]), [Verdict::Vacuous; 2]);
+    assert_eq!(changed(&[("/seen/cut_sets", json!([]))]), [Verdict::Vacuous; 2]);
     assert_eq!(verdicts(&Value::Null), [Verdict::NotRun; 2]);
 }
 
