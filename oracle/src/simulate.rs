@@ -13,7 +13,9 @@ use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::headline;
 use atc_simulation::line::Line;
 use atc_simulation::onboard::{Operate, Signal};
+use atc_simulation::rare::{self, Chance};
 use atc_simulation::record::Record;
+use atc_simulation::splitting;
 use atc_simulation::world::{Setting, World};
 use atc_simulation::{charts, diagram};
 use clap::{Args, ValueEnum};
@@ -49,6 +51,13 @@ pub struct SimulateArgs {
     /// Measures needless brake applications, delay and margins against the length of interruptions, on a line of its own
     #[arg(long, conflicts_with = "campaign")]
     headline: bool,
+    /// Faults come by chance, so many of each kind of --faults in an hour: tells how likely harm is in a run, by importance
+    /// splitting over how long a train is not reported
+    #[arg(long, conflicts_with_all = ["campaign", "headline", "each"], requires = "faults", value_name = "PER_HOUR")]
+    rare: Option<f64>,
+    /// How many runs begin at each level of a splitting
+    #[arg(long, default_value_t = 40, requires = "rare", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    effort: u32,
     /// Where events (JSON lines), pictures (SVG) and figures go [default: the events to standard output]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
@@ -60,7 +69,7 @@ pub struct RunArgs {
     /// What chance depends on; a run is the same every time for one seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How long a run is, in seconds of the line [default: 1800; in a campaign 600]
+    /// How long a run is, in seconds of the line [default: 1800; in a campaign 600; with --rare 180]
     #[arg(long)]
     time: Option<u32>,
     /// How many trains there are [default: as the file says]
@@ -176,6 +185,9 @@ pub fn run(args: &SimulateArgs) -> Result<Done, String> {
     let file = args.file.as_ref().ok_or("a line file is needed")?;
     let line = Line::read(file)?;
     let trains = trains(&args.run, &line);
+    if let Some(per_hour) = args.rare {
+        return rarely(args, &line, (trains, per_hour));
+    }
     match args.campaign {
         Some(runs) => many(args, &line, (trains, runs)),
         None => one(args, &line, trains),
@@ -209,12 +221,17 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         let window = (60_000.0_f64.min(f64::from(seconds) * 500.0), f64::from(seconds) * 1000.0);
         faults.push(Fault::drawn(*kind, extent(args), line, window, args.seed + number as u64));
     }
+    Ok(Setting { faults, ..bare(args, trains) })
+}
+
+/// A run without faults.
+fn bare(args: &RunArgs, trains: usize) -> Setting {
     let operate = match args.device {
         Device::Shortened => Operate::Shortened,
         Device::Conventional => Operate::Conventional,
     };
     let (seed, signal, drivers, defects) = (args.seed, signal(args), drivers(args), args.defects.clone());
-    Ok(Setting { operate, trains, seed, faults, compared: false, signal, drivers, defects })
+    Setting { operate, trains, seed, faults: Vec::new(), compared: false, signal, drivers, defects }
 }
 
 /// A campaign of so many runs, causes and faults in each; with so many trains, for so many seconds.
@@ -325,6 +342,40 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
     }
     let json = serde_json::to_string_pretty(&outcomes).map_err(|error| error.to_string())?;
     done.files = vec![("campaign.json", json + "\n")];
+    Ok(done)
+}
+
+/// How likely harm is in a run, with the scatter of so many splittings.
+fn rarely(args: &SimulateArgs, line: &Line, (trains, per_hour): (usize, f64)) -> Result<Done, String> {
+    const SPLITTINGS: u32 = 10;
+    if !(per_hour.is_finite() && per_hour > 0.0) {
+        return Err(format!("--rare {per_hour}: a number of faults in an hour, above 0"));
+    }
+    let seconds = args.run.time.unwrap_or(180);
+    if seconds <= 60 {
+        return Err(format!("--time {seconds}: nothing moves for about a minute after the start; give more than 60"));
+    }
+    let kinds = args.run.faults.clone();
+    let chance = Chance { kinds, per_hour, from_ms: 60_000, end_ms: u64::from(seconds) * 1000 };
+    let start = rare::Run::new(line, bare(&args.run, trains), &chance)?;
+    let estimate = splitting::estimate(&start, &rare::LEVELS, (args.effort, SPLITTINGS), args.run.seed);
+    let mut done = Done::default();
+    let _ = writeln!(done.text, "{:>6} {:>8} {:>8}", "level", "runs", "reached");
+    for (number, level) in rare::LEVELS.iter().enumerate() {
+        let stages = estimate.found.iter().filter_map(|found| found.stages.get(number));
+        let (runs, reached) = stages.fold((0, 0), |sum, stage| (sum.0 + stage.runs, sum.1 + stage.reached));
+        let _ = writeln!(done.text, "{level:>6} {runs:>8} {reached:>8}");
+    }
+    let _ = writeln!(
+        done.text,
+        "harm in a run of {seconds} s: {:.2e}, standard error {:.1e}, of {SPLITTINGS} splittings",
+        estimate.probability, estimate.error
+    );
+    if estimate.probability == 0.0 {
+        done.text += "no run came to harm: it is rarer than this can see; give a greater --effort\n";
+    }
+    let json = serde_json::to_string_pretty(&estimate).map_err(|error| error.to_string())?;
+    done.files = vec![("splitting.json", json + "\n")];
     Ok(done)
 }
 

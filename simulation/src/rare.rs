@@ -21,9 +21,9 @@ pub struct Chance {
     pub end_ms: u64,
 }
 
-/// The levels of a run: a train that is not reported for a quarter, a half, three quarters of the time after which its circuit
-/// counts as clear, and for all of it; another train that is told to go where it is; the accident.
-pub const LEVELS: [f64; 6] = [0.15, 0.3, 0.45, 0.6, 0.8, 1.0];
+/// The levels of a run: a train that is not reported for half of the time after which its circuit counts as clear, for a tenth
+/// more each, and for all of it; another train that is told to go where it is; the accident.
+pub const LEVELS: [f64; 8] = [0.3, 0.36, 0.42, 0.48, 0.54, 0.6, 0.8, 1.0];
 
 /// A line at work under such chance.
 #[derive(Clone)]

@@ -249,9 +249,12 @@ impl World<'_> {
     }
 
     fn interruption(&self, number: usize, length: f64) -> Option<usize> {
+        if !self.kinds.contains(&Kind::Interruption) {
+            return None;
+        }
         let now = self.now();
-        // Sorted by their begin; none is longer than this.
-        let from = self.setting.faults.partition_point(|fault| fault.from_ms < now - 240_000.0);
+        // Sorted by their begin.
+        let from = self.setting.faults.partition_point(|fault| fault.from_ms < now - self.longest_ms);
         let mine = |fault: &Fault| fault.kind == Kind::Interruption && fault.which % self.trains.len() == number;
         let begun = self.setting.faults[from..].iter().take_while(|fault| fault.from_ms < now + length);
         begun.enumerate().filter(|(_, fault)| mine(fault) && fault.meets(now, length)).map(|(at, _)| from + at).last()

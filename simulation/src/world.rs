@@ -85,6 +85,10 @@ pub struct World<'a> {
     pub unheard_ms: Vec<u32>,
     pub(crate) setting: Setting,
     proceed: Vec<RouteSet>,
+    /// The kinds of its faults.
+    pub(crate) kinds: Vec<Kind>,
+    /// The longest of its faults, in ms.
+    pub(crate) longest_ms: f64,
     begun: usize,
 }
 
@@ -145,6 +149,8 @@ impl<'a> World<'a> {
             rival,
             reported: vec![false; line.track.circuits.len()],
             unheard_ms: vec![0; line.track.circuits.len()],
+            kinds: Kind::ALL.into_iter().filter(|kind| setting.faults.iter().any(|it| it.kind == *kind)).collect(),
+            longest_ms: setting.faults.iter().map(|it| it.lasts_ms).fold(0.0, f64::max),
             setting,
             begun: 0,
         };
@@ -202,6 +208,10 @@ impl<'a> World<'a> {
         self.setting.faults.retain(|old| old.from_ms + old.lasts_ms >= now);
         self.begun = self.setting.faults.len();
         self.setting.faults.push(fault);
+        self.longest_ms = self.longest_ms.max(fault.lasts_ms);
+        if !self.kinds.contains(&fault.kind) {
+            self.kinds.push(fault.kind);
+        }
     }
 
     /// How near the run is to harm by trains that are not reported, for [`crate::rare`]: up to 0.6 the longest share of the time after
@@ -228,7 +238,9 @@ impl<'a> World<'a> {
     /// The faults of a kind that are there now, for `length_ms`.
     pub(crate) fn faults(&self, kind: Kind, length_ms: f64) -> impl Iterator<Item = &Fault> {
         let now = self.now();
-        self.setting.faults.iter().filter(move |fault| fault.kind == kind && fault.meets(now, length_ms))
+        // Most runs have faults of one kind or two, and are asked for each in every cycle.
+        let all = if self.kinds.contains(&kind) { self.setting.faults.as_slice() } else { &[] };
+        all.iter().filter(move |fault| fault.kind == kind && fault.meets(now, length_ms))
     }
 
     #[allow(clippy::cast_precision_loss, reason = "a run is shorter than 2^53 ms")]

@@ -107,7 +107,7 @@ fn a_line_loses_a_train_as_often_as_runs_of_it_do() {
     let chance = Chance { kinds: vec![Kind::ShuntLoss], per_hour: 3_000.0, from_ms: 60_000, end_ms: 120_000 };
     let start = Run::new(&line, Setting { trains: 2, ..Setting::default() }, &chance).expect("a run");
     let forgotten = |levels: &[f64], effort| estimate(&start, levels, effort, 1);
-    let (split, plain) = (forgotten(&LEVELS[..4], (40, 10)), forgotten(&LEVELS[3..4], (40, 10)));
+    let (split, plain) = (forgotten(&LEVELS[..6], (40, 10)), forgotten(&LEVELS[5..6], (40, 10)));
     let apart = (split.probability - plain.probability).abs();
     let error = split.error.hypot(plain.error);
     assert!(plain.probability > 0.02 && apart < 4.0 * error, "{split:?}\n{plain:?}");

@@ -59,6 +59,54 @@ fn harm_is_exit_code_1() {
     assert!(output.status.success(), "{}", text(&output.stderr));
 }
 
+/// An unsafe run of a campaign, with wrong parts and several kinds of faults, can be looked at again by its seed.
+#[test]
+fn wrong_parts_and_pairs_are_seen_and_found_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let wrong = ["--signal", "telegrams", "--drivers", "heedless", "--defects", "codes-too-high,pattern-too-high"];
+    let both = [&[line.as_str(), "--campaign", "1", "--time", "400", "--faults", "late-point"], &wrong[..]].concat();
+    let output = simulate(folder.path(), &both);
+    let (code, told) = (output.status.code(), text(&output.stdout));
+    assert_eq!(code, Some(1), "{told}");
+    let row = told.lines().nth(1).expect("a row");
+    assert!(row.starts_with("codes-too-high + pattern-too-high + late-point       1       1"), "{row}");
+    let (_, event) = row.split_once("seed 1: ").expect("the first unsafe run");
+    let again = [&[line.as_str(), "--each", "1", "--time", "400", "--faults", "late-point"], &wrong[..]].concat();
+    let output = simulate(folder.path(), &again);
+    assert_eq!((output.status.code(), text(&output.stdout).lines().last()), (Some(1), Some(event)));
+    // The 171 causes of two things, one after the other: the first of them.
+    let pairs = simulate(folder.path(), &[&line, "--campaign", "2", "--pairs", "--time", "100"]);
+    let told = text(&pairs.stdout);
+    assert!(told.lines().any(|row| row.starts_with("interruption + misread-code")), "{told}");
+}
+
+#[test]
+fn what_is_rare_is_estimated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let rare =
+        [line.as_str(), "--rare", "3000", "--faults", "shunt-loss", "--time", "70", "--effort", "4", "-o", "out"];
+    let output = simulate(folder.path(), &rare);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let told = text(&output.stdout);
+    assert!(told.contains("harm in a run of 70 s: ") && told.contains("of 10 splittings"), "{told}");
+    let json = fs::read_to_string(folder.path().join("out/splitting.json")).expect("a file");
+    let found = serde_json::from_str::<Value>(&json).expect("JSON")["found"].as_array().map(Vec::len);
+    assert_eq!(found, Some(10));
+    for (arguments, code, says) in [
+        (&["--rare", "0", "--faults", "shunt-loss"][..], 1, "--rare 0: a number of faults in an hour, above 0"),
+        (&["--rare", "5", "--faults", "shunt-loss", "--time", "60"], 1, "--time 60: nothing moves for about a minute"),
+        (&["--rare", "5"], 2, "--faults"),
+        (&["--pairs"], 2, "--campaign"),
+        (&["--defects", "brakes"], 2, "there is no such wrong part; there are clears-at-once"),
+    ] {
+        let output = simulate(folder.path(), &[&[line.as_str()], arguments].concat());
+        let told = text(&output.stderr);
+        assert!(output.status.code() == Some(code) && told.contains(says), "{arguments:?}: {told}");
+    }
+}
+
 #[test]
 fn a_campaign_tells_what_became_of_each_fault() {
     let folder = tempfile::tempdir().expect("a folder");
