@@ -116,7 +116,7 @@ pub fn faults<'a>(line: &Line, campaign: &'a Campaign, run: u64) -> (&'a Cause, 
             faults = (0..campaign.faults).map(draw).collect();
             continue;
         }
-        for number in 0..faults.len() {
+        for number in 0..campaign.faults {
             let first = faults[number];
             let near = (first.from_ms - APART_MS, first.from_ms + first.lasts_ms.min(60_000.0) + APART_MS);
             let fault = Fault::draw(*kind, campaign.extent, line, near, &mut random);
