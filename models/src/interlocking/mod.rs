@@ -16,10 +16,12 @@
 //! | [`between`] | two stations, the line between them, and trains that go to and fro |
 //! | [`neighbours`] | two stations that turn the line between them |
 //! | [`counted`] | a station whose line is counted: block counting in front of the interlocking |
+//! | [`counted_between`] | a counted line between two stations |
 
 pub mod between;
 mod claims;
 pub mod counted;
+pub mod counted_between;
 pub mod device;
 pub mod environment;
 pub mod ground;

@@ -1,0 +1,107 @@
+//! What a device can make of a cycle, worked out once: a matter of time only.
+
+use super::ends::{Device, Read};
+use ahash::AHashMap;
+use atc_kernel::interlocking::Input;
+use std::hash::Hash;
+use std::sync::Arc;
+
+/// A device's state: its number among those that the model has met.
+pub type Number = u32;
+
+/// What a device makes of one cycle. What it has read first to come there stands for all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Its state.
+    pub device: Number,
+    /// Its route shows proceed.
+    pub proceed: bool,
+    /// It permits the other station to send.
+    pub permits: bool,
+    /// The places whose telegram grants the next place: a mask.
+    pub granted: u8,
+    /// The circuits that count as occupied: a mask.
+    pub occupied: u8,
+    /// It permits, and has not verified the count since its start.
+    pub unverified: bool,
+    /// It has started again in this cycle.
+    pub started: bool,
+    /// What it has read: the place among the inputs of the model.
+    pub(super) read: u32,
+}
+
+/// What both devices read alike in a cycle, and how many heads each block has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Common<const B: usize> {
+    pub low: [bool; B],
+    pub high: [bool; B],
+    pub present: u16,
+    pub inside: [u8; B],
+}
+
+/// What a device may read in a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Key<const B: usize> {
+    pub station: usize,
+    pub device: Number,
+    pub common: Common<B>,
+    /// The circuits that report a train: a mask.
+    pub reported: u8,
+    /// The circuits that may be reported without one: a mask.
+    pub falsely: u8,
+    /// Whether a permission may be read, and may not be.
+    pub consents: [bool; 2],
+    pub may_start: bool,
+    /// Blocks for which staff may take a wrong number.
+    pub wrong_reset: [bool; B],
+}
+
+/// What a device has read, for a trace.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Taken<const B: usize> {
+    pub read: Read<B>,
+    pub told: Input,
+    pub agree: [bool; B],
+}
+
+/// What was worked out before: a device's states, and what it makes of a cycle.
+#[derive(Debug)]
+pub(super) struct Known<const B: usize> {
+    pub devices: Vec<Device<B>>,
+    numbers: AHashMap<Device<B>, Number>,
+    pub taken: Vec<Taken<B>>,
+    pub outcomes: AHashMap<Key<B>, Arc<[Outcome]>>,
+}
+
+impl<const B: usize> Default for Known<B> {
+    fn default() -> Self {
+        Self { devices: Vec::new(), numbers: AHashMap::new(), taken: Vec::new(), outcomes: AHashMap::new() }
+    }
+}
+
+/// A number of these.
+fn small(count: usize) -> u32 {
+    u32::try_from(count).expect("a model of fewer than 2^32 devices' states")
+}
+
+impl<const B: usize> Known<B> {
+    /// The number of a device's state.
+    pub fn number(&mut self, device: Device<B>) -> Number {
+        let Self { devices, numbers, .. } = self;
+        *numbers.entry(device).or_insert_with(|| {
+            devices.push(device);
+            small(devices.len() - 1)
+        })
+    }
+
+    /// The state with this number.
+    pub fn device(&self, number: Number) -> Device<B> {
+        self.devices[number as usize]
+    }
+
+    /// Takes down what was read.
+    pub fn take(&mut self, taken: Taken<B>) -> u32 {
+        self.taken.push(taken);
+        small(self.taken.len() - 1)
+    }
+}
