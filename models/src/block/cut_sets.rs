@@ -62,7 +62,8 @@ pub fn enumerate<D: Counting>(model: &Single<D>, limits: Limits) -> Option<Vec<C
     Some(found.into_iter().map(|(_, cut)| cut).collect())
 }
 
-fn excluded_by(kinds: &[Kind]) -> Vec<String> {
+/// The assumptions of which each alone excludes these kinds together.
+pub(crate) fn excluded_by(kinds: &[Kind]) -> Vec<String> {
     let detectors = kinds.iter().all(|kind| matches!(kind, Kind::Missed | Kind::Phantom));
     let independent = detectors.then_some("independent-detectors");
     kinds.iter().filter_map(|kind| kind.assumption()).chain(independent).map(ToOwned::to_owned).collect()

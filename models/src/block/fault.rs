@@ -130,6 +130,31 @@ impl Faults {
         }
     }
 
+    /// Faults of detectors alone.
+    pub const fn of_detectors(missed: u8, phantom: u8) -> Self {
+        Self { missed, phantom, ..Self::NONE }
+    }
+
+    /// These without the other ones.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self {
+            missed: self.missed & !other.missed,
+            phantom: self.phantom & !other.phantom,
+            checks: self.checks & !other.checks,
+            checks_ahead: self.checks_ahead & !other.checks_ahead,
+        }
+    }
+
+    /// A fault of `kind`, which is none of a detector, in block `block` (0 or 1).
+    pub const fn of_block(kind: Kind, block: usize) -> Self {
+        if block == 0 {
+            Self { checks: kind.bit(), ..Self::NONE }
+        } else {
+            Self { checks_ahead: kind.bit(), ..Self::NONE }
+        }
+    }
+
     /// Whether block `block` (0 or 1) has a fault of `kind`, which is none of a detector.
     pub const fn has(self, kind: Kind, block: usize) -> bool {
         (if block == 0 { self.checks } else { self.checks_ahead }) & kind.bit() != 0

@@ -6,23 +6,24 @@
 //!
 //! A train is where it is on the ground, never where a device has it.
 
-mod cut_sets;
+pub mod cut_sets;
 pub mod ends;
 mod faults;
 mod known;
 
 pub use ends::Wiring;
-pub use faults::{Around, Failure, Faults};
-pub use known::{Number, Outcome};
+pub use faults::{Around, Failure, Faults, Often};
+pub use known::{Common, Number, Outcome};
 
 use super::between::Lives;
 use super::trace::Run;
+use crate::block::fault::{self, Kind};
 use crate::check::{Claim, Limits, Subject};
 use crate::outcome::{CutSet, Trace};
 use atc_kernel::block::{Detection, SectionSet, TrainCount};
 use atc_kernel::interlocking::{Request, Travel};
 use ends::{Device, End, FIRST, PLATFORM, Read, THROAT, circuits, ends, route, start_orders, the_line, turn};
-use known::{Common, Key, Known, Taken};
+use known::{Key, Known, Taken};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -87,6 +88,8 @@ pub struct State {
     pub sent: u8,
     /// What may fail.
     pub faults: Faults,
+    /// What of it has begun to, where everything fails once.
+    pub begun: Faults,
     /// A device has started again.
     pub restarted: bool,
     /// What was wrong in this cycle.
@@ -95,9 +98,11 @@ pub struct State {
 
 /// One cycle: the trains after their moves, and what each device makes of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cycle {
+pub struct Cycle<const B: usize> {
     /// The trains.
     pub trains: [Train; TRAINS],
+    /// What both devices read alike.
+    pub common: Common<B>,
     /// The devices.
     pub outcomes: [Outcome; 2],
 }
@@ -124,10 +129,16 @@ pub struct CountedBetween<const B: usize> {
     pub lives: Lives,
     /// What may fail in a run: each set is a run of its own.
     pub faults: Vec<Faults>,
+    /// How often it does.
+    pub often: Often,
+    /// Whether routes are withdrawn as well as set.
+    pub withdraws: bool,
     /// How the devices are put together.
     pub wiring: Wiring,
     /// What the model is there to show.
     pub purpose: Purpose,
+    /// Whether staff reset both devices in one cycle, or each when they like.
+    pub resets_together: bool,
     ends: [End<B>; 2],
     known: Arc<Mutex<Known<B>>>,
 }
@@ -139,7 +150,7 @@ impl<const B: usize> CountedBetween<B> {
     /// If the kernel rejects the stations; a test builds every model.
     pub fn new(sections: u8, trains: u8, lives: Lives, faults: Vec<Faults>, purpose: Purpose) -> Self {
         let ends = ends(sections, trains, lives, LOSS);
-        Self { sections, trains, lives, faults, wiring: Wiring::Right, purpose, ends, known: Arc::default() }
+        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: true, wiring: Wiring::Right, purpose, resets_together: false, ends, known: Arc::default() }
     }
 
     /// The same with these devices.
@@ -270,15 +281,13 @@ impl<const B: usize> CountedBetween<B> {
         ways
     }
 
-    /// What checks and detectors may say of it, with the faults of the run.
-    fn commons(&self, state: &State, trains: &[Train; TRAINS]) -> Vec<Common<B>> {
-        let pairs = || state.trains.iter().zip(trains);
+    /// Whether a head passes the entry of each block, and last the exit of the line; the sections with a head, and how many there are in each block.
+    fn passing(&self, state: &State, trains: &[Train; TRAINS]) -> (Vec<bool>, u16, [u8; B]) {
         let enters = |place: u8| {
-            pairs().any(|(before, after)| {
-                before.front != COMING && before.front + 1 == place && after.front == place
-            })
+            let pairs = state.trains.iter().zip(trains);
+            let comes = |before: &Train, after: &Train| before.front != COMING && before.front + 1 == place && after.front == place;
+            pairs.into_iter().any(|(before, after)| comes(before, after))
         };
-        let first = |block: usize| FIRST + self.sections * u8::try_from(block).expect("few blocks");
         let heads = trains.iter().filter(|train| self.line() >> train.front.min(7) & 1 == 1);
         let mut inside = [0; B];
         let mut heard = 0;
@@ -286,15 +295,22 @@ impl<const B: usize> CountedBetween<B> {
             heard |= 1 << (train.front - FIRST);
             inside[usize::from((train.front - FIRST) / self.sections)] += 1;
         }
+        let entries = (0..=Self::blocks()).map(|block| enters(FIRST + self.sections * block));
+        (entries.collect(), heard, inside)
+    }
+
+    /// What checks and detectors may say of it, with the faults of the run.
+    fn commons(&self, state: &State, trains: &[Train; TRAINS]) -> Vec<Common<B>> {
+        let (enters, heard, inside) = self.passing(state, trains);
         let counting = state.faults.counting;
         let mut ways: Vec<Common<B>> = counting
             .present(SectionSet::from_bits(heard))
             .into_iter()
-            .map(|present| Common { low: [false; B], high: [false; B], present: present.bits(), inside })
+            .map(|present| Common { low: [false; B], high: [false; B], present: present.bits(), inside, reset: [None; B] })
             .collect();
         for block in 0..B {
-            let lows: Vec<_> = counting.check_in(enters(first(block)), block).collect();
-            let highs: Vec<_> = counting.check_out(enters(first(block + 1)), block).collect();
+            let lows: Vec<_> = counting.check_in(enters[block], block).collect();
+            let highs: Vec<_> = counting.check_out(enters[block + 1], block).collect();
             ways = ways
                 .iter()
                 .flat_map(|way| lows.iter().map(move |low| (*way, *low)))
@@ -305,7 +321,37 @@ impl<const B: usize> CountedBetween<B> {
                 })
                 .collect();
         }
+        if self.resets_together {
+            for block in 0..B {
+                let resets = |way: &Common<B>| {
+                    let agree = [SENDER, RECEIVER].into_iter().all(|station| self.agrees(station, state.devices[station], way)[block]);
+                    let right = inside[block];
+                    let wrong = counting.has(Kind::WrongReset, block);
+                    let numbers = (0..=self.ends[SENDER].most()).filter(move |number| !agree && (*number == right || wrong));
+                    std::iter::once(None).chain(numbers.map(Some)).collect::<Vec<_>>()
+                };
+                ways = ways.iter().flat_map(|way| resets(way).into_iter().map(move |reset| {
+                    let mut way = *way;
+                    way.reset[block] = reset;
+                    way
+                })).collect();
+            }
+        }
         ways
+    }
+
+    /// Which blocks agree at a device that reads this, before staff do anything.
+    fn agrees(&self, station: usize, device: Number, common: &Common<B>) -> [bool; B] {
+        let mut known = self.known();
+        let read = Common { reset: [None; B], ..*common };
+        if let Some(found) = known.agreeing.get(&(station, device, read)) {
+            return *found;
+        }
+        let before = known.device(device).line;
+        let (_, report, _) = self.ends[station].counted.count(before, self.detections(&read), circuits(0));
+        let agree = report.blocks.map(|block| block.agree);
+        known.agreeing.insert((station, device, read), agree);
+        agree
     }
 
     /// What is commanded: requests that would change nothing are left out.
@@ -316,7 +362,7 @@ impl<const B: usize> CountedBetween<B> {
         if !held.is_held() || held.may_resume() {
             commands.push(Some(Request::Set(route())));
         }
-        if held.is_held() {
+        if held.is_held() && self.withdraws {
             commands.push(Some(Request::Withdraw(route())));
         }
         let set = if travel == Travel::Away { directions.away } else { directions.toward };
@@ -331,7 +377,7 @@ impl<const B: usize> CountedBetween<B> {
         std::array::from_fn(|block| {
             let shift = usize::from(self.sections) * block;
             let present = SectionSet::from_bits(common.present >> shift).and(SectionSet::first(self.sections));
-            Detection { low_check: common.low[block], high_check: common.high[block], present, reset: None }
+            Detection { low_check: common.low[block], high_check: common.high[block], present, reset: common.reset[block].map(TrainCount) }
         })
     }
 
@@ -345,6 +391,7 @@ impl<const B: usize> CountedBetween<B> {
         let device = known.device(key.device);
         let mut all: Vec<Outcome> = Vec::new();
         let mut add = |before: Device<B>, read: Read<B>, started: bool| {
+            let failed = self.failed(&key, &read, started);
             let made = end.step(before, read, self.wiring);
             let clear = end.layout.plan().clear;
             let counts = made.device.interlocking.track.clear_for();
@@ -357,9 +404,12 @@ impl<const B: usize> CountedBetween<B> {
                 occupied,
                 unverified: made.permits && !made.device.verified,
                 started,
+                failed,
                 read: 0,
             };
-            if !all.iter().any(|one| Outcome { read: 0, ..*one } == outcome) {
+            let less = |one: &Outcome| Outcome { read: 0, failed: Faults::NONE, ..*one } == Outcome { failed: Faults::NONE, ..outcome };
+            let known_already = |one: &Outcome| one.failed == failed || self.often == Often::AtWill;
+            if !all.iter().any(|one| less(one) && known_already(one)) {
                 let read = known.take(Taken { read, told: made.told, agree: made.agree });
                 all.push(Outcome { read, ..outcome });
             }
@@ -391,7 +441,7 @@ impl<const B: usize> CountedBetween<B> {
             let (_, report, _) = end.counted.count(before.line, plain, circuits(reported));
             let mut resets = vec![plain];
             for block in 0..B {
-                if report.blocks[block].agree {
+                if key.together || report.blocks[block].agree {
                     continue;
                 }
                 let right = key.common.inside[block];
@@ -412,6 +462,66 @@ impl<const B: usize> CountedBetween<B> {
             ways.extend(resets.into_iter().map(|blocks| (blocks, reported)));
         }
         ways
+    }
+
+    /// What of a device's own has failed if it reads this.
+    fn failed(&self, key: &Key<B>, read: &Read<B>, started: bool) -> Faults {
+        if self.often == Often::AtWill {
+            return Faults::NONE;
+        }
+        let sends = key.station == SENDER;
+        let falsely = read.reported.bits().to_le_bytes()[0] & !key.reported;
+        let starts = if sends { Around::SenderStarts } else { Around::ReceiverStarts };
+        let mut failed = Faults::around(starts, started)
+            .and(Faults::around(Around::SenderThroat, falsely >> THROAT & 1 == 1))
+            .and(Faults::around(Around::ReceiverThroat, falsely >> self.beyond() & 1 == 1))
+            .and(Faults::around(Around::Consent, sends && !started && read.consent != key.newest));
+        for block in 0..B {
+            if read.blocks[block].reset.is_some_and(|number| number.0 != key.common.inside[block]) {
+                failed = failed.and(Faults::counting(fault::Faults::of_block(Kind::WrongReset, block)));
+            }
+        }
+        failed
+    }
+
+    /// What has failed in a cycle, and what could have failed without being told from what is right.
+    fn failing(&self, state: &State, cycle: &Cycle<B>) -> (Faults, Faults) {
+        let [sender, receiver] = cycle.outcomes;
+        let lost = cycle.trains.iter().any(|train| train.lost != 0);
+        let mut failed = sender.failed.and(receiver.failed).and(Faults::around(Around::Lost, lost));
+        let (enters, heard, _) = self.passing(state, &cycle.trains);
+        let heads = u8::try_from(heard).expect("few sections");
+        let present = u8::try_from(cycle.common.present).expect("few sections");
+        let detectors = fault::Faults::of_detectors(heads & !present, present & !heads);
+        failed = failed.and(Faults::counting(detectors));
+        let mut hidden = Faults::counting(fault::Faults::of_detectors(!heads, heads));
+        for block in 0..B {
+            let (low, high) = (enters[block], enters[block + 1]);
+            let of = |kind, there: bool| if there { fault::Faults::of_block(kind, block) } else { fault::Faults::NONE };
+            let checks = of(Kind::CheckInLost, low && !cycle.common.low[block])
+                .and(of(Kind::CheckInStuckOn, !low && cycle.common.low[block]))
+                .and(of(Kind::CheckOutLost, high && !cycle.common.high[block]))
+                .and(of(Kind::SpuriousCheckOut, !high && cycle.common.high[block]));
+            failed = failed.and(Faults::counting(checks));
+            hidden = hidden.and(Faults::counting(of(Kind::CheckInStuckOn, low)));
+        }
+        let reported = Self::reported(&cycle.trains);
+        hidden = hidden
+            .and(Faults::around(Around::SenderThroat, reported >> THROAT & 1 == 1))
+            .and(Faults::around(Around::ReceiverThroat, reported >> self.beyond() & 1 == 1));
+        (failed, hidden)
+    }
+
+    /// What may fail after this cycle, and what of it has begun to.
+    fn left(&self, state: &State, cycle: &Cycle<B>) -> (Faults, Faults) {
+        if self.often == Often::AtWill {
+            return (state.faults, Faults::NONE);
+        }
+        let (failed, hidden) = self.failing(state, cycle);
+        let levels = Faults::levels(self.sections, Self::blocks());
+        let over = failed.without(levels).and(state.begun.without(failed).without(hidden));
+        let begun = state.begun.and(failed.among(levels)).without(over);
+        (state.faults.without(over), begun)
     }
 
     /// The circuits that may be reported without a train.
@@ -498,7 +608,7 @@ impl<const B: usize> CountedBetween<B> {
 
 impl<const B: usize> Subject for CountedBetween<B> {
     type State = State;
-    type Action = Cycle;
+    type Action = Cycle<B>;
 
     fn initial(&self) -> Vec<State> {
         let devices = [SENDER, RECEIVER].map(|station| {
@@ -508,7 +618,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
             self.known().number(made)
         });
         let trains = [Train::coming(self.none()); TRAINS];
-        let state = State { trains, devices, sent: 1, faults: Faults::NONE, restarted: false, wrong: 0 };
+        let state = State { trains, devices, sent: 1, faults: Faults::NONE, begun: Faults::NONE, restarted: false, wrong: 0 };
         let with = |faults: &Faults| {
             let mut state: State = state;
             state.faults = *faults;
@@ -517,12 +627,12 @@ impl<const B: usize> Subject for CountedBetween<B> {
         self.faults.iter().map(with).collect()
     }
 
-    fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
+    fn actions(&self, state: &State, cycles: &mut Vec<Cycle<B>>) {
         if state.wrong & wrong::MET != 0 {
             return;
         }
         let faults = state.faults;
-        let wrong_reset = std::array::from_fn(|block| faults.counting.has(crate::block::fault::Kind::WrongReset, block));
+        let wrong_reset = std::array::from_fn(|block| faults.counting.has(Kind::WrongReset, block));
         let consents = [self.consents(state), [true, false]];
         let starts = [faults.has(Around::SenderStarts), faults.has(Around::ReceiverStarts)];
         for trains in self.ways(state) {
@@ -536,17 +646,19 @@ impl<const B: usize> Subject for CountedBetween<B> {
                         reported: reported & self.own(station),
                         falsely: self.falsely(station, faults),
                         consents: consents[station],
+                        newest: state.sent & 1 == 1,
                         may_start: starts[station],
                         wrong_reset,
+                        together: self.resets_together,
                     })
                 });
                 let pairs = one.iter().flat_map(|one| other.iter().map(move |other| [*one, *other]));
-                cycles.extend(pairs.map(|outcomes| Cycle { trains, outcomes }));
+                cycles.extend(pairs.map(|outcomes| Cycle { trains, common, outcomes }));
             }
         }
     }
 
-    fn next(&self, state: &State, cycle: &Cycle) -> Option<State> {
+    fn next(&self, state: &State, cycle: &Cycle<B>) -> Option<State> {
         let living = u8::MAX >> (7 - self.lives.permission);
         let mut trains = cycle.trains;
         let wrong = self.wrong(state, &trains, &cycle.outcomes);
@@ -564,11 +676,13 @@ impl<const B: usize> Subject for CountedBetween<B> {
             trains[usize::from(self.trains) - 1] = Train::coming(self.none());
         }
         let [sender, receiver] = cycle.outcomes;
+        let (faults, begun) = self.left(state, cycle);
         Some(State {
             trains,
             devices: [sender.device, receiver.device],
             sent: (state.sent << 1 | u8::from(receiver.permits)) & living,
-            faults: state.faults,
+            faults,
+            begun,
             restarted: state.restarted || sender.started || receiver.started,
             wrong,
         })
@@ -620,7 +734,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
                 s.trains.iter().any(|train| train.front == m.beyond() && train.rear + 1 == m.beyond())
             }),
         ]);
-        if self.faults.iter().any(|faults| faults.counting != crate::block::fault::Faults::NONE) {
+        if self.faults.iter().any(|faults| faults.counting != fault::Faults::NONE) {
             claims.push(Claim::<Self>::sometimes(
                 "arrives-after-a-fault",
                 "a train has arrived, and the line behind it is all reported occupied by disagreement",
@@ -656,7 +770,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
 
     /// The run of the sender's interlocking since its last start. The further words of a step: where the trains are, what both devices count, and
     /// what the receiver does.
-    fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
+    fn trace(&self, path: &[(State, Option<Cycle<B>>)]) -> Trace {
         let names = ["platform", "throat", "s1", "s2", "s3", "s4", "s5", "s6"];
         let mut names: Vec<_> = names[..usize::from(self.beyond())].to_vec();
         names.push("beyond");

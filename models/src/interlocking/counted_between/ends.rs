@@ -149,7 +149,7 @@ pub fn ends<const B: usize>(sections: u8, trains: u8, lives: Lives, unheard: u8)
     let all = sections * u8::try_from(B).expect("few blocks");
     let (last, beyond) = (FIRST + all - 1, FIRST + all);
     let hold = Hold::new(1).expect("a hold");
-    let block = Block::new(sections, trains.min(sections), hold, Ticks(2)).expect("a block");
+    let block = Block::new(sections, trains.min(sections), hold, Ticks(1)).expect("a block");
     let mut on = [[None; 16]; B];
     let mut next = FIRST;
     for circuit in on.iter_mut().flat_map(|block| block.iter_mut().take(sections.into())) {

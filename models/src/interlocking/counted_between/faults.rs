@@ -93,6 +93,15 @@ impl Failure {
     }
 }
 
+/// How often what may fail in a run does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Often {
+    /// In every cycle, or not, as it likes.
+    AtWill,
+    /// Once: in one cycle, or, where it is a level, in all cycles in a row in which it can be told from what is right.
+    Once,
+}
+
 /// What may fail in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Faults {
@@ -115,6 +124,35 @@ impl Faults {
     /// All of these, each in every place.
     pub fn of(kinds: &[Failure], sections: u8, blocks: u8) -> Self {
         kinds.iter().fold(Self::NONE, |all, kind| all.and(kind.everywhere(sections, blocks)))
+    }
+
+    /// Those that are levels: they last, in every place.
+    pub fn levels(sections: u8, blocks: u8) -> Self {
+        let counting = [Kind::Missed, Kind::Phantom, Kind::CheckInStuckOn].map(Failure::Counting);
+        let around = [Around::Consent, Around::SenderThroat, Around::ReceiverThroat].map(Failure::Around);
+        Self::of(&counting, sections, blocks).and(Self::of(&around, sections, blocks))
+    }
+
+    /// These without the other ones.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self { counting: self.counting.without(other.counting), around: self.around & !other.around }
+    }
+
+    /// Those of these that are among the others.
+    #[must_use]
+    pub const fn among(self, other: Self) -> Self {
+        self.without(self.without(other))
+    }
+
+    /// A fault of the counting.
+    pub const fn counting(counting: fault::Faults) -> Self {
+        Self { counting, around: 0 }
+    }
+
+    /// A fault around it, if it is there.
+    pub const fn around(around: Around, there: bool) -> Self {
+        Self { counting: fault::Faults::NONE, around: if there { around.bit() } else { 0 } }
     }
 
     /// Whether this may happen.

@@ -1,6 +1,7 @@
 //! What a device can make of a cycle, worked out once: a matter of time only.
 
 use super::ends::{Device, Read};
+use super::faults::Faults;
 use ahash::AHashMap;
 use atc_kernel::interlocking::Input;
 use std::hash::Hash;
@@ -26,17 +27,25 @@ pub struct Outcome {
     pub unverified: bool,
     /// It has started again in this cycle.
     pub started: bool,
+    /// What has failed to bring it there, of what is its own.
+    pub failed: Faults,
     /// What it has read: the place among the inputs of the model.
     pub(super) read: u32,
 }
 
 /// What both devices read alike in a cycle, and how many heads each block has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Common<const B: usize> {
+pub struct Common<const B: usize> {
+    /// Each block's check at the low end.
     pub low: [bool; B],
+    /// Each block's check at the high end.
     pub high: [bool; B],
+    /// The sections in which a head is heard.
     pub present: u16,
+    /// How many heads are in each block.
     pub inside: [u8; B],
+    /// What staff reset at both devices in this cycle, if they do that together.
+    pub reset: [Option<u8>; B],
 }
 
 /// What a device may read in a cycle.
@@ -49,11 +58,13 @@ pub(super) struct Key<const B: usize> {
     pub reported: u8,
     /// The circuits that may be reported without one: a mask.
     pub falsely: u8,
-    /// Whether a permission may be read, and may not be.
+    /// Whether a permission may be missing, and may be read; and whether the newest message is one.
     pub consents: [bool; 2],
+    pub newest: bool,
     pub may_start: bool,
     /// Blocks for which staff may take a wrong number.
     pub wrong_reset: [bool; B],
+    pub together: bool,
 }
 
 /// What a device has read, for a trace.
@@ -71,11 +82,13 @@ pub(super) struct Known<const B: usize> {
     numbers: AHashMap<Device<B>, Number>,
     pub taken: Vec<Taken<B>>,
     pub outcomes: AHashMap<Key<B>, Arc<[Outcome]>>,
+    /// By the station, its device and what both read: which blocks agree.
+    pub agreeing: AHashMap<(usize, Number, Common<B>), [bool; B]>,
 }
 
 impl<const B: usize> Default for Known<B> {
     fn default() -> Self {
-        Self { devices: Vec::new(), numbers: AHashMap::new(), taken: Vec::new(), outcomes: AHashMap::new() }
+        Self { devices: Vec::new(), numbers: AHashMap::new(), taken: Vec::new(), outcomes: AHashMap::new(), agreeing: AHashMap::new() }
     }
 }
 
