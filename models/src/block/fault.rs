@@ -135,6 +135,11 @@ impl Faults {
         Self { missed, phantom, ..Self::NONE }
     }
 
+    /// All of it in one number.
+    pub const fn bits(self) -> u32 {
+        u32::from_le_bytes([self.missed, self.phantom, self.checks, self.checks_ahead])
+    }
+
     /// These without the other ones.
     #[must_use]
     pub const fn without(self, other: Self) -> Self {

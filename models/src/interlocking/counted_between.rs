@@ -13,7 +13,7 @@ mod known;
 
 pub use ends::Wiring;
 pub use faults::{Around, Failure, Faults, Often};
-pub use known::{Common, Number, Outcome};
+pub use known::{Number, Outcome};
 
 use super::between::Lives;
 use super::trace::Run;
@@ -21,11 +21,12 @@ use crate::block::fault::{self, Kind};
 use crate::check::{Claim, Limits, Subject};
 use crate::outcome::{CutSet, Trace};
 use atc_kernel::block::{Detection, SectionSet, TrainCount};
-use atc_kernel::interlocking::{Request, Travel};
+use atc_kernel::interlocking::{Phase, Request, Travel};
 use ends::{Device, End, FIRST, PLATFORM, Read, THROAT, circuits, ends, route, start_orders, the_line, turn};
-use known::{Key, Known, Taken};
+use known::{Common, Key, Known, Taken};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The most trains.
@@ -78,7 +79,7 @@ pub mod wrong {
 }
 
 /// Two devices, the permissions between them, and the trains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct State {
     /// The trains, the foremost first.
     pub trains: [Train; TRAINS],
@@ -96,13 +97,30 @@ pub struct State {
     pub wrong: u8,
 }
 
+impl Hash for State {
+    /// In few numbers, which is quicker than field by field.
+    fn hash<H: Hasher>(&self, hasher: &mut H) {
+        let Self { trains, devices: [sender, receiver], sent, faults, begun, restarted, wrong } = *self;
+        let mut all = [0; 16];
+        for (bytes, train) in all.chunks_exact_mut(4).zip(trains) {
+            bytes.copy_from_slice(&[train.front, train.rear, train.since, train.lost]);
+        }
+        all[12..15].copy_from_slice(&[sent, restarted.into(), wrong]);
+        hasher.write_u128(u128::from_le_bytes(all));
+        hasher.write_u64(u64::from(sender) << 32 | u64::from(receiver));
+        hasher.write_u128(u128::from(faults.bits()) << 64 | u128::from(begun.bits()));
+    }
+}
+
 /// One cycle: the trains after their moves, and what each device makes of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cycle<const B: usize> {
+pub struct Cycle {
     /// The trains.
     pub trains: [Train; TRAINS],
-    /// What both devices read alike.
-    pub common: Common<B>,
+    /// What has failed in it of what both devices read alike.
+    pub failed: Faults,
+    /// What could have failed without being told from what is right.
+    pub hidden: Faults,
     /// The devices.
     pub outcomes: [Outcome; 2],
 }
@@ -118,6 +136,15 @@ pub enum Purpose {
     Pairs(&'static [&'static str]),
 }
 
+/// Which routes are withdrawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Withdraws {
+    /// Any that is held, in any cycle.
+    AtWill,
+    /// Any that is in use, in any cycle: what has not let its train go.
+    InUse,
+}
+
 /// The model: `B` blocks.
 #[derive(Clone, Debug)]
 pub struct CountedBetween<const B: usize> {
@@ -131,16 +158,28 @@ pub struct CountedBetween<const B: usize> {
     pub faults: Vec<Faults>,
     /// How often it does.
     pub often: Often,
-    /// Whether routes are withdrawn as well as set.
-    pub withdraws: bool,
+    /// Which routes are withdrawn.
+    pub withdraws: Withdraws,
     /// How the devices are put together.
     pub wiring: Wiring,
     /// What the model is there to show.
     pub purpose: Purpose,
     /// Whether staff reset both devices in one cycle, or each when they like.
     pub resets_together: bool,
+    levels: Faults,
     ends: [End<B>; 2],
     known: Arc<Mutex<Known<B>>>,
+}
+
+/// What passes in a cycle.
+#[derive(Clone, Copy, Debug)]
+struct Passing<const B: usize> {
+    /// A head passes the entry of each block, and last the exit of the line: a mask.
+    enters: u8,
+    /// The sections with a head: a mask.
+    heard: u8,
+    /// How many heads are in each block.
+    inside: [u8; B],
 }
 
 impl<const B: usize> CountedBetween<B> {
@@ -150,7 +189,7 @@ impl<const B: usize> CountedBetween<B> {
     /// If the kernel rejects the stations; a test builds every model.
     pub fn new(sections: u8, trains: u8, lives: Lives, faults: Vec<Faults>, purpose: Purpose) -> Self {
         let ends = ends(sections, trains, lives, LOSS);
-        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: true, wiring: Wiring::Right, purpose, resets_together: false, ends, known: Arc::default() }
+        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: Withdraws::AtWill, wiring: Wiring::Right, purpose, resets_together: false, levels: Faults::levels(sections, Self::blocks()), ends, known: Arc::default() }
     }
 
     /// The same with these devices.
@@ -281,36 +320,36 @@ impl<const B: usize> CountedBetween<B> {
         ways
     }
 
-    /// Whether a head passes the entry of each block, and last the exit of the line; the sections with a head, and how many there are in each block.
-    fn passing(&self, state: &State, trains: &[Train; TRAINS]) -> (Vec<bool>, u16, [u8; B]) {
-        let enters = |place: u8| {
-            let pairs = state.trains.iter().zip(trains);
-            let comes = |before: &Train, after: &Train| before.front != COMING && before.front + 1 == place && after.front == place;
-            pairs.into_iter().any(|(before, after)| comes(before, after))
-        };
-        let heads = trains.iter().filter(|train| self.line() >> train.front.min(7) & 1 == 1);
-        let mut inside = [0; B];
-        let mut heard = 0;
-        for train in heads {
-            heard |= 1 << (train.front - FIRST);
-            inside[usize::from((train.front - FIRST) / self.sections)] += 1;
+    /// What passes when the trains have moved.
+    fn passing(&self, state: &State, trains: &[Train; TRAINS]) -> Passing<B> {
+        let mut passing = Passing { enters: 0, heard: 0, inside: [0; B] };
+        for (before, after) in state.trains.iter().zip(trains) {
+            if after.front == COMING || after.front < FIRST || after.front > self.beyond() {
+                continue;
+            }
+            let section = after.front - FIRST;
+            if before.front + 1 == after.front && section.is_multiple_of(self.sections) {
+                passing.enters |= 1 << (section / self.sections);
+            }
+            if section < self.all_sections() {
+                passing.heard |= 1 << section;
+                passing.inside[usize::from(section / self.sections)] += 1;
+            }
         }
-        let entries = (0..=Self::blocks()).map(|block| enters(FIRST + self.sections * block));
-        (entries.collect(), heard, inside)
+        passing
     }
 
     /// What checks and detectors may say of it, with the faults of the run.
-    fn commons(&self, state: &State, trains: &[Train; TRAINS]) -> Vec<Common<B>> {
-        let (enters, heard, inside) = self.passing(state, trains);
+    fn commons(&self, state: &State, Passing { enters, heard, inside }: Passing<B>) -> Vec<Common<B>> {
         let counting = state.faults.counting;
         let mut ways: Vec<Common<B>> = counting
-            .present(SectionSet::from_bits(heard))
+            .present(SectionSet::from_bits(heard.into()))
             .into_iter()
             .map(|present| Common { low: [false; B], high: [false; B], present: present.bits(), inside, reset: [None; B] })
             .collect();
         for block in 0..B {
-            let lows: Vec<_> = counting.check_in(enters[block], block).collect();
-            let highs: Vec<_> = counting.check_out(enters[block + 1], block).collect();
+            let lows: Vec<_> = counting.check_in(enters >> block & 1 == 1, block).collect();
+            let highs: Vec<_> = counting.check_out(enters >> (block + 1) & 1 == 1, block).collect();
             ways = ways
                 .iter()
                 .flat_map(|way| lows.iter().map(move |low| (*way, *low)))
@@ -362,7 +401,7 @@ impl<const B: usize> CountedBetween<B> {
         if !held.is_held() || held.may_resume() {
             commands.push(Some(Request::Set(route())));
         }
-        if held.is_held() && self.withdraws {
+        if held.is_held() && (self.withdraws == Withdraws::AtWill || held.phase == Phase::InUse) {
             commands.push(Some(Request::Withdraw(route())));
         }
         let set = if travel == Travel::Away { directions.away } else { directions.toward };
@@ -484,43 +523,42 @@ impl<const B: usize> CountedBetween<B> {
         failed
     }
 
-    /// What has failed in a cycle, and what could have failed without being told from what is right.
-    fn failing(&self, state: &State, cycle: &Cycle<B>) -> (Faults, Faults) {
-        let [sender, receiver] = cycle.outcomes;
-        let lost = cycle.trains.iter().any(|train| train.lost != 0);
-        let mut failed = sender.failed.and(receiver.failed).and(Faults::around(Around::Lost, lost));
-        let (enters, heard, _) = self.passing(state, &cycle.trains);
-        let heads = u8::try_from(heard).expect("few sections");
-        let present = u8::try_from(cycle.common.present).expect("few sections");
-        let detectors = fault::Faults::of_detectors(heads & !present, present & !heads);
-        failed = failed.and(Faults::counting(detectors));
-        let mut hidden = Faults::counting(fault::Faults::of_detectors(!heads, heads));
-        for block in 0..B {
-            let (low, high) = (enters[block], enters[block + 1]);
-            let of = |kind, there: bool| if there { fault::Faults::of_block(kind, block) } else { fault::Faults::NONE };
-            let checks = of(Kind::CheckInLost, low && !cycle.common.low[block])
-                .and(of(Kind::CheckInStuckOn, !low && cycle.common.low[block]))
-                .and(of(Kind::CheckOutLost, high && !cycle.common.high[block]))
-                .and(of(Kind::SpuriousCheckOut, !high && cycle.common.high[block]));
-            failed = failed.and(Faults::counting(checks));
-            hidden = hidden.and(Faults::counting(of(Kind::CheckInStuckOn, low)));
+    /// What has failed in a cycle of what both devices read alike, and what could have failed without being told from what is right.
+    fn failing(&self, trains: &[Train; TRAINS], passing: Passing<B>, common: &Common<B>) -> (Faults, Faults) {
+        if self.often == Often::AtWill {
+            return (Faults::NONE, Faults::NONE);
         }
-        let reported = Self::reported(&cycle.trains);
-        hidden = hidden
+        let Passing { enters, heard, .. } = passing;
+        let present = common.present.to_le_bytes()[0];
+        let mut failed = fault::Faults::of_detectors(heard & !present, present & !heard);
+        let mut hidden = fault::Faults::of_detectors(!heard, heard);
+        for block in 0..B {
+            let (low, high) = (enters >> block & 1 == 1, enters >> (block + 1) & 1 == 1);
+            let of = |kind, there: bool| if there { fault::Faults::of_block(kind, block) } else { fault::Faults::NONE };
+            failed = failed
+                .and(of(Kind::CheckInLost, low && !common.low[block]))
+                .and(of(Kind::CheckInStuckOn, !low && common.low[block]))
+                .and(of(Kind::CheckOutLost, high && !common.high[block]))
+                .and(of(Kind::SpuriousCheckOut, !high && common.high[block]));
+            hidden = hidden.and(of(Kind::CheckInStuckOn, low));
+        }
+        let reported = Self::reported(trains);
+        let lost = trains.iter().any(|train| train.lost != 0);
+        let hidden = Faults::counting(hidden)
             .and(Faults::around(Around::SenderThroat, reported >> THROAT & 1 == 1))
             .and(Faults::around(Around::ReceiverThroat, reported >> self.beyond() & 1 == 1));
-        (failed, hidden)
+        (Faults::counting(failed).and(Faults::around(Around::Lost, lost)), hidden)
     }
 
     /// What may fail after this cycle, and what of it has begun to.
-    fn left(&self, state: &State, cycle: &Cycle<B>) -> (Faults, Faults) {
+    fn left(&self, state: &State, cycle: &Cycle) -> (Faults, Faults) {
         if self.often == Often::AtWill {
             return (state.faults, Faults::NONE);
         }
-        let (failed, hidden) = self.failing(state, cycle);
-        let levels = Faults::levels(self.sections, Self::blocks());
-        let over = failed.without(levels).and(state.begun.without(failed).without(hidden));
-        let begun = state.begun.and(failed.among(levels)).without(over);
+        let [sender, receiver] = cycle.outcomes;
+        let failed = cycle.failed.and(sender.failed).and(receiver.failed);
+        let over = failed.without(self.levels).and(state.begun.without(failed).without(cycle.hidden));
+        let begun = state.begun.and(failed.among(self.levels)).without(over);
         (state.faults.without(over), begun)
     }
 
@@ -608,7 +646,7 @@ impl<const B: usize> CountedBetween<B> {
 
 impl<const B: usize> Subject for CountedBetween<B> {
     type State = State;
-    type Action = Cycle<B>;
+    type Action = Cycle;
 
     fn initial(&self) -> Vec<State> {
         let devices = [SENDER, RECEIVER].map(|station| {
@@ -627,7 +665,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
         self.faults.iter().map(with).collect()
     }
 
-    fn actions(&self, state: &State, cycles: &mut Vec<Cycle<B>>) {
+    fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
         if state.wrong & wrong::MET != 0 {
             return;
         }
@@ -637,7 +675,9 @@ impl<const B: usize> Subject for CountedBetween<B> {
         let starts = [faults.has(Around::SenderStarts), faults.has(Around::ReceiverStarts)];
         for trains in self.ways(state) {
             let reported = Self::reported(&trains);
-            for common in self.commons(state, &trains) {
+            let passing = self.passing(state, &trains);
+            for common in self.commons(state, passing) {
+                let (failed, hidden) = self.failing(&trains, passing, &common);
                 let [one, other] = [SENDER, RECEIVER].map(|station| {
                     self.outcomes(Key {
                         station,
@@ -653,12 +693,12 @@ impl<const B: usize> Subject for CountedBetween<B> {
                     })
                 });
                 let pairs = one.iter().flat_map(|one| other.iter().map(move |other| [*one, *other]));
-                cycles.extend(pairs.map(|outcomes| Cycle { trains, common, outcomes }));
+                cycles.extend(pairs.map(|outcomes| Cycle { trains, failed, hidden, outcomes }));
             }
         }
     }
 
-    fn next(&self, state: &State, cycle: &Cycle<B>) -> Option<State> {
+    fn next(&self, state: &State, cycle: &Cycle) -> Option<State> {
         let living = u8::MAX >> (7 - self.lives.permission);
         let mut trains = cycle.trains;
         let wrong = self.wrong(state, &trains, &cycle.outcomes);
@@ -683,7 +723,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
             sent: (state.sent << 1 | u8::from(receiver.permits)) & living,
             faults,
             begun,
-            restarted: state.restarted || sender.started || receiver.started,
+            restarted: state.restarted || self.purpose == Purpose::Safe && (sender.started || receiver.started),
             wrong,
         })
     }
@@ -770,7 +810,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
 
     /// The run of the sender's interlocking since its last start. The further words of a step: where the trains are, what both devices count, and
     /// what the receiver does.
-    fn trace(&self, path: &[(State, Option<Cycle<B>>)]) -> Trace {
+    fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
         let names = ["platform", "throat", "s1", "s2", "s3", "s4", "s5", "s6"];
         let mut names: Vec<_> = names[..usize::from(self.beyond())].to_vec();
         names.push("beyond");

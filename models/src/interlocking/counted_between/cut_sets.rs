@@ -6,8 +6,7 @@
 use super::{CountedBetween, Cycle, Failure, Faults, State, wrong};
 use crate::check::{Limits, Subject};
 use crate::outcome::CutSet;
-use ahash::{AHashMap, AHashSet};
-use std::collections::hash_map::Entry;
+use ahash::AHashSet;
 use std::time::Instant;
 
 /// Every set of one or two kinds, the smaller first. A pair of one kind is of two places.
@@ -30,54 +29,50 @@ pub fn places(kinds: &[Failure], sections: u8, blocks: u8) -> Vec<Faults> {
     all
 }
 
-/// A path, and what has been searched.
-struct Search<const B: usize> {
-    path: Vec<(State, Option<Cycle<B>>)>,
-}
+/// What has been visited: by which search, and, in a search that goes on, at which place.
+#[derive(Default)]
+struct Visited(AHashSet<State>);
 
-/// Searches from `model`'s initial states, not beyond those that are `safe`. The path to an accident, if there is one; else all that was visited
-/// is safe from now on. `None`: the limits were reached.
+/// Searches from `model`'s initial states, not beyond those that were visited before. The path to an accident, if there is one: then nothing of
+/// this search counts as visited; else all of it is safe from now on. `None`: the limits were reached.
 fn search<const B: usize>(
     model: &CountedBetween<B>,
-    safe: &mut AHashSet<State>,
+    visited: &mut Visited,
     limits: Limits,
     start: Instant,
-) -> Option<Search<B>> {
+) -> Option<Vec<(State, Option<Cycle>)>> {
     let mut states: Vec<(State, usize)> = Vec::new();
-    let mut numbers: AHashMap<State, usize> = AHashMap::new();
     let mut cycles = Vec::new();
     let mut next = 0;
     for state in model.initial() {
-        if !safe.contains(&state) && numbers.insert(state, states.len()).is_none() {
+        if visited.0.insert(state) {
             states.push((state, usize::MAX));
         }
     }
     while let Some((state, _)) = states.get(next).copied() {
-        if safe.len() + next >= limits.states || next.is_multiple_of(1024) && start.elapsed() >= limits.time {
+        if visited.0.len() > limits.states || next.is_multiple_of(1024) && start.elapsed() >= limits.time {
             return None;
         }
         model.actions(&state, &mut cycles);
         for cycle in cycles.drain(..) {
             let Some(after) = model.next(&state, &cycle) else { continue };
-            if safe.contains(&after) {
-                continue;
-            }
-            if let Entry::Vacant(free) = numbers.entry(after) {
-                free.insert(states.len());
+            if visited.0.insert(after) {
                 states.push((after, next));
                 if after.wrong & wrong::MET != 0 {
-                    return Some(Search { path: path(model, &states) });
+                    for (state, _) in &states {
+                        visited.0.remove(state);
+                    }
+                    return Some(path(model, &states));
                 }
             }
         }
         next += 1;
     }
-    safe.extend(states.into_iter().map(|(state, _)| state));
-    Some(Search { path: Vec::new() })
+    Some(Vec::new())
 }
 
 /// The way to the last of these states.
-fn path<const B: usize>(model: &CountedBetween<B>, states: &[(State, usize)]) -> Vec<(State, Option<Cycle<B>>)> {
+fn path<const B: usize>(model: &CountedBetween<B>, states: &[(State, usize)]) -> Vec<(State, Option<Cycle>)> {
     let mut way = Vec::new();
     let mut place = states.len() - 1;
     while place != usize::MAX {
@@ -100,7 +95,7 @@ fn path<const B: usize>(model: &CountedBetween<B>, states: &[(State, usize)]) ->
 /// Every minimal cut set of one or two kinds, each with its shortest trace. `None`: not every state was visited.
 pub(super) fn enumerate<const B: usize>(model: &CountedBetween<B>, limits: Limits) -> Option<Vec<CutSet>> {
     let start = Instant::now();
-    let mut safe = AHashSet::new();
+    let mut visited = Visited::default();
     let mut found: Vec<(Vec<Failure>, CutSet)> = Vec::new();
     for kinds in candidates() {
         let within = |smaller: &[Failure]| smaller.len() < kinds.len() && smaller.iter().all(|kind| kinds.contains(kind));
@@ -109,9 +104,9 @@ pub(super) fn enumerate<const B: usize>(model: &CountedBetween<B>, limits: Limit
         }
         let model = model.with(places(&kinds, model.sections, CountedBetween::<B>::blocks()));
         let t = Instant::now();
-        let search = search(&model, &mut safe, limits, start)?;
-        if std::env::var_os("SHOW").is_some() { eprintln!("{:?} {} safe {} {:?}", kinds.iter().map(|k| k.name()).collect::<Vec<_>>(), search.path.len(), safe.len(), t.elapsed()); }
-        if search.path.is_empty() {
+        let path = search(&model, &mut visited, limits, start)?;
+        if std::env::var_os("SHOW").is_some() { eprintln!("{:?} {} safe {} {:?}", kinds.iter().map(|k| k.name()).collect::<Vec<_>>(), path.len(), visited.0.len(), t.elapsed()); }
+        if path.is_empty() {
             continue;
         }
         let texts: Vec<_> = kinds.iter().map(|kind| kind.text()).collect();
@@ -119,7 +114,7 @@ pub(super) fn enumerate<const B: usize>(model: &CountedBetween<B>, limits: Limit
             faults: kinds.iter().map(|kind| kind.name().to_owned()).collect(),
             text: format!("Two trains are in one place of a counted line between two stations: {}.", texts.join(", and ")),
             excluded_by: excluded_by(&kinds),
-            trace: model.trace(&search.path),
+            trace: model.trace(&path),
         };
         found.push((kinds, cut));
     }

@@ -139,6 +139,11 @@ impl Faults {
         Self { counting: self.counting.without(other.counting), around: self.around & !other.around }
     }
 
+    /// All of it in one number.
+    pub const fn bits(self) -> u64 {
+        (self.counting.bits() as u64) << 8 | self.around as u64
+    }
+
     /// Those of these that are among the others.
     #[must_use]
     pub const fn among(self, other: Self) -> Self {

@@ -35,7 +35,7 @@ pub struct Outcome {
 
 /// What both devices read alike in a cycle, and how many heads each block has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Common<const B: usize> {
+pub(super) struct Common<const B: usize> {
     /// Each block's check at the low end.
     pub low: [bool; B],
     /// Each block's check at the high end.
