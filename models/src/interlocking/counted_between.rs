@@ -160,6 +160,8 @@ pub struct CountedBetween<const B: usize> {
     pub often: Often,
     /// Which routes are withdrawn.
     pub withdraws: Withdraws,
+    /// Whether trains go on along the line without a telegram: a wrong ground, on purpose.
+    pub heedless: bool,
     /// How the devices are put together.
     pub wiring: Wiring,
     /// What the model is there to show.
@@ -189,7 +191,7 @@ impl<const B: usize> CountedBetween<B> {
     /// If the kernel rejects the stations; a test builds every model.
     pub fn new(sections: u8, trains: u8, lives: Lives, faults: Vec<Faults>, purpose: Purpose) -> Self {
         let ends = ends(sections, trains, lives, LOSS);
-        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: Withdraws::AtWill, wiring: Wiring::Right, purpose, resets_together: false, levels: Faults::levels(sections, Self::blocks()), ends, known: Arc::default() }
+        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: Withdraws::AtWill, heedless: false, wiring: Wiring::Right, purpose, resets_together: false, levels: Faults::levels(sections, Self::blocks()), ends, known: Arc::default() }
     }
 
     /// The same with these devices.
@@ -261,7 +263,7 @@ impl<const B: usize> CountedBetween<B> {
             ways.push(Some(Train { rear: train.front, lost, ..train }));
         } else if train.front == self.end() {
             ways.push(None);
-        } else if train.front == self.beyond() || train.since <= self.lives.residual {
+        } else if train.front == self.beyond() || train.since <= self.lives.residual || self.heedless {
             // Its rear stays where the whole train was.
             let lost = train.lost & 2;
             ways.push(Some(Train { front: train.front + 1, since: self.none(), lost, ..train }));
@@ -513,7 +515,6 @@ impl<const B: usize> CountedBetween<B> {
         let starts = if sends { Around::SenderStarts } else { Around::ReceiverStarts };
         let mut failed = Faults::around(starts, started)
             .and(Faults::around(Around::SenderThroat, falsely >> THROAT & 1 == 1))
-            .and(Faults::around(Around::ReceiverThroat, falsely >> self.beyond() & 1 == 1))
             .and(Faults::around(Around::Consent, sends && !started && read.consent != key.newest));
         for block in 0..B {
             if read.blocks[block].reset.is_some_and(|number| number.0 != key.common.inside[block]) {
@@ -565,7 +566,8 @@ impl<const B: usize> CountedBetween<B> {
     /// The circuits that may be reported without a train.
     fn falsely(&self, station: usize, faults: Faults) -> u8 {
         let throat = faults.has(Around::SenderThroat) && station == SENDER;
-        u8::from(throat) << THROAT | u8::from(faults.has(Around::ReceiverThroat)) << self.beyond()
+        let beyond = faults.has(Around::ReceiverThroat) && self.often == Often::AtWill;
+        u8::from(throat) << THROAT | u8::from(beyond) << self.beyond()
     }
 
     /// Whether a permission may be read, and may be missing: of this cycle's permissions, and of those that live.
@@ -673,11 +675,20 @@ impl<const B: usize> Subject for CountedBetween<B> {
         let wrong_reset = std::array::from_fn(|block| faults.counting.has(Kind::WrongReset, block));
         let consents = [self.consents(state), [true, false]];
         let starts = [faults.has(Around::SenderStarts), faults.has(Around::ReceiverStarts)];
-        for trains in self.ways(state) {
-            let reported = Self::reported(&trains);
+        // The circuit beyond the exit is one: where everything fails once, both devices read the same of it.
+        let beyond = 1 << self.beyond();
+        let alike = self.often == Often::Once && faults.has(Around::ReceiverThroat);
+        let may_be = [0, beyond].into_iter().take(1 + usize::from(alike));
+        for (trains, falsely) in self.ways(state).into_iter().flat_map(|way| may_be.clone().map(move |set| (way, set))) {
+            let heard = Self::reported(&trains);
+            if falsely & heard != 0 {
+                continue;
+            }
+            let reported = heard | falsely;
             let passing = self.passing(state, &trains);
             for common in self.commons(state, passing) {
                 let (failed, hidden) = self.failing(&trains, passing, &common);
+                let failed = failed.and(Faults::around(Around::ReceiverThroat, falsely != 0));
                 let [one, other] = [SENDER, RECEIVER].map(|station| {
                     self.outcomes(Key {
                         station,
