@@ -12,6 +12,7 @@ use atc_kernel::time::Ticks;
 
 mod between;
 mod counted;
+mod counted_between;
 mod line;
 mod others;
 mod passing_loop;
@@ -24,6 +25,7 @@ pub(super) fn entries() -> Vec<Entry> {
     entries.extend(line::entries());
     entries.extend(between::entries());
     entries.extend(counted::entries());
+    entries.extend(counted_between::entries());
     entries.extend(wrong::entries());
     entries
 }

@@ -191,13 +191,39 @@ impl<const B: usize> CountedBetween<B> {
     /// If the kernel rejects the stations; a test builds every model.
     pub fn new(sections: u8, trains: u8, lives: Lives, faults: Vec<Faults>, purpose: Purpose) -> Self {
         let ends = ends(sections, trains, lives, LOSS);
-        Self { sections, trains, lives, faults, often: Often::AtWill, withdraws: Withdraws::AtWill, heedless: false, wiring: Wiring::Right, purpose, resets_together: false, levels: Faults::levels(sections, Self::blocks()), ends, known: Arc::default() }
+        Self {
+            sections,
+            trains,
+            lives,
+            faults,
+            often: Often::AtWill,
+            withdraws: Withdraws::AtWill,
+            heedless: false,
+            wiring: Wiring::Right,
+            purpose,
+            resets_together: false,
+            levels: Faults::levels(sections, Self::blocks()),
+            ends,
+            known: Arc::default(),
+        }
     }
 
     /// The same with these devices.
     #[must_use]
     pub fn wired(self, wiring: Wiring) -> Self {
         Self { wiring, known: Arc::default(), ..self }
+    }
+
+    /// The same where everything fails once.
+    #[must_use]
+    pub fn once(self) -> Self {
+        Self { often: Often::Once, ..self }
+    }
+
+    /// The same where only routes in use are withdrawn, and staff reset both devices together.
+    #[must_use]
+    pub fn orderly(self) -> Self {
+        Self { withdraws: Withdraws::InUse, resets_together: true, ..self }
     }
 
     /// The same with these sets of faults.
@@ -347,7 +373,13 @@ impl<const B: usize> CountedBetween<B> {
         let mut ways: Vec<Common<B>> = counting
             .present(SectionSet::from_bits(heard.into()))
             .into_iter()
-            .map(|present| Common { low: [false; B], high: [false; B], present: present.bits(), inside, reset: [None; B] })
+            .map(|present| Common {
+                low: [false; B],
+                high: [false; B],
+                present: present.bits(),
+                inside,
+                reset: [None; B],
+            })
             .collect();
         for block in 0..B {
             let lows: Vec<_> = counting.check_in(enters >> block & 1 == 1, block).collect();
@@ -365,17 +397,25 @@ impl<const B: usize> CountedBetween<B> {
         if self.resets_together {
             for block in 0..B {
                 let resets = |way: &Common<B>| {
-                    let agree = [SENDER, RECEIVER].into_iter().all(|station| self.agrees(station, state.devices[station], way)[block]);
+                    let agree = [SENDER, RECEIVER]
+                        .into_iter()
+                        .all(|station| self.agrees(station, state.devices[station], way)[block]);
                     let right = inside[block];
                     let wrong = counting.has(Kind::WrongReset, block);
-                    let numbers = (0..=self.ends[SENDER].most()).filter(move |number| !agree && (*number == right || wrong));
+                    let numbers =
+                        (0..=self.ends[SENDER].most()).filter(move |number| !agree && (*number == right || wrong));
                     std::iter::once(None).chain(numbers.map(Some)).collect::<Vec<_>>()
                 };
-                ways = ways.iter().flat_map(|way| resets(way).into_iter().map(move |reset| {
-                    let mut way = *way;
-                    way.reset[block] = reset;
-                    way
-                })).collect();
+                ways = ways
+                    .iter()
+                    .flat_map(|way| {
+                        resets(way).into_iter().map(move |reset| {
+                            let mut way = *way;
+                            way.reset[block] = reset;
+                            way
+                        })
+                    })
+                    .collect();
             }
         }
         ways
@@ -418,7 +458,12 @@ impl<const B: usize> CountedBetween<B> {
         std::array::from_fn(|block| {
             let shift = usize::from(self.sections) * block;
             let present = SectionSet::from_bits(common.present >> shift).and(SectionSet::first(self.sections));
-            Detection { low_check: common.low[block], high_check: common.high[block], present, reset: common.reset[block].map(TrainCount) }
+            Detection {
+                low_check: common.low[block],
+                high_check: common.high[block],
+                present,
+                reset: common.reset[block].map(TrainCount),
+            }
         })
     }
 
@@ -448,7 +493,9 @@ impl<const B: usize> CountedBetween<B> {
                 failed,
                 read: 0,
             };
-            let less = |one: &Outcome| Outcome { read: 0, failed: Faults::NONE, ..*one } == Outcome { failed: Faults::NONE, ..outcome };
+            let less = |one: &Outcome| {
+                Outcome { read: 0, failed: Faults::NONE, ..*one } == Outcome { failed: Faults::NONE, ..outcome }
+            };
             let known_already = |one: &Outcome| one.failed == failed || self.often == Often::AtWill;
             if !all.iter().any(|one| less(one) && known_already(one)) {
                 let read = known.take(Taken { read, told: made.told, agree: made.agree });
@@ -581,7 +628,8 @@ impl<const B: usize> CountedBetween<B> {
 
     /// The circuits that report a train of these.
     fn reported(trains: &[Train; TRAINS]) -> u8 {
-        let ends = |train: &Train| [(1, train.front), (2, train.rear)].map(|(end, place)| (train.lost & end == 0, place));
+        let ends =
+            |train: &Train| [(1, train.front), (2, train.rear)].map(|(end, place)| (train.lost & end == 0, place));
         let heard = trains.iter().filter(|train| train.front != COMING).flat_map(ends);
         heard.fold(0, |all, (heard, place)| all | u8::from(heard) << place)
     }
@@ -658,7 +706,8 @@ impl<const B: usize> Subject for CountedBetween<B> {
             self.known().number(made)
         });
         let trains = [Train::coming(self.none()); TRAINS];
-        let state = State { trains, devices, sent: 1, faults: Faults::NONE, begun: Faults::NONE, restarted: false, wrong: 0 };
+        let state =
+            State { trains, devices, sent: 1, faults: Faults::NONE, begun: Faults::NONE, restarted: false, wrong: 0 };
         let with = |faults: &Faults| {
             let mut state: State = state;
             state.faults = *faults;
@@ -679,7 +728,8 @@ impl<const B: usize> Subject for CountedBetween<B> {
         let beyond = 1 << self.beyond();
         let alike = self.often == Often::Once && faults.has(Around::ReceiverThroat);
         let may_be = [0, beyond].into_iter().take(1 + usize::from(alike));
-        for (trains, falsely) in self.ways(state).into_iter().flat_map(|way| may_be.clone().map(move |set| (way, set))) {
+        for (trains, falsely) in self.ways(state).into_iter().flat_map(|way| may_be.clone().map(move |set| (way, set)))
+        {
             let heard = Self::reported(&trains);
             if falsely & heard != 0 {
                 continue;

@@ -7,6 +7,7 @@ use atc_kernel::Machine;
 use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Input, Layout, Positions, Request, RouteId, Rule, State, Travel, movement,
 };
+use atc_models::interlocking::counted_between::{Failure, cut_sets};
 use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
 use atc_models::interlocking::ground::{Ahead, Blade, Heading};
@@ -90,6 +91,7 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
         "line-end-asks",
         "views-of-a-line-meet",
         "start-outlasts-running",
+        "verified-reset",
     ]
     .into();
     let mut excluding = BTreeSet::new();
@@ -101,6 +103,27 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
         }
     }
     assert_eq!(excluding, expected);
+}
+
+/// Of the 13 kinds of fault on a counted line between two stations, these pairs let trains meet, and no other.
+#[test]
+fn the_pairs_of_faults_on_a_counted_line_between_two_stations() {
+    let name = "interlocking-counted-between-pairs";
+    let outcome = outcomes(&[name]).find(|outcome| outcome.model == name).expect("in the catalogue");
+    let cuts = outcome.cut_sets.iter().map(|cut| (cut.faults.join(" and "), cut.excluded_by.join(" ")));
+    let expected = [
+        ("check-in-lost and missed-detection", "check-in-fail-safe"),
+        ("missed-detection and phantom-detection", "independent-detectors"),
+        ("missed-detection and spurious-check-out", "check-out-not-spurious"),
+        ("missed-detection and wrong-reset", "verified-reset"),
+    ];
+    assert_eq!(cuts.collect::<Vec<_>>(), expected.map(|(faults, by)| (faults.to_owned(), by.to_owned())));
+    for cut in &outcome.cut_sets {
+        assert!(outcome.assumptions_lifted.contains(&cut.excluded_by[0]), "{:?}", cut.faults);
+        assert_eq!(cut.trace.steps.last().map(|step| &step.words["hazard"]), Some(&true.into()), "{:?}", cut.faults);
+    }
+    let (kinds, all) = (Failure::all().len(), cut_sets::candidates().len());
+    assert_eq!((kinds, all), (13, 13 + 13 * 14 / 2));
 }
 
 #[test]

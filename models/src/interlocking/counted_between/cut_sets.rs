@@ -29,15 +29,11 @@ pub fn places(kinds: &[Failure], sections: u8, blocks: u8) -> Vec<Faults> {
     all
 }
 
-/// What has been visited: by which search, and, in a search that goes on, at which place.
-#[derive(Default)]
-struct Visited(AHashSet<State>);
-
 /// Searches from `model`'s initial states, not beyond those that were visited before. The path to an accident, if there is one: then nothing of
 /// this search counts as visited; else all of it is safe from now on. `None`: the limits were reached.
 fn search<const B: usize>(
     model: &CountedBetween<B>,
-    visited: &mut Visited,
+    visited: &mut AHashSet<State>,
     limits: Limits,
     start: Instant,
 ) -> Option<Vec<(State, Option<Cycle>)>> {
@@ -45,22 +41,22 @@ fn search<const B: usize>(
     let mut cycles = Vec::new();
     let mut next = 0;
     for state in model.initial() {
-        if visited.0.insert(state) {
+        if visited.insert(state) {
             states.push((state, usize::MAX));
         }
     }
     while let Some((state, _)) = states.get(next).copied() {
-        if visited.0.len() > limits.states || next.is_multiple_of(1024) && start.elapsed() >= limits.time {
+        if visited.len() > limits.states || next.is_multiple_of(1024) && start.elapsed() >= limits.time {
             return None;
         }
         model.actions(&state, &mut cycles);
         for cycle in cycles.drain(..) {
             let Some(after) = model.next(&state, &cycle) else { continue };
-            if visited.0.insert(after) {
+            if visited.insert(after) {
                 states.push((after, next));
                 if after.wrong & wrong::MET != 0 {
                     for (state, _) in &states {
-                        visited.0.remove(state);
+                        visited.remove(state);
                     }
                     return Some(path(model, &states));
                 }
@@ -95,24 +91,26 @@ fn path<const B: usize>(model: &CountedBetween<B>, states: &[(State, usize)]) ->
 /// Every minimal cut set of one or two kinds, each with its shortest trace. `None`: not every state was visited.
 pub(super) fn enumerate<const B: usize>(model: &CountedBetween<B>, limits: Limits) -> Option<Vec<CutSet>> {
     let start = Instant::now();
-    let mut visited = Visited::default();
+    let mut visited = AHashSet::new();
     let mut found: Vec<(Vec<Failure>, CutSet)> = Vec::new();
     for kinds in candidates() {
-        let within = |smaller: &[Failure]| smaller.len() < kinds.len() && smaller.iter().all(|kind| kinds.contains(kind));
+        let within =
+            |smaller: &[Failure]| smaller.len() < kinds.len() && smaller.iter().all(|kind| kinds.contains(kind));
         if found.iter().any(|(smaller, _)| within(smaller)) {
             continue;
         }
         let model = model.with(places(&kinds, model.sections, CountedBetween::<B>::blocks()));
-        let t = Instant::now();
         let path = search(&model, &mut visited, limits, start)?;
-        if std::env::var_os("SHOW").is_some() { eprintln!("{:?} {} safe {} {:?}", kinds.iter().map(|k| k.name()).collect::<Vec<_>>(), path.len(), visited.0.len(), t.elapsed()); }
         if path.is_empty() {
             continue;
         }
         let texts: Vec<_> = kinds.iter().map(|kind| kind.text()).collect();
         let cut = CutSet {
             faults: kinds.iter().map(|kind| kind.name().to_owned()).collect(),
-            text: format!("Two trains are in one place of a counted line between two stations: {}.", texts.join(", and ")),
+            text: format!(
+                "Two trains are in one place of a counted line between two stations: {}.",
+                texts.join(", and ")
+            ),
             excluded_by: excluded_by(&kinds),
             trace: model.trace(&path),
         };

@@ -167,8 +167,7 @@ pub fn ends<const B: usize>(sections: u8, trains: u8, lives: Lives, unheard: u8)
     let segment = |from_the_station: Vec<u8>, throat: u8, outward| {
         let length = u8::try_from(from_the_station.len()).expect("a short segment");
         // The neighbour sees all of it.
-        let mut segment =
-            Segment { length, throat: circuits(1 << throat), outward, shared: length, ..Segment::NONE };
+        let mut segment = Segment { length, throat: circuits(1 << throat), outward, shared: length, ..Segment::NONE };
         for (place, circuit) in segment.circuits.iter_mut().zip(from_the_station) {
             *place = circuits(1 << circuit);
         }
@@ -236,11 +235,8 @@ impl<const B: usize> End<B> {
 
     /// One cycle.
     pub fn step(&self, before: Device<B>, read: Read<B>, wiring: Wiring) -> Made<B> {
-        let heard = if wiring == Wiring::HoldsNothing {
-            read.reported.without(self.counted.beyond())
-        } else {
-            read.reported
-        };
+        let heard =
+            if wiring == Wiring::HoldsNothing { read.reported.without(self.counted.beyond()) } else { read.reported };
         let (line, report, mut occupied) = self.counted.count(before.line, read.blocks, heard);
         occupied = occupied.or(read.reported);
         let agree = report.blocks.map(|block| block.agree);
@@ -295,4 +291,3 @@ impl<const B: usize> End<B> {
         self.counted.line()
     }
 }
-

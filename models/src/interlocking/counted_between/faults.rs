@@ -21,14 +21,8 @@ pub enum Around {
 
 impl Around {
     /// All, in the order of their names.
-    pub const ALL: [Self; 6] = [
-        Self::Consent,
-        Self::Lost,
-        Self::ReceiverStarts,
-        Self::ReceiverThroat,
-        Self::SenderStarts,
-        Self::SenderThroat,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Consent, Self::Lost, Self::ReceiverStarts, Self::ReceiverThroat, Self::SenderStarts, Self::SenderThroat];
 
     const fn bit(self) -> u8 {
         1 << self as u8

@@ -88,7 +88,13 @@ pub(super) struct Known<const B: usize> {
 
 impl<const B: usize> Default for Known<B> {
     fn default() -> Self {
-        Self { devices: Vec::new(), numbers: AHashMap::new(), taken: Vec::new(), outcomes: AHashMap::new(), agreeing: AHashMap::new() }
+        Self {
+            devices: Vec::new(),
+            numbers: AHashMap::new(),
+            taken: Vec::new(),
+            outcomes: AHashMap::new(),
+            agreeing: AHashMap::new(),
+        }
     }
 }
 
