@@ -217,13 +217,13 @@ impl<const B: usize> CountedBetween<B> {
     /// The same where everything fails once.
     #[must_use]
     pub fn once(self) -> Self {
-        Self { often: Often::Once, ..self }
+        Self { often: Often::Once, known: Arc::default(), ..self }
     }
 
     /// The same where only routes in use are withdrawn, and staff reset both devices together.
     #[must_use]
     pub fn orderly(self) -> Self {
-        Self { withdraws: Withdraws::InUse, resets_together: true, ..self }
+        Self { withdraws: Withdraws::InUse, resets_together: true, known: Arc::default(), ..self }
     }
 
     /// The same with these sets of faults.
