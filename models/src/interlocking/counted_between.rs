@@ -59,7 +59,7 @@ impl Train {
     }
 
     /// The places that it is in: a mask.
-    const fn on(&self) -> u8 {
+    const fn on(self) -> u8 {
         if self.front == COMING { 0 } else { 1 << self.front | 1 << self.rear }
     }
 }
@@ -233,8 +233,8 @@ impl<const B: usize> CountedBetween<B> {
     }
 
     /// How many blocks.
-    pub fn blocks() -> u8 {
-        u8::try_from(B).expect("few blocks")
+    pub const fn blocks() -> u8 {
+        B.to_le_bytes()[0]
     }
 
     fn all_sections(&self) -> u8 {
@@ -395,12 +395,11 @@ impl<const B: usize> CountedBetween<B> {
                 .collect();
         }
         if self.resets_together {
-            for block in 0..B {
+            for (block, right) in inside.into_iter().enumerate() {
                 let resets = |way: &Common<B>| {
                     let agree = [SENDER, RECEIVER]
                         .into_iter()
                         .all(|station| self.agrees(station, state.devices[station], way)[block]);
-                    let right = inside[block];
                     let wrong = counting.has(Kind::WrongReset, block);
                     let numbers =
                         (0..=self.ends[SENDER].most()).filter(move |number| !agree && (*number == right || wrong));
@@ -476,17 +475,18 @@ impl<const B: usize> CountedBetween<B> {
         let end = &self.ends[key.station];
         let device = known.device(key.device);
         let mut all: Vec<Outcome> = Vec::new();
+        let signal = 1 << self.before_signal(key.station);
         let mut add = |before: Device<B>, read: Read<B>, started: bool| {
             let failed = self.failed(&key, &read, started);
             let made = end.step(before, read, self.wiring);
             let clear = end.layout.plan().clear;
             let counts = made.device.interlocking.track.clear_for();
             let occupied = (0..8).filter(|place| counts[*place] < clear).fold(0, |all, place| all | 1 << place);
+            let granted = made.granted & !signal | if made.proceed { signal } else { 0 };
             let outcome = Outcome {
                 device: known.number(made.device),
-                proceed: made.proceed,
                 permits: made.permits,
-                granted: made.granted,
+                granted,
                 occupied,
                 unverified: made.permits && !made.device.verified,
                 started,
@@ -634,17 +634,20 @@ impl<const B: usize> CountedBetween<B> {
         heard.fold(0, |all, (heard, place)| all | u8::from(heard) << place)
     }
 
-    /// Whether the next place is granted to a train whose front is there.
+    /// The place in front of the signal of a station.
+    fn before_signal(&self, station: usize) -> u8 {
+        if station == SENDER { PLATFORM } else { self.beyond() - 1 }
+    }
+
+    /// Whether the signal of a station shows proceed.
+    fn proceeds(&self, station: usize, outcome: &Outcome) -> bool {
+        outcome.granted >> self.before_signal(station) & 1 == 1
+    }
+
+    /// Whether the next place is granted to a train whose front is there: by the sender as far as its throat, beyond that by the receiver.
     fn grants(&self, place: u8, [sender, receiver]: &[Outcome; 2]) -> bool {
-        if place == PLATFORM {
-            sender.proceed
-        } else if place == THROAT {
-            sender.granted >> THROAT & 1 == 1
-        } else if place + 1 == self.beyond() {
-            receiver.proceed
-        } else {
-            place < self.beyond() && receiver.granted >> place & 1 == 1
-        }
+        let speaks = if place < FIRST { sender } else { receiver };
+        place < self.beyond() && speaks.granted >> place & 1 == 1
     }
 
     /// What is wrong after this cycle.
@@ -661,19 +664,24 @@ impl<const B: usize> CountedBetween<B> {
         let unreported = under & !(sender.occupied & receiver.occupied) != 0;
         // A train that is still passing the signal is the one for which it showed proceed.
         let past = |place: u8| there().any(|train| train.rear >= place && train.rear <= self.end());
-        let within = |first: u8, last: u8| there().any(|train| (first..=last).contains(&train.rear));
-        let mut proceed = sender.proceed && within(THROAT, THROAT) || receiver.proceed && past(self.beyond());
+        let within = |place: u8| there().any(|train| train.rear == place);
+        let mut proceed =
+            self.proceeds(SENDER, sender) && within(THROAT) || self.proceeds(RECEIVER, receiver) && past(self.beyond());
         for train in there() {
             let next = train.front + 1;
             let granted = train.front < self.beyond() && self.grants(train.front, outcomes);
             proceed |= granted && there().any(|other| other != train && other.on() >> next & 1 == 1);
         }
-        let lets = sender.proceed || there().any(|train| train.front == THROAT) && sender.granted >> THROAT & 1 == 1;
-        u8::from(met) * wrong::MET
-            | u8::from(unreported) * wrong::UNREPORTED
-            | u8::from(proceed) * wrong::PROCEED
-            | u8::from(lets && state.sent == 0) * wrong::NO_CONSENT
-            | u8::from(receiver.unverified) * wrong::UNVERIFIED
+        let lets = self.proceeds(SENDER, sender)
+            || there().any(|train| train.front == THROAT) && sender.granted >> THROAT & 1 == 1;
+        let flags = [
+            (met, wrong::MET),
+            (unreported, wrong::UNREPORTED),
+            (proceed, wrong::PROCEED),
+            (lets && state.sent == 0, wrong::NO_CONSENT),
+            (receiver.unverified, wrong::UNVERIFIED),
+        ];
+        flags.into_iter().filter(|(there, _)| *there).fold(0, |all, (_, flag)| all | flag)
     }
 
     /// The state in which a train is sent anew after a start: the route is held, which no device remembers.
@@ -899,7 +907,7 @@ impl<const B: usize> Subject for CountedBetween<B> {
                 ("faults".to_owned(), json!(before.faults.words())),
                 ("counted_by_the_sender".to_owned(), self.counted(&cycle.outcomes[SENDER])),
                 ("counted_by_the_receiver".to_owned(), self.counted(&cycle.outcomes[RECEIVER])),
-                ("receiver_proceed".to_owned(), json!(cycle.outcomes[RECEIVER].proceed)),
+                ("receiver_proceed".to_owned(), json!(self.proceeds(RECEIVER, &cycle.outcomes[RECEIVER]))),
                 ("receiver_permits".to_owned(), json!(cycle.outcomes[RECEIVER].permits)),
                 ("receiver_starts".to_owned(), json!(cycle.outcomes[RECEIVER].started)),
                 ("hazard".to_owned(), json!(after.wrong & wrong::MET != 0)),

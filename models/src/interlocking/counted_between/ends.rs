@@ -65,7 +65,7 @@ pub struct Device<const B: usize> {
     pub verified: bool,
 }
 
-/// How many cycles a device reads quiet before it is commanded at the beginning, and what each reads.
+/// What a device reads in one cycle.
 #[derive(Clone, Copy, Debug)]
 pub struct Read<const B: usize> {
     /// The blocks.
@@ -151,10 +151,9 @@ pub fn ends<const B: usize>(sections: u8, trains: u8, lives: Lives, unheard: u8)
     let hold = Hold::new(1).expect("a hold");
     let block = Block::new(sections, trains.min(sections), hold, Ticks(1)).expect("a block");
     let mut on = [[None; 16]; B];
-    let mut next = FIRST;
-    for circuit in on.iter_mut().flat_map(|block| block.iter_mut().take(sections.into())) {
-        *circuit = CircuitId::new(next);
-        next += 1;
+    let places = on.iter_mut().flat_map(|block| block.iter_mut().take(sections.into()));
+    for (circuit, number) in places.zip(FIRST..) {
+        *circuit = CircuitId::new(number);
     }
     let join = |travel| Join {
         blocks: [block; B],

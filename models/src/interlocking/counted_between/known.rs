@@ -15,11 +15,9 @@ pub type Number = u32;
 pub struct Outcome {
     /// Its state.
     pub device: Number,
-    /// Its route shows proceed.
-    pub proceed: bool,
     /// It permits the other station to send.
     pub permits: bool,
-    /// The places whose telegram grants the next place: a mask.
+    /// The places from which the next place is granted, by its signal or by a telegram: a mask.
     pub granted: u8,
     /// The circuits that count as occupied: a mask.
     pub occupied: u8,
