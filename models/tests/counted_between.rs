@@ -9,6 +9,7 @@ use atc_models::interlocking::counted_between::{
 };
 use atc_models::{Subject, Verdict};
 use common::outcome;
+use std::collections::HashSet;
 
 const LIVES: Lives = Lives { permission: 1, residual: 1 };
 
@@ -75,6 +76,48 @@ fn what_fails_once_is_found_with_what_fails_at_will() {
     let at_will = failed(model(sets.clone()));
     let once = failed(model(sets).once());
     assert!(once.contains(&"never-met: Failed".to_owned()) && once.iter().all(|it| at_will.contains(it)), "{once:?}");
+}
+
+/// Every state that is reached from these.
+fn reachable(model: &CountedBetween<1>, from: impl IntoIterator<Item = State>) -> HashSet<State> {
+    let mut seen: HashSet<State> = from.into_iter().collect();
+    let mut pending: Vec<State> = seen.iter().copied().collect();
+    let mut cycles = Vec::new();
+    while let Some(state) = pending.pop() {
+        cycles.clear();
+        model.actions(&state, &mut cycles);
+        let after = cycles.iter().filter_map(|cycle| model.next(&state, cycle));
+        pending.extend(after.filter(|after| seen.insert(*after)));
+    }
+    seen
+}
+
+/// Safe, and it costs: when the receiver starts again with a train wholly on the line, nothing that the stations can be commanded lets the train in.
+/// The line has lost its direction, and is given it only when it is clear (ILK-25), although a counted line has no other one (WAY-10).
+#[test]
+fn a_receiver_that_starts_again_does_not_let_in_a_train_that_is_on_the_line() {
+    let model = model(vec![Faults::around(Around::ReceiverStarts, true)]);
+    let (sections, throat) = (2..4, 4);
+    let on_the_line = |state: &State| {
+        let stands = state.trains.iter().any(|train| sections.contains(&train.rear) && sections.contains(&train.front));
+        stands
+            && state
+                .trains
+                .iter()
+                .all(|train| train.since > LIVES.residual && !(throat..=throat + 1).contains(&train.front))
+    };
+    let mut struck = Vec::new();
+    let mut cycles = Vec::new();
+    for state in reachable(&model, model.initial()) {
+        cycles.clear();
+        model.actions(&state, &mut cycles);
+        let starts =
+            cycles.iter().filter(|cycle| cycle.outcomes[1].started).filter_map(|cycle| model.next(&state, cycle));
+        struck.extend(starts.filter(on_the_line).map(|state| State { faults: Faults::NONE, ..state }));
+    }
+    assert!(struck.len() > 100, "{}", struck.len());
+    let after = reachable(&model, struck);
+    assert!(after.iter().all(|state| state.trains.iter().all(|train| train.front != throat)));
 }
 
 /// Numbers that look drawn: the same on every machine.
