@@ -193,7 +193,7 @@ A simulated line:
           [default: 1]
 
       --time <TIME>
-          How long a run is, in seconds of the line [default: 1800; in a campaign 600]
+          How long a run is, in seconds of the line [default: 1800; in a campaign 600; with --rare 180]
 
       --trains <TRAINS>
           How many trains there are [default: as the file says]
