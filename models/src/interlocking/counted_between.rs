@@ -1,7 +1,7 @@
 //! A counted line between two stations, each with the kernel's device, and trains that follow each other from one to the other.
 //!
 //! Both devices read the same checks and detectors, and each counts by itself: block counting, the joint and the interlocking are the kernel's
-//! ([`ends`]). In every cycle each station is commanded anything or nothing. The sender sends while the receiver's permission lives. Trains go by
+//! ([`mod@ends`]). In every cycle each station is commanded anything or nothing. The sender sends while the receiver's permission lives. Trains go by
 //! signals and, on the line, by telegrams; they pass a signal for some cycles after it fell. What may fail is [`Faults`].
 //!
 //! A train is where it is on the ground, never where a device has it.
