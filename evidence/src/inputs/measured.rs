@@ -14,6 +14,7 @@ use super::cargo;
 use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
 use crate::verdict::Verdict;
 use atc_simulation::headline::Headline;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::path::Path;
@@ -170,6 +171,16 @@ pub fn run(root: &Path, folder: &Path, limit: Duration, watch: &dyn Fn(&Path)) -
     }
 }
 
+/// What the simulation wrote into a file of the folder; nothing if it was not measured.
+fn recorded<T: DeserializeOwned>(folder: &Path, file: &str) -> Result<Option<T>, String> {
+    let path = folder.join(file);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    serde_json::from_str(&text).map(Some).map_err(|error| format!("{file} is not what the simulation writes: {error}"))
+}
+
 /// Reads the folder of a run.
 pub fn read(folder: &Path, source: &str) -> Run {
     let path = folder.join("bench.json");
@@ -181,11 +192,11 @@ pub fn read(folder: &Path, source: &str) -> Run {
         Ok(bench) => bench,
         Err(error) => return Run::Failed(format!("bench.json is not what `waveform bench` writes: {error}")),
     };
-    let headline = match line::read(folder) {
+    let headline = match recorded(folder, line::FILE) {
         Ok(headline) => headline,
         Err(error) => return Run::Failed(error),
     };
-    let harm = match harm::read(folder) {
+    let harm = match recorded(folder, harm::FILE) {
         Ok(harm) => harm,
         Err(error) => return Run::Failed(error),
     };

@@ -43,16 +43,6 @@ pub fn measure(folder: &Path) -> Result<(), String> {
     fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// Reads it; nothing if nobody looked.
-pub fn read(folder: &Path) -> Result<Option<Shown>, String> {
-    let path = folder.join(FILE);
-    if !path.exists() {
-        return Ok(None);
-    }
-    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    serde_json::from_str(&text).map(Some).map_err(|error| format!("{FILE} is not what the simulation writes: {error}"))
-}
-
 /// Why the figures contradict each other.
 pub fn contradiction(shown: &Shown) -> Option<String> {
     let more =

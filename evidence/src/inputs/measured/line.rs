@@ -38,16 +38,6 @@ pub fn measure(folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Reads it; nothing if it was not measured.
-pub fn read(folder: &Path) -> Result<Option<Headline>, String> {
-    let path = folder.join(FILE);
-    if !path.exists() {
-        return Ok(None);
-    }
-    let text = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    serde_json::from_str(&text).map(Some).map_err(|error| format!("{FILE} is not what the simulation writes: {error}"))
-}
-
 /// Why the figures contradict each other.
 pub fn contradiction(headline: &Headline) -> Option<String> {
     let more = |row: &&Row| [&row.shortened, &row.conventional].iter().any(|one| one.needless > one.interruptions);

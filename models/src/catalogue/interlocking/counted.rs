@@ -23,15 +23,7 @@ const COUNTING: [&str; 7] = [
     "line-end-asks",
 ];
 
-const BOTH: [&str; ALL.len() + COUNTING.len()] = {
-    let mut all = [""; ALL.len() + COUNTING.len()];
-    let mut place = 0;
-    while place < all.len() {
-        all[place] = if place < ALL.len() { ALL[place] } else { COUNTING[place - ALL.len()] };
-        place += 1;
-    }
-    all
-};
+const BOTH: [&str; ALL.len() + COUNTING.len()] = crate::catalogue::joined(ALL, COUNTING);
 
 const SOUND: Conditions = (&BOTH, &[]);
 const NOT_ASKED: Conditions = (BOTH.split_last().expect("some").1, &["line-end-asks"]);

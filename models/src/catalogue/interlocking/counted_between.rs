@@ -20,15 +20,7 @@ const COUNTING: [&str; 10] = [
     "line-end-asks",
 ];
 
-const BOTH: [&str; ALL.len() + COUNTING.len()] = {
-    let mut all = [""; ALL.len() + COUNTING.len()];
-    let mut place = 0;
-    while place < all.len() {
-        all[place] = if place < ALL.len() { ALL[place] } else { COUNTING[place - ALL.len()] };
-        place += 1;
-    }
-    all
-};
+const BOTH: [&str; ALL.len() + COUNTING.len()] = crate::catalogue::joined(ALL, COUNTING);
 
 /// All but the one at `place`.
 const fn without(place: usize) -> [&'static str; BOTH.len() - 1] {
