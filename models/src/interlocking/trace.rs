@@ -11,7 +11,7 @@ use atc_kernel::interlocking::{
     Positions, Refusal, Request, RouteSet, Segment, SegmentSet, SpeedCode, State as Kernel, Travel,
 };
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The length of a cycle in milliseconds.
 const CYCLE_MS: u32 = 1000;
@@ -123,7 +123,7 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                 json!({"stop": stop, "speed_km_h": speed_km_h(telegram.speed), "open": true, "heading": heading}),
             ))
         });
-        json!({
+        let mut output = json!({
             "routes": phases,
             "proceed": names(output.proceed),
             "drives": positions(output.drives),
@@ -134,7 +134,14 @@ impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a,
                 Ok(()) => json!("accepted"),
                 Err(refusal) => json!({"refused": refused(refusal)}),
             }),
-        })
+        });
+        // Where the neighbour speaks; left out where there is no such circuit.
+        let silent = self.circuits.iter().zip(&telegrams).filter(|(_, telegram)| telegram.is_none());
+        let silent: BTreeSet<_> = silent.map(|(name, _)| *name).collect();
+        if !silent.is_empty() {
+            output["silent"] = json!(silent);
+        }
+        output
     }
 
     /// The plan in the oracle's words.
