@@ -273,7 +273,12 @@ mod tests {
     /// Stations whose plan breaks a rule of engineering, and two neighbours: the oracle runs the trace again, word by word.
     #[test]
     fn accidents_at_stations_are_replayed_and_drawn() {
-        let named = ["interlocking-no-flank", "interlocking-undeclared", "interlocking-line-other-protocol"];
+        let named = [
+            "interlocking-no-flank",
+            "interlocking-undeclared",
+            "interlocking-line-other-protocol",
+            "interlocking-counted-between-not-asked",
+        ];
         let catalogue = atc_models::catalogue();
         let entries = catalogue.iter().filter(|entry| named.contains(&entry.name));
         let outcomes: Vec<_> = entries.map(|entry| atc_models::check(entry, 1)).collect();
