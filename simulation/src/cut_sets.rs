@@ -124,8 +124,8 @@ pub fn all() -> [CutSet; 4] {
         },
         CutSet {
             name: "clears-at-once",
-            happens: "A train is not reported for a moment, and its circuits count as clear at once: what it holds is released under it, and \
-                      it is told the speed of the line over the points.",
+            happens: "A train is not reported for a moment, and its circuits count as clear at once: it is told a speed that is too high for the \
+                      points under it.",
             both: [wrong(Defect::ClearsAtOnce), Cause::from(Kind::ShuntLoss)],
             shape: Shape { tracks: vec![4; 3], blocks: vec![4; 2] },
             campaign: Campaign { trains: 8, ..run(Signal::Codes, 150, 2) },
