@@ -155,8 +155,12 @@ const fn signal(args: &RunArgs) -> Signal {
 }
 
 fn kind(name: &str) -> Result<Kind, String> {
-    let known = || Kind::ALL.map(Kind::name).join(", ");
-    Kind::named(name).ok_or_else(|| format!("there is no such fault; there are {}", known()))
+    let known = |kinds: &[Kind]| kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+    let none = || {
+        let (every, counting) = (known(&Kind::ALL), known(&Kind::COUNTING));
+        format!("there is no such fault; there are {every}; and on a counted line {counting}")
+    };
+    Kind::named(name).ok_or_else(none)
 }
 
 fn defect(name: &str) -> Result<Defect, String> {
@@ -177,13 +181,22 @@ pub struct Done {
     pub is_unsafe: bool,
 }
 
+/// The line of a file; it must be one that can have the faults that are asked for.
+fn read(file: &Path, args: &RunArgs) -> Result<Line, String> {
+    let line = Line::read(file)?;
+    match args.faults.iter().find(|kind| !Kind::of(&line).contains(kind)) {
+        None => Ok(line),
+        Some(kind) => Err(format!("{}: {} needs a line with [[counted]] blocks", file.display(), kind.name())),
+    }
+}
+
 /// Runs what is asked for.
 pub fn run(args: &SimulateArgs) -> Result<Done, String> {
     if args.headline {
         return measure(args);
     }
     let file = args.file.as_ref().ok_or("a line file is needed")?;
-    let line = Line::read(file)?;
+    let line = read(file, &args.run)?;
     let trains = trains(&args.run, &line);
     if let Some(per_hour) = args.rare {
         return rarely(args, &line, (trains, per_hour));
@@ -256,7 +269,7 @@ pub struct Made {
 
 /// Runs a line and films it, second by second.
 pub fn film(file: &Path, args: &RunArgs, each: Option<usize>, title: Option<&str>) -> Result<Made, String> {
-    let line = Line::read(file)?;
+    let line = read(file, args)?;
     let mut world = World::new(&line, setting(args, &line, trains(args, &line), each)?)?;
     let end_ms = u64::from(args.time.unwrap_or(SECONDS)) * 1000;
     let mut film = atc_simulation::film::of(&mut world, end_ms, 1_000)?;
@@ -316,8 +329,8 @@ fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> 
 fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Result<Done, String> {
     let (kinds, defects) = (&args.run.faults, &args.run.defects);
     let causes = match (args.pairs, kinds.is_empty()) {
-        (true, _) => Cause::pairs(),
-        (false, true) => Kind::ALL.map(Cause::from).to_vec(),
+        (true, _) => Cause::pairs(line),
+        (false, true) => Kind::of(line).into_iter().map(Cause::from).collect(),
         (false, false) => kinds.iter().copied().map(Cause::from).collect(),
     };
     let causes = causes.into_iter().map(|cause| Cause { defects: [defects.clone(), cause.defects].concat(), ..cause });

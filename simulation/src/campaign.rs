@@ -25,15 +25,16 @@ pub struct Cause {
 }
 
 impl Cause {
-    /// Every pair of faults, two of one kind among them; every defect alone, with each fault, and with each other.
-    pub fn pairs() -> Vec<Self> {
+    /// Every pair of faults that a line can have, two of one kind among them; every defect alone, with each fault, and with each other.
+    pub fn pairs(line: &Line) -> Vec<Self> {
+        let kinds = Kind::of(line);
         let mut causes = Vec::new();
-        for (number, one) in Kind::ALL.into_iter().enumerate() {
-            causes.extend(Kind::ALL[number..].iter().map(|other| Self { kinds: vec![one, *other], ..Self::default() }));
+        for (number, one) in kinds.iter().copied().enumerate() {
+            causes.extend(kinds[number..].iter().map(|other| Self { kinds: vec![one, *other], ..Self::default() }));
         }
         for (number, one) in Defect::ALL.into_iter().enumerate() {
             let alone = Self { defects: vec![one], ..Self::default() };
-            causes.extend(Kind::ALL.map(|kind| Self { kinds: vec![kind], ..alone.clone() }));
+            causes.extend(kinds.iter().map(|kind| Self { kinds: vec![*kind], ..alone.clone() }));
             causes.extend(
                 Defect::ALL[number + 1..].iter().map(|other| Self { defects: vec![one, *other], ..Self::default() }),
             );

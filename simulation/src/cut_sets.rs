@@ -25,7 +25,7 @@ pub struct CutSet {
     pub happens: &'static str,
     /// The two.
     pub both: [Cause; 2],
-    shape: Shape,
+    line: fn() -> Result<Line, String>,
     campaign: Campaign,
 }
 
@@ -83,9 +83,12 @@ fn wrong(defect: Defect) -> Cause {
     Cause { defects: vec![defect], ..Cause::default() }
 }
 
+fn three_stations() -> Result<Line, String> {
+    Line::generate("Three stations", &Shape::loops(3, 4))
+}
+
 /// The cut sets that are known.
-pub fn all() -> [CutSet; 4] {
-    let three = Shape::loops(3, 4);
+pub fn all() -> [CutSet; 6] {
     let run = |signal, faults, seed| Campaign {
         runs: 1,
         causes: Vec::new(),
@@ -104,7 +107,7 @@ pub fn all() -> [CutSet; 4] {
             happens: "The ground tells codes from which trains do not stop, and the pattern on board is too high as well: a train runs over \
                       the end of the track.",
             both: [wrong(Defect::CodesTooHigh), wrong(Defect::PatternTooHigh)],
-            shape: three.clone(),
+            line: three_stations,
             campaign: run(Signal::Both, 1, 1),
         },
         CutSet {
@@ -112,14 +115,14 @@ pub fn all() -> [CutSet; 4] {
             happens: "The station starts anew and has forgotten what it granted; the train still runs on its telegram, and goes where nobody \
                       has let it.",
             both: [wrong(Defect::TelegramsLiveOn), restart()],
-            shape: three.clone(),
+            line: three_stations,
             campaign: run(Signal::Telegrams, 1, 997),
         },
         CutSet {
             name: "codes-live-on",
             happens: "The station starts anew and is silent; the train still shows the last code, and goes where nobody has let it.",
             both: [wrong(Defect::CodesLiveOn), restart()],
-            shape: three,
+            line: three_stations,
             campaign: run(Signal::Codes, 1, 1366),
         },
         CutSet {
@@ -127,8 +130,24 @@ pub fn all() -> [CutSet; 4] {
             happens: "A train is not reported for a moment, and its circuits count as clear at once: it is told a speed that is too high for the \
                       points under it.",
             both: [wrong(Defect::ClearsAtOnce), Cause::from(Kind::ShuntLoss)],
-            shape: Shape { tracks: vec![4; 3], blocks: vec![4; 2] },
+            line: || Line::generate("Four tracks", &Shape::single(vec![4; 3], vec![4; 2])),
             campaign: Campaign { trains: 8, ..run(Signal::Codes, 150, 2) },
+        },
+        CutSet {
+            name: "not-heard-and-checked-out",
+            happens: "The detectors of a counted line do not hear a train, and a check-out takes it from the count: its section counts as free, and the \
+                      next train is sent there.",
+            both: [Cause::from(Kind::MissedHead), Cause::from(Kind::SpuriousCheckOut)],
+            line: Line::double_track,
+            campaign: Campaign { trains: 8, ..run(Signal::Codes, 20, 46) },
+        },
+        CutSet {
+            name: "not-heard-and-not-checked-in",
+            happens: "A train is neither counted where it enters a counted line nor heard in it: its section counts as free, and the next train is \
+                      sent there.",
+            both: [Cause::from(Kind::MissedHead), Cause::from(Kind::CheckInLost)],
+            line: Line::double_track,
+            campaign: Campaign { trains: 8, ..run(Signal::Telegrams, 20, 49) },
         },
     ]
 }
@@ -152,7 +171,7 @@ impl CutSet {
     /// # Errors
     /// What is wrong with the line; it is tested.
     pub fn show(&self) -> Result<(Row, Page), String> {
-        let line = Line::generate(self.name, &self.shape)?;
+        let line = (self.line)()?;
         let end_ms = u64::from(self.campaign.seconds) * 1000;
         let harm = |world: &World<'_>| -> Result<Option<String>, String> {
             let event: Option<&Event> = world.events.iter().find(|event| event.what.is_unsafe());
@@ -178,38 +197,47 @@ impl CutSet {
     }
 }
 
-/// Runs `runs` times with one fault each on every kind of signal, under drivers who obey nothing, and shows every cut set.
+/// Runs with one fault each under drivers who obey nothing, `each` with each kind of fault, on every kind of signal, and half as many on a line
+/// where trains are counted; and shows every cut set.
 ///
 /// # Errors
 /// What is wrong with a line; they are tested.
-pub fn see(runs: u64) -> Result<(Seen, Vec<Page>), String> {
-    let line = Line::generate("Three stations", &Shape::loops(3, 4))?;
-    let mut singles = Vec::new();
-    for (signal, name) in [(Signal::Codes, "codes"), (Signal::Telegrams, "telegrams"), (Signal::Both, "both")] {
-        let campaign = Campaign {
-            runs,
-            causes: Kind::ALL.map(Cause::from).to_vec(),
-            extent: Extent::Tolerated,
-            faults: 1,
-            trains: 4,
-            seconds: 600,
-            seed: 1,
-            signal,
-            drivers: Drivers::Heedless,
-        };
-        let mut single = Single { signal: name.to_owned(), runs: 0, unsafe_runs: 0, arrivals: 0, first: None };
-        for (cause, outcome) in campaign::run(&line, &campaign, &|_| ())? {
-            single.runs += outcome.runs;
-            single.unsafe_runs += outcome.unsafe_runs;
-            single.arrivals += outcome.arrivals;
-            if let Some((seed, event)) = outcome.first.filter(|_| single.first.is_none()) {
-                let event = serde_json::to_string(&event).map_err(|error| error.to_string())?;
-                single.first = Some(format!("{cause}, seed {seed}: {event}"));
-            }
-        }
-        singles.push(single);
-    }
+pub fn see(each: u64) -> Result<(Seen, Vec<Page>), String> {
+    let (three, double) = (three_stations()?, Line::double_track()?);
+    let singles = [
+        single(&three, "codes", (Signal::Codes, each, 4))?,
+        single(&three, "telegrams", (Signal::Telegrams, each, 4))?,
+        single(&three, "both", (Signal::Both, each, 4))?,
+        single(&double, "both, with counted blocks", (Signal::Both, each.div_ceil(2), 6))?,
+    ];
     let shown: Vec<(Row, Page)> = all().iter().map(CutSet::show).collect::<Result<_, _>>()?;
     let (cut_sets, pages) = shown.into_iter().unzip();
-    Ok((Seen { singles, cut_sets }, pages))
+    Ok((Seen { singles: singles.to_vec(), cut_sets }, pages))
+}
+
+/// Runs of `trains` trains with one fault each, `each` with each kind that the line can have.
+fn single(line: &Line, name: &str, (signal, each, trains): (Signal, u64, usize)) -> Result<Single, String> {
+    let causes: Vec<Cause> = Kind::of(line).into_iter().map(Cause::from).collect();
+    let campaign = Campaign {
+        runs: each * causes.len() as u64,
+        causes,
+        extent: Extent::Tolerated,
+        faults: 1,
+        trains,
+        seconds: 600,
+        seed: 1,
+        signal,
+        drivers: Drivers::Heedless,
+    };
+    let mut single = Single { signal: name.to_owned(), runs: 0, unsafe_runs: 0, arrivals: 0, first: None };
+    for (cause, outcome) in campaign::run(line, &campaign, &|_| ())? {
+        single.runs += outcome.runs;
+        single.unsafe_runs += outcome.unsafe_runs;
+        single.arrivals += outcome.arrivals;
+        if let Some((seed, event)) = outcome.first.filter(|_| single.first.is_none()) {
+            let event = serde_json::to_string(&event).map_err(|error| error.to_string())?;
+            single.first = Some(format!("{cause}, seed {seed}: {event}"));
+        }
+    }
+    Ok(single)
 }

@@ -121,10 +121,9 @@ impl<'a> Dispatcher<'a> {
 
     /// The line that a train bound so runs over from `station`; none at the end.
     fn link(&self, station: usize, bound: Bound) -> Option<usize> {
-        match bound {
-            Bound::West => station.checked_sub(1),
-            Bound::East => (station < self.line.links.len()).then_some(station),
-        }
+        let west = if bound == Bound::West { station.checked_sub(1)? } else { station };
+        let mut links = self.line.links.iter().zip(&self.line.ways);
+        links.position(|(link, ways)| link.west == west && ways[bound.side()])
     }
 
     fn next(station: usize, bound: Bound) -> usize {
@@ -198,7 +197,7 @@ impl<'a> Dispatcher<'a> {
             self.owners[agent.at.0][agent.at.1] = None;
         }
         let there = &line.stations[station].platforms[track];
-        let link = if bound == Bound::East { station - 1 } else { station };
+        let Some(link) = self.link(self.agents[train].at.0, bound) else { return };
         let first = self.sections[link].trains.first() == Some(&train);
         let agent = &mut self.agents[train];
         if !agent.entry_asked && first && line.links[link].circuits.contains(&seen.front) {
@@ -274,11 +273,11 @@ impl<'a> Dispatcher<'a> {
 
     /// What gives a line its direction.
     fn turning(&self, link: usize, bound: Bound) -> VecDeque<Job> {
-        let segments = self.line.links[link].segments;
+        let (segments, west) = (self.line.links[link].segments, self.line.links[link].west);
         let (from, to) = if bound == Bound::East { (0, 1) } else { (1, 0) };
         let job = |side: usize, travel: Travel| {
             let segment = SegmentId::new(u8::try_from(segments[side]).unwrap_or(0)).unwrap_or(SegmentId::ZERO);
-            Job { station: link + side, request: Request::Turn(segment, travel) }
+            Job { station: west + side, request: Request::Turn(segment, travel) }
         };
         VecDeque::from([job(to, Travel::Toward), job(from, Travel::Away)])
     }
@@ -327,8 +326,8 @@ impl<'a> Dispatcher<'a> {
                 agent.again_ms = now_ms + AGAIN_MS;
                 // A device that started anew has forgotten the direction.
                 let forgotten = refusal == Refusal::Direction && matches!(request, Request::Set(_));
-                if let Some((to, _)) = agent.target.filter(|_| forgotten && agent.jobs.len() < 3) {
-                    let link = if bound == Bound::East { to - 1 } else { to };
+                let (at, target) = (agent.at.0, agent.target.filter(|_| forgotten && agent.jobs.len() < 3));
+                if let Some(((to, _), link)) = target.zip(self.link(at, bound)) {
                     let mut jobs = self.turning(link, bound);
                     if station == to {
                         jobs.truncate(1);

@@ -32,10 +32,24 @@ pub enum Kind {
     RestartStation,
     /// The device of a train starts anew.
     RestartTrain,
+    /// The detectors of a counted line do not hear the head of a train.
+    MissedHead,
+    /// A detector of a counted line hears a head that is not there.
+    PhantomHead,
+    /// A check-in misses trains.
+    CheckInLost,
+    /// A check-in is on without a train.
+    CheckInStuckOn,
+    /// A check-out misses trains.
+    CheckOutLost,
+    /// A check-out is on without a train.
+    SpuriousCheckOut,
+    /// Staff reset a block with a wrong number.
+    WrongReset,
 }
 
 impl Kind {
-    /// All of them.
+    /// Those of every line.
     pub const ALL: [Self; 11] = [
         Self::Interruption,
         Self::MisreadCode,
@@ -49,6 +63,23 @@ impl Kind {
         Self::RestartStation,
         Self::RestartTrain,
     ];
+
+    /// Those of a counted line; the models of block counting give the others of their names the same ones.
+    pub const COUNTING: [Self; 7] = [
+        Self::MissedHead,
+        Self::PhantomHead,
+        Self::CheckInLost,
+        Self::CheckInStuckOn,
+        Self::CheckOutLost,
+        Self::SpuriousCheckOut,
+        Self::WrongReset,
+    ];
+
+    /// Those that a line can have.
+    pub fn of(line: &Line) -> Vec<Self> {
+        let counting = if line.counted.is_empty() { &[][..] } else { &Self::COUNTING };
+        [&Self::ALL, counting].concat()
+    }
 
     /// Its name on the command line and in files.
     pub const fn name(self) -> &'static str {
@@ -64,12 +95,19 @@ impl Kind {
             Self::RepeatedCode => "repeated-code",
             Self::RestartStation => "restart-station",
             Self::RestartTrain => "restart-train",
+            Self::MissedHead => "missed-head",
+            Self::PhantomHead => "phantom-head",
+            Self::CheckInLost => "check-in-lost",
+            Self::CheckInStuckOn => "check-in-stuck-on",
+            Self::CheckOutLost => "check-out-lost",
+            Self::SpuriousCheckOut => "spurious-check-out",
+            Self::WrongReset => "wrong-reset",
         }
     }
 
     /// The kind of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
+        Self::ALL.into_iter().chain(Self::COUNTING).find(|kind| kind.name() == name)
     }
 
     /// For how long it lasts, in ms: from, and up to. Without a limit where the line must stand any length.
@@ -78,13 +116,20 @@ impl Kind {
             Self::Interruption => (50, 1_500),
             // Shorter than the operate time of 300 ms.
             Self::MisreadCode => (20, 290),
-            Self::FalseOccupancy => (100, 60_000),
+            Self::FalseOccupancy
+            | Self::MissedHead
+            | Self::PhantomHead
+            | Self::CheckInLost
+            | Self::CheckInStuckOn
+            | Self::CheckOutLost
+            | Self::SpuriousCheckOut => (100, 60_000),
             Self::ShuntLoss | Self::MissedDetection => (100, line.shunt_loss_ms.max(101)),
             Self::LatePoint => (5_000, 60_000),
             Self::LostTelegram => (200, 60_000),
             Self::DelayedTelegram => (200, 20_000),
             Self::RepeatedCode => (100, repeated_ms(line)),
             Self::RestartStation | Self::RestartTrain => (0, 1),
+            Self::WrongReset => (60_000, 300_000),
         };
         match extent {
             Extent::Tolerated => within,

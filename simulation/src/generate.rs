@@ -2,6 +2,9 @@
 //!
 //! Track `t` is two circuits, `tA` in the west and `tB` in the east: the code of the last circuit of a route is stop, so
 //! that a train on codes stops in it, and the circuit before it is there for its rear. Block `i` of line `k` is `Lk-i`.
+//!
+//! With a double track there are two lines between two stations: `LkE-i` are the blocks of the one for trains to the east, `LkW-i` those of the
+//! other. Both meet in a point before the tracks of a station.
 
 use std::fmt::Write as _;
 
@@ -12,6 +15,27 @@ pub struct Shape {
     pub tracks: Vec<usize>,
     /// How many blocks each line between two stations has, 3 to 12: one less than there are stations.
     pub blocks: Vec<usize>,
+    /// Whether there are two lines between two stations, one for each direction.
+    pub double: bool,
+}
+
+/// A line as one of its stations sees it.
+#[derive(Clone, Copy)]
+struct End {
+    /// The number of the line.
+    line: usize,
+    /// `W` or `E`: where it lies.
+    side: char,
+    /// How many blocks it has.
+    blocks: usize,
+}
+
+/// One track of a line: on a single line trains run both ways, otherwise to the east or to the west.
+#[derive(Clone, Copy)]
+struct OneTrack {
+    at: End,
+    /// `E`, `W`, or nothing on a single line.
+    way: &'static str,
 }
 
 const UNPROTECTED: &str = "trains on the tracks obey their signals and are braked by ATC; no vehicle is parked there";
@@ -19,14 +43,24 @@ const UNPROTECTED: &str = "trains on the tracks obey their signals and are brake
 const SHORT: &str = "the code of the last circuit is stop, and it is longer than a train needs that comes into it";
 
 impl Shape {
+    /// Stations of so many tracks each, with single lines of so many blocks between them.
+    pub const fn single(tracks: Vec<usize>, blocks: Vec<usize>) -> Self {
+        Self { tracks, blocks, double: false }
+    }
+
     /// Passing loops of two tracks, `stations` of them, with `blocks` between two.
     pub fn loops(stations: usize, blocks: usize) -> Self {
-        Self { tracks: vec![2; stations], blocks: vec![blocks; stations.saturating_sub(1)] }
+        Self::single(vec![2; stations], vec![blocks; stations.saturating_sub(1)])
     }
 
     /// Four stations of six tracks: 64 circuits, room for 23 trains.
     pub fn large() -> Self {
-        Self { tracks: vec![6; 4], blocks: vec![4, 3, 3] }
+        Self::single(vec![6; 4], vec![4, 3, 3])
+    }
+
+    /// Stations of so many tracks each, with double tracks of so many blocks between them.
+    pub const fn double(tracks: Vec<usize>, blocks: Vec<usize>) -> Self {
+        Self { tracks, blocks, double: true }
     }
 
     /// What is wrong with it; `None` if a line can be made of it.
@@ -61,19 +95,21 @@ impl Shape {
 
     fn write(&self, number: usize, out: &mut String) -> std::fmt::Result {
         let tracks = self.tracks[number];
-        let west = number.checked_sub(1).map(|line| (line, self.blocks[line]));
-        let east = self.blocks.get(number).map(|blocks| (number, *blocks));
+        let west = number.checked_sub(1).map(|line| End { line, side: 'W', blocks: self.blocks[line] });
+        let east = self.blocks.get(number).map(|blocks| End { line: number, side: 'E', blocks: *blocks });
         writeln!(out, "name = \"Station {}\"\nlongest_train_m = 200", number + 1)?;
         writeln!(out, "[times]\ntelegram_age_ms = 2000\n[speed]\nline_kmh = 75\nreverse_kmh = 45")?;
         for (side, line) in [('W', west), ('E', east)] {
-            let Some((line, blocks)) = line else {
+            let Some(line) = line else {
                 for track in 1..=tracks {
                     writeln!(out, "[[end]]\njoint = \"{side}{track}\"\nkind = \"buffer\"")?;
                 }
                 continue;
             };
-            seen(out, side, line, blocks)?;
-            throat(out, side, tracks, &joint(line, if side == 'W' { blocks } else { 0 }))?;
+            let seen = line.tracks(self.double);
+            seen.iter().try_for_each(|track| track.seen(out))?;
+            let joints: Vec<String> = seen.iter().map(OneTrack::near_joint).collect();
+            throat(out, side, tracks, &joints)?;
         }
         for track in 1..=tracks {
             let ends = |side: char| format!("{side}{track}");
@@ -81,58 +117,122 @@ impl Shape {
             circuit(out, &format!("{track}B"), 200, &format!("m{track}"), &ends('E'))?;
             writeln!(out, "[[platform]]\nname = \"Track {track}\"\ncircuits = [\"{track}A\", \"{track}B\"]")?;
             for (side, line) in [('W', west), ('E', east)] {
-                let Some((line, blocks)) = line else { continue };
-                let near = block(line, if side == 'W' { blocks } else { 1 });
+                let Some(line) = line else { continue };
                 let (first, last) = if side == 'W' { ('A', 'B') } else { ('B', 'A') };
-                writeln!(out, "[[route]]\nname = \"{side}-{track}\"\nsignal = \"{side}\"\nentry = \"{near}\"")?;
-                writeln!(
-                    out,
-                    "path = [\"{side}T\", \"{track}{first}\", \"{track}{last}\"]\nshort_overlap = \"{SHORT}\""
-                )?;
-                writeln!(out, "[[route]]\nname = \"{track}-{side}\"\nsignal = \"{track}{side}\"")?;
-                writeln!(out, "entry = \"{track}{first}\"\npath = [\"{side}T\"]")?;
+                for one in line.tracks(self.double) {
+                    if one.arrives() {
+                        let near = one.near();
+                        writeln!(out, "[[route]]\nname = \"{side}-{track}\"\nsignal = \"{side}\"")?;
+                        writeln!(
+                            out,
+                            "entry = \"{near}\"\npath = [\"{side}T\", \"{track}{first}\", \"{track}{last}\"]"
+                        )?;
+                        writeln!(out, "short_overlap = \"{SHORT}\"")?;
+                    }
+                    if one.departs() {
+                        writeln!(out, "[[route]]\nname = \"{track}-{side}\"\nsignal = \"{track}{side}\"")?;
+                        writeln!(out, "entry = \"{track}{first}\"\npath = [\"{side}T\"]")?;
+                        if self.double {
+                            writeln!(out, "to = \"{}\"", one.segment())?;
+                        }
+                    }
+                }
             }
         }
         Ok(())
     }
 }
 
-fn block(line: usize, number: usize) -> String {
-    format!("L{}-{number}", line + 1)
-}
-
-fn joint(line: usize, number: usize) -> String {
-    format!("l{}-{number}", line + 1)
-}
-
 fn circuit(out: &mut String, name: &str, length: u32, left: &str, right: &str) -> std::fmt::Result {
     writeln!(out, "[[circuit]]\nname = \"{name}\"\nlength_m = {length}\nleft = \"{left}\"\nright = \"{right}\"")
 }
 
-/// The blocks that a station sees: all but the one next to its neighbour, and that one's neighbours they share.
-fn seen(out: &mut String, side: char, line: usize, blocks: usize) -> std::fmt::Result {
-    let outward: Vec<usize> = if side == 'W' { (2..=blocks).rev().collect() } else { (1..blocks).collect() };
-    for number in &outward {
-        circuit(out, &block(line, *number), 300, &joint(line, number - 1), &joint(line, *number))?;
+impl End {
+    /// Its tracks: of a double one first that on which trains arrive.
+    fn tracks(self, double: bool) -> Vec<OneTrack> {
+        let ways: &[&str] = match (double, self.side) {
+            (false, _) => &[""],
+            (true, 'W') => &["E", "W"],
+            (true, _) => &["W", "E"],
+        };
+        ways.iter().map(|way| OneTrack { at: self, way }).collect()
     }
-    let far = if side == 'W' { 1 } else { blocks - 1 };
-    writeln!(out, "[[end]]\njoint = \"{}\"\nkind = \"line\"", joint(line, far))?;
-    let names = |numbers: &[usize]| {
-        numbers.iter().map(|number| format!("\"{}\"", block(line, *number))).collect::<Vec<_>>().join(", ")
-    };
-    writeln!(out, "[[segment]]\nname = \"{side}\"\ncircuits = [{}]", names(&outward))?;
-    writeln!(out, "line = \"Line {}\"\nshared = [{}]", line + 1, names(&outward[1..]))
 }
 
-/// The points between the line and the tracks, one behind the other, all in one circuit.
-fn throat(out: &mut String, side: char, tracks: usize, line: &str) -> std::fmt::Result {
+impl OneTrack {
+    fn block(&self, number: usize) -> String {
+        format!("L{}{}-{number}", self.at.line + 1, self.way)
+    }
+
+    fn joint(&self, number: usize) -> String {
+        format!("l{}{}-{number}", self.at.line + 1, self.way)
+    }
+
+    /// Whether trains come from it: they run away from the side where it lies.
+    fn arrives(&self) -> bool {
+        self.way.is_empty() || !self.way.contains(self.at.side)
+    }
+
+    /// Whether trains go out to it.
+    fn departs(&self) -> bool {
+        self.way.is_empty() || self.way.contains(self.at.side)
+    }
+
+    /// The block next to the station.
+    fn near(&self) -> String {
+        self.block(if self.at.side == 'W' { self.at.blocks } else { 1 })
+    }
+
+    /// The joint between it and the station.
+    fn near_joint(&self) -> String {
+        self.joint(if self.at.side == 'W' { self.at.blocks } else { 0 })
+    }
+
+    /// The segment of the station.
+    fn segment(&self) -> String {
+        let space = if self.way.is_empty() { "" } else { " " };
+        format!("{}{space}{}", self.at.side, self.way)
+    }
+
+    /// The blocks that a station sees: all but the one next to its neighbour, and that one's neighbours they share.
+    fn seen(&self, out: &mut String) -> std::fmt::Result {
+        let End { line, side, blocks } = self.at;
+        let outward: Vec<usize> = if side == 'W' { (2..=blocks).rev().collect() } else { (1..blocks).collect() };
+        for number in &outward {
+            circuit(out, &self.block(*number), 300, &self.joint(number - 1), &self.joint(*number))?;
+        }
+        let far = if side == 'W' { 1 } else { blocks - 1 };
+        writeln!(out, "[[end]]\njoint = \"{}\"\nkind = \"line\"", self.joint(far))?;
+        let names = |numbers: &[usize]| {
+            numbers.iter().map(|number| format!("\"{}\"", self.block(*number))).collect::<Vec<_>>().join(", ")
+        };
+        let space = if self.way.is_empty() { "" } else { " " };
+        writeln!(out, "[[segment]]\nname = \"{}\"\ncircuits = [{}]", self.segment(), names(&outward))?;
+        writeln!(out, "line = \"Line {}{space}{}\"\nshared = [{}]", line + 1, self.way, names(&outward[1..]))
+    }
+}
+
+/// The points between the line and the tracks, one behind the other, all in one circuit. Where two lines meet, that on which trains arrive is the
+/// straight one.
+fn throat(out: &mut String, side: char, tracks: usize, lines: &[String]) -> std::fmt::Result {
     writeln!(out, "[[circuit]]\nname = \"{side}T\"\nlength_m = 60")?;
-    for point in 1..tracks {
-        let toe = if point == 1 { line.to_owned() } else { format!("{side}c{point}") };
-        let reverse = if point + 1 == tracks { format!("{side}{tracks}") } else { format!("{side}c{}", point + 1) };
-        writeln!(out, "[[point]]\nname = \"{side}P{point}\"\ncircuit = \"{side}T\"\ntoe = \"{toe}\"")?;
-        writeln!(out, "normal = \"{side}{point}\"\nreverse = \"{reverse}\"")?;
-        writeln!(out, "normal_unprotected = \"{UNPROTECTED}\"\nreverse_unprotected = \"{UNPROTECTED}\"")?;
+    let mut point = |number: usize, toe: &str, normal: &str, reverse: &str| {
+        writeln!(out, "[[point]]\nname = \"{side}P{number}\"\ncircuit = \"{side}T\"\ntoe = \"{toe}\"")?;
+        writeln!(out, "normal = \"{normal}\"\nreverse = \"{reverse}\"")?;
+        writeln!(out, "normal_unprotected = \"{UNPROTECTED}\"\nreverse_unprotected = \"{UNPROTECTED}\"")
+    };
+    let lead = match lines {
+        [arrives, departs] => {
+            let lead = format!("{side}c0");
+            point(0, &lead, arrives, departs)?;
+            lead
+        }
+        _ => lines.concat(),
+    };
+    for number in 1..tracks {
+        let toe = if number == 1 { lead.clone() } else { format!("{side}c{number}") };
+        let reverse = if number + 1 == tracks { format!("{side}{tracks}") } else { format!("{side}c{}", number + 1) };
+        point(number, &toe, &format!("{side}{number}"), &reverse)?;
     }
     Ok(())
 }

@@ -12,6 +12,7 @@ use atc_kernel::interlocking::{
 use atc_kernel::wayside::{Equipment, Framed, Message as Said, Session, Transmission, Wayside, WaysideError};
 use atc_kernel::wayside::{Input as WaysideInput, State as WaysideState};
 
+use crate::counting::{Detections, Disagreeing, MAX_BLOCKS, SILENT};
 use crate::motion::Lie;
 use crate::track::Track;
 
@@ -32,6 +33,10 @@ pub struct Reply {
     pub transmissions: [Option<Transmission>; MAX_CIRCUITS],
     /// What is told to the neighbour at each segment; none without a whole device.
     pub messages: [Option<Said>; MAX_SEGMENTS],
+    /// The circuits that count as occupied because of the counted line alone.
+    pub counted: CircuitSet,
+    /// Whether each block of the counted line agrees with its detectors.
+    pub agree: [bool; MAX_BLOCKS],
 }
 
 impl Reply {
@@ -44,6 +49,8 @@ impl Reply {
         telegrams: [None; MAX_CIRCUITS],
         transmissions: [None; MAX_CIRCUITS],
         messages: [None; MAX_SEGMENTS],
+        counted: CircuitSet::EMPTY,
+        agree: [false; MAX_BLOCKS],
     };
 }
 
@@ -57,6 +64,8 @@ pub struct Heard {
     pub messages: [Option<Said>; MAX_SEGMENTS],
     /// The transmitters that have taken the frames of the last cycle.
     pub framed: Framed,
+    /// The checks and detectors of the counted line.
+    pub blocks: Detections,
 }
 
 /// What a station's device remembers, for pictures.
@@ -134,26 +143,28 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
     }
 }
 
-/// The kernel's whole device for one layout, with its transmitters; no line is counted.
+/// The kernel's whole device for one layout, with its transmitters, and a counted line of `B` blocks, or none.
 #[derive(Clone)]
-pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize> {
+pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> {
     layout: Arc<Layout<R, P, N, S>>,
-    equipment: Equipment<0>,
-    state: Option<WaysideState<0, R, S>>,
+    equipment: Equipment<B>,
+    state: Option<WaysideState<B, R, S>>,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Speaking<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> Speaking<R, P, N, S, B> {
     /// The device, just started.
     ///
     /// # Errors
     /// The rule that the equipment breaks.
-    pub fn new(layout: Arc<Layout<R, P, N, S>>, equipment: Equipment<0>) -> Result<Self, WaysideError> {
+    pub fn new(layout: Arc<Layout<R, P, N, S>>, equipment: Equipment<B>) -> Result<Self, WaysideError> {
         Wayside::new(&layout, &equipment)?;
         Ok(Self { layout, equipment, state: None })
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Speaking<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> Device
+    for Speaking<R, P, N, S, B>
+{
     fn step(&mut self, input: Input, heard: Heard) -> Reply {
         // It was checked when the device was made.
         let Ok(wayside) = Wayside::new(&self.layout, &self.equipment) else { return Reply::SAFE };
@@ -163,9 +174,15 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
             *message = told;
         }
         let Input { occupied, detected, request, orders, .. } = input;
-        let input = WaysideInput { blocks: [], occupied, detected, request, orders, messages, framed: heard.framed };
+        let [nothing, ..] = SILENT;
+        let mut blocks = [nothing; B];
+        for (block, read) in blocks.iter_mut().zip(heard.blocks) {
+            *block = read;
+        }
+        let input = WaysideInput { blocks, occupied, detected, request, orders, messages, framed: heard.framed };
         // The three parts of its step, so that a run can be judged by what the train of each circuit is told.
         let (mut state, reading) = wayside.read(state, input);
+        let counted = reading.input.occupied.without(occupied);
         let (memory, commands) = Combined(&self.layout).step(state.device, reading.input);
         state.device = memory;
         let (state, output) = wayside.send(state, &reading, &commands);
@@ -173,6 +190,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
         let mut messages = [None; MAX_SEGMENTS];
         for (message, told) in messages.iter_mut().zip(output.messages) {
             *message = told;
+        }
+        let mut agree = [false; MAX_BLOCKS];
+        for (agree, block) in agree.iter_mut().zip(output.line.iter().flat_map(|line| &line.blocks)) {
+            *agree = block.agree;
         }
         Reply {
             proceed: output.proceed,
@@ -182,6 +203,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
             telegrams: commands.telegrams,
             transmissions: output.transmissions,
             messages,
+            counted,
+            agree,
         }
     }
 
@@ -269,6 +292,8 @@ pub struct Station {
     consents: Vec<Consent>,
     inbox: VecDeque<Message>,
     unblocked: bool,
+    /// Since when blocks of the counted line disagree.
+    pub disagreeing: Disagreeing,
 }
 
 impl Station {
@@ -283,6 +308,7 @@ impl Station {
             consents: vec![Consent::default(); segments],
             inbox: VecDeque::new(),
             unblocked: false,
+            disagreeing: [None; MAX_BLOCKS],
         }
     }
 
@@ -318,7 +344,7 @@ impl Station {
     pub fn cycle(
         &mut self,
         (now_ms, life_ms): (u64, u64),
-        (occupied, detected): (CircuitSet, Positions),
+        (occupied, detected, blocks): (CircuitSet, Positions, Detections),
         request: Option<Request>,
         stuck: CircuitSet,
     ) {
@@ -327,7 +353,8 @@ impl Station {
                 self.telegrams[number] = *telegram;
             }
         }
-        let mut heard = Heard { messages: [None; MAX_SEGMENTS], framed: Framed { main: self.taken, sub: self.taken } };
+        let framed = Framed { main: self.taken, sub: self.taken };
+        let mut heard = Heard { messages: [None; MAX_SEGMENTS], framed, blocks };
         self.taken = CircuitSet::EMPTY;
         while self.inbox.front().is_some_and(|message| message.arrives_ms <= now_ms) {
             let Some(message) = self.inbox.pop_front() else { break };

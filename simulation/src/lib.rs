@@ -24,6 +24,7 @@
 
 pub mod campaign;
 pub mod charts;
+pub mod counting;
 pub mod cut_sets;
 pub mod defect;
 pub mod diagram;

@@ -1,6 +1,5 @@
 //! A line: the stations in their order, read from a file or made by [`crate::generate`], and joined.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,17 +7,18 @@ use atc_kernel::aspect::AspectId;
 use atc_kernel::interlocking::{Heading, Layout, MAX_CIRCUITS, MAX_CODES};
 use atc_kernel::telegram::{Gradient, SectionId};
 use atc_kernel::time::Ticks;
-use atc_kernel::wayside::{Equipment, Facing, Fixed, Session, SignalPlan};
+use atc_kernel::wayside::{Equipment, Facing, Fixed, Join, Session, SignalPlan};
 use atc_layout::{At, Compiled, Description, border};
 use serde::{Deserialize, Serialize};
 
+use crate::counting::{self, Counted, CountedFile};
 use crate::defect::Defect;
 use crate::fault::consent_life_ms;
 use crate::generate::Shape;
 use crate::ground::{Device, Held, Speaking};
 use crate::motion::{Dynamics, Leg};
 use crate::onboard::words;
-use crate::track::{Link, Track, join};
+use crate::track::{Link, Pair, Track, join};
 
 /// The form of a line file, in TOML.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -32,6 +32,9 @@ pub struct File {
     /// Or stations that are made: how many tracks each has, and how many blocks lie between them.
     #[serde(default)]
     pub generated: Option<Generated>,
+    /// The lines on which trains are counted, each of one direction.
+    #[serde(default)]
+    pub counted: Vec<CountedFile>,
     /// How trains move.
     #[serde(default)]
     pub trains: Dynamics,
@@ -59,6 +62,9 @@ pub struct Generated {
     pub tracks: Vec<usize>,
     /// How many blocks lie between one and the next.
     pub blocks: Vec<usize>,
+    /// Whether there are two lines between two stations, one for each direction.
+    #[serde(default)]
+    pub double: bool,
 }
 
 /// West or east: the direction of a train along the line.
@@ -129,6 +135,10 @@ pub struct Line {
     pub stations: Vec<Place>,
     /// The lines between them.
     pub links: Vec<Link>,
+    /// The directions in which trains run on each: whether to the west, and to the east.
+    pub ways: Vec<[bool; 2]>,
+    /// The lines on which trains are counted.
+    pub counted: Vec<Counted>,
     /// The ground.
     pub track: Track,
     /// How trains move.
@@ -175,15 +185,31 @@ impl Line {
     /// # Errors
     /// What is wrong with the shape.
     pub fn generate(name: &str, shape: &Shape) -> Result<Self, String> {
-        let generated = Generated { tracks: shape.tracks.clone(), blocks: shape.blocks.clone() };
-        Self::of(&File { name: name.to_owned(), generated: Some(generated), ..File::default() }, Vec::new())
+        Self::generate_counted(name, shape, Vec::new())
+    }
+
+    /// Three stations with a double track between them, and trains that are counted on four blocks of the first line to the east.
+    ///
+    /// # Errors
+    /// None; a test makes it.
+    pub fn double_track() -> Result<Self, String> {
+        let blocks = [["L1E-2", "L1E-3"], ["L1E-4", "L1E-5"]].map(|block| block.map(str::to_owned).to_vec());
+        let counted = vec![CountedFile { line: "Line 1 E".to_owned(), blocks: blocks.to_vec() }];
+        Self::generate_counted("Double track", &Shape::double(vec![4; 3], vec![7, 4]), counted)
+    }
+
+    fn generate_counted(name: &str, shape: &Shape, counted: Vec<CountedFile>) -> Result<Self, String> {
+        let Shape { tracks, blocks, double } = shape.clone();
+        let generated = Some(Generated { tracks, blocks, double });
+        Self::of(&File { name: name.to_owned(), generated, counted, ..File::default() }, Vec::new())
     }
 
     fn of(file: &File, mut layouts: Vec<Description>) -> Result<Self, String> {
         match (&file.generated, layouts.len()) {
             (Some(_), 1..) => return Err("give [[station]] or [generated], not both".to_owned()),
             (Some(generated), 0) => {
-                let shape = Shape { tracks: generated.tracks.clone(), blocks: generated.blocks.clone() };
+                let Generated { tracks, blocks, double } = generated.clone();
+                let shape = Shape { tracks, blocks, double };
                 if let Some(wrong) = shape.wrong() {
                     return Err(wrong);
                 }
@@ -226,10 +252,15 @@ impl Line {
             residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
             limits: Vec::new(),
             stations: Vec::new(),
+            ways: links.iter().map(|link| ways(link, &compiled)).collect(),
+            counted: Vec::new(),
             links,
             track,
         };
-        line.checked()?.with_stations(layouts, compiled)
+        let mut line = line.checked()?.with_stations(layouts, compiled)?;
+        line.counted = file.counted.iter().map(|one| counting::of(&line, one)).collect::<Result<_, _>>()?;
+        counting::check(&line)?;
+        Ok(line)
     }
 
     fn checked(self) -> Result<Self, String> {
@@ -260,17 +291,18 @@ impl Line {
                 circuits.into_iter().map(|circuit| self.track.sites[number].circuits[circuit]).collect()
             };
             let paths: Vec<Vec<usize>> = model.routes.iter().map(|route| global(route.circuits().collect())).collect();
-            let lines = [
-                number.checked_sub(1).map(|west| self.links[west].segments[1]),
-                self.links.get(number).map(|link| link.segments[0]),
-            ];
-            let platforms = self.platforms(number, model, lines, &paths);
+            let its = |side: usize| {
+                let here = move |link: &&Link| link.west + 1 == number + side;
+                self.links.iter().filter(here).map(move |link| link.segments[1 - side]).collect::<Vec<_>>()
+            };
+            let lines = [its(0), its(1)];
+            let platforms = self.platforms(number, model, &lines, &paths);
             for side in [Bound::West, Bound::East] {
                 let through = |platform: &Platform| {
-                    let from = if lines[side.other().side()].is_some() { side.other() } else { side };
+                    let from = if lines[side.other().side()].is_empty() { side } else { side.other() };
                     platform.arrive[from.side()].is_some() && platform.depart[side.side()].is_some()
                 };
-                if lines[side.side()].is_some() && !platforms.iter().any(through) {
+                if !lines[side.side()].is_empty() && !platforms.iter().any(through) {
                     return Err(format!(
                         "{}: no track is reached by one route from the line and left by one to the {side:?}",
                         compiled.names.station
@@ -287,7 +319,7 @@ impl Line {
         &self,
         number: usize,
         model: &atc_layout::model::Model,
-        lines: [Option<usize>; 2],
+        lines: &[Vec<usize>; 2],
         paths: &[Vec<usize>],
     ) -> Vec<Platform> {
         let track = &self.track;
@@ -298,7 +330,9 @@ impl Line {
         let mut platforms: Vec<Platform> = Vec::new();
         for (route, path) in model.routes.iter().zip(paths).enumerate().map(|(number, (_, path))| (number, path)) {
             let from = model.routes[route].from;
-            let Some(side) = (0..2).find(|side| from.is_some() && lines[*side] == from) else { continue };
+            let Some(side) = (0..2).find(|side| from.is_some_and(|from| lines[*side].contains(&from))) else {
+                continue;
+            };
             let mut circuits: Vec<usize> =
                 path.iter().rev().copied().take_while(|circuit| plain(circuit).is_some()).collect();
             let pieces: Vec<usize> = circuits.iter().filter_map(plain).collect();
@@ -332,7 +366,9 @@ impl Line {
             platforms[at].arrive[side] = Some(route);
         }
         for (number_of_route, route) in model.routes.iter().enumerate() {
-            let Some(side) = (0..2).find(|side| route.to.is_some() && lines[*side] == route.to) else { continue };
+            let Some(side) = (0..2).find(|side| route.to.is_some_and(|to| lines[*side].contains(&to))) else {
+                continue;
+            };
             let entry = track.sites[number].circuits[route.entry];
             if let Some(platform) = platforms.iter_mut().find(|platform| platform.circuits.contains(&entry)) {
                 platform.depart[side] = Some(number_of_route);
@@ -346,10 +382,19 @@ impl Line {
     /// # Errors
     /// What the kernel says of the layout; it was checked when it was compiled.
     pub fn device(&self, station: usize, telegrams: bool, defects: &[Defect]) -> Result<Box<dyn Device>, String> {
-        let equipment = if telegrams { Some(self.equipment(station)?) } else { None };
+        let counted = counting::at(self, station);
+        // Devices with messages understand each other only.
+        let equipment = if telegrams || !self.counted.is_empty() { Some(self.equipment(station)?) } else { None };
         let made = (&self.stations[station].description, defects, equipment.as_ref());
-        let few = sized::<8, 4, 2, 2>(made).or_else(|_| sized::<24, 4, 10, 2>(made));
-        few.or_else(|_| sized::<64, 16, 32, 8>(made))
+        if let Some(counted) = counted {
+            return if counted.blocks.len() == 1 {
+                sized::<24, 12, 12, 4, 1>(made, Some(counted.join(self, station)?))
+            } else {
+                sized::<24, 12, 12, 4, 2>(made, Some(counted.join(self, station)?))
+            };
+        }
+        let few = sized::<8, 4, 2, 2, 0>(made, None).or_else(|_| sized::<24, 4, 10, 2, 0>(made, None));
+        few.or_else(|_| sized::<64, 16, 32, 8, 0>(made, None))
     }
 
     /// What a station's device has besides its layout, where trains run on telegrams. A circuit has one number in all stations.
@@ -419,8 +464,9 @@ impl Line {
     }
 }
 
-fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
+fn sized<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize>(
     (description, defects, equipment): (&Description, &[Defect], Option<&Equipment<0>>),
+    counted: Option<Join<B>>,
 ) -> Result<Box<dyn Device>, String> {
     let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
     let mut plan = compiled.plan;
@@ -432,33 +478,37 @@ fn sized<const R: usize, const P: usize, const N: usize, const S: usize>(
     let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
     let layout = Arc::new(layout);
     let Some(equipment) = equipment else { return Ok(Box::new(Held::new(layout))) };
-    let speaking = Speaking::new(layout, *equipment);
+    let Equipment { signals, life, session, .. } = *equipment;
+    let speaking = Speaking::new(layout, Equipment { counted, signals, life, session });
     Ok(Box::new(speaking.map_err(|broken| format!("{}: {broken:?}", compiled.names.station))?))
 }
 
-/// The segments by which each station and the next are joined.
-fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<[usize; 2]>, String> {
+/// The segments by which each station and the next are joined: one pair for each line that both name.
+fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<Pair>, String> {
     let mut pairs = Vec::new();
     for west in 0..layouts.len().saturating_sub(1) {
         let (one, other) = (&compiled[west].model, &compiled[west + 1].model);
         border::compare((&layouts[west], one), (&layouts[west + 1], other)).map_err(|errors| errors.to_string())?;
-        let named = |model: &atc_layout::model::Model| -> BTreeSet<String> {
-            model.segments.iter().filter_map(|segment| segment.line.clone()).collect()
-        };
-        let common: Vec<String> = named(one).intersection(&named(other)).cloned().collect();
-        let [line] = common.as_slice() else {
+        let before = pairs.len();
+        for (number, segment) in one.segments.iter().enumerate() {
+            let there = other.segments.iter().position(|its| its.line.is_some() && its.line == segment.line);
+            pairs.extend(there.map(|there| Pair { west, segments: [number, there] }));
+        }
+        if !(1..=2).contains(&(pairs.len() - before)) {
             let names = (&compiled[west].names.station, &compiled[west + 1].names.station);
-            return Err(format!(
-                "{} and {} name {} lines in common; one is possible here",
-                names.0,
-                names.1,
-                common.len()
-            ));
-        };
-        let find = |model: &atc_layout::model::Model| {
-            model.segments.iter().position(|segment| segment.line.as_ref() == Some(line)).unwrap_or(0)
-        };
-        pairs.push([find(one), find(other)]);
+            let common = pairs.len() - before;
+            return Err(format!("{} and {} name {common} lines in common; 1 or 2 are possible here", names.0, names.1));
+        }
     }
     Ok(pairs)
+}
+
+/// Whether trains run to the west on a line, and to the east: there is a route out to it at one end, and one in from it at the other.
+fn ways(link: &Link, compiled: &[Compiled]) -> [bool; 2] {
+    let routes = |side: usize| &compiled[link.west + side].model.routes;
+    let run = |from: usize| {
+        let out = routes(from).iter().any(|route| route.to == Some(link.segments[from]));
+        out && routes(1 - from).iter().any(|route| route.from == Some(link.segments[1 - from]))
+    };
+    [run(1), run(0)]
 }

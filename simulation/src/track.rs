@@ -69,9 +69,20 @@ pub struct Track {
     pub sites: Vec<Site>,
 }
 
+/// The segments by which a station and the next one to the east are joined: a line, of which there may be several between two stations.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    /// The western station.
+    pub west: usize,
+    /// The segment of the western station, and of the eastern one.
+    pub segments: [usize; 2],
+}
+
 /// A line between station `west` and the next: the segments of both, and the circuits from west to east.
 #[derive(Clone, Debug)]
 pub struct Link {
+    /// The western station.
+    pub west: usize,
     /// The segment of the western station, and of the eastern one.
     pub segments: [usize; 2],
     /// The circuits on the ground, from west to east.
@@ -108,11 +119,11 @@ fn along(model: &Model, segment: usize) -> Result<Vec<usize>, String> {
     Ok(joints)
 }
 
-/// The tracks of stations in their order from west to east, and the lines between them: the segments of each pair.
+/// The tracks of stations in their order from west to east, and the lines between them: those of each pair of segments, in the order of `pairs`.
 ///
 /// # Errors
 /// What cannot be joined, in a sentence.
-pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, Vec<Link>), String> {
+pub fn join(models: &[(&str, &Model)], pairs: &[Pair]) -> Result<(Track, Vec<Link>), String> {
     let mut track = Track::default();
     let bases: Vec<usize> = models
         .iter()
@@ -127,7 +138,7 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
     // For each station the circuits that are those of the station before.
     let mut known: Vec<Vec<Option<usize>>> = models.iter().map(|(_, model)| vec![None; model.circuits.len()]).collect();
     let mut shared = Vec::new();
-    for (west, [segment, segment_there]) in pairs.iter().copied().enumerate() {
+    for Pair { west, segments: [segment, segment_there] } in pairs.iter().copied() {
         let (model, there) = (models[west].1, models[west + 1].1);
         let (joints, joints_there) = (along(model, segment)?, along(there, segment_there)?);
         let (here, its) = (&model.segments[segment], &there.segments[segment_there]);
@@ -149,13 +160,14 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
     };
     let mut links = Vec::new();
     for (station, (name, model)) in models.iter().enumerate() {
-        if let Some([segment, segment_there]) = station.checked_sub(1).map(|west| pairs[west]) {
-            let (before, its) = (models[station - 1].1, &model.segments[segment_there]);
-            let west = &before.segments[segment];
-            for place in 0..shared[station - 1] {
-                let circuit = west.circuits[west.circuits.len() - shared[station - 1] + place];
+        let from_the_west = |(pair, _): &(&Pair, &usize)| pair.west + 1 == station;
+        let joined: Vec<_> = pairs.iter().zip(&shared).filter(from_the_west).collect();
+        for (Pair { west, segments: [segment, segment_there] }, shared) in joined.iter().copied() {
+            let (before, its) = (&models[*west].1.segments[*segment], &model.segments[*segment_there]);
+            for place in 0..*shared {
+                let circuit = before.circuits[before.circuits.len() - shared + place];
                 let own = its.circuits[its.circuits.len() - 1 - place];
-                known[station][own] = Some(track.sites[station - 1].circuits[circuit]);
+                known[station][own] = Some(track.sites[*west].circuits[circuit]);
             }
         }
         let mut site = Site::default();
@@ -173,16 +185,13 @@ pub fn join(models: &[(&str, &Model)], pairs: &[[usize; 2]]) -> Result<(Track, V
             track.points.push(Point { name: format!("{name} {}", point.name), throw_ms: point.throw_ms });
         }
         lay(&mut track, &mut site, (model, &known[station]), |joint, track| number(bases[station] + joint, track));
-        if let Some([segment, segment_there]) = station.checked_sub(1).map(|west| pairs[west]) {
-            let (before, its) = (models[station - 1].1, &model.segments[segment_there]);
-            let mut circuits: Vec<usize> = before.segments[segment]
-                .circuits
-                .iter()
-                .map(|circuit| track.sites[station - 1].circuits[*circuit])
-                .collect();
-            let own = its.circuits.len() - shared[station - 1];
+        for (Pair { west, segments: [segment, segment_there] }, shared) in joined.iter().copied() {
+            let (before, its) = (&models[*west].1.segments[*segment], &model.segments[*segment_there]);
+            let mut circuits: Vec<usize> =
+                before.circuits.iter().map(|circuit| track.sites[*west].circuits[*circuit]).collect();
+            let own = its.circuits.len() - shared;
             circuits.extend(its.circuits[..own].iter().rev().map(|circuit| site.circuits[*circuit]));
-            links.push(Link { segments: [segment, segment_there], circuits });
+            links.push(Link { west: *west, segments: [*segment, *segment_there], circuits });
         }
         track.sites.push(site);
     }

@@ -4,6 +4,7 @@ use atc_kernel::interlocking::{CircuitSet, Positions, RouteSet, SegmentSet};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use crate::counting;
 use crate::defect::Defect;
 use crate::dispatcher::{Dispatcher, Seen};
 use crate::driver::Drivers;
@@ -149,7 +150,7 @@ impl<'a> World<'a> {
             rival,
             reported: vec![false; line.track.circuits.len()],
             unheard_ms: vec![0; line.track.circuits.len()],
-            kinds: Kind::ALL.into_iter().filter(|kind| setting.faults.iter().any(|it| it.kind == *kind)).collect(),
+            kinds: Kind::of(line).into_iter().filter(|kind| setting.faults.iter().any(|it| it.kind == *kind)).collect(),
             longest_ms: setting.faults.iter().map(|it| it.lasts_ms).fold(0.0, f64::max),
             setting,
             begun: 0,
@@ -256,10 +257,18 @@ impl<'a> World<'a> {
             let (trains, stations) = (self.trains.len(), self.stations.len());
             let train = |which: usize| format!("train {}", which % trains);
             let at = match fault.kind {
-                Kind::Interruption | Kind::MisreadCode | Kind::ShuntLoss | Kind::MissedDetection => train(fault.which),
+                Kind::Interruption | Kind::MisreadCode | Kind::ShuntLoss | Kind::MissedDetection | Kind::MissedHead => {
+                    train(fault.which)
+                }
                 Kind::FalseOccupancy | Kind::RepeatedCode => {
                     self.line.track.circuits[fault.which % self.line.track.circuits.len()].name.clone()
                 }
+                Kind::PhantomHead => counting::section(self.line, fault.which),
+                Kind::CheckInLost
+                | Kind::CheckInStuckOn
+                | Kind::CheckOutLost
+                | Kind::SpuriousCheckOut
+                | Kind::WrongReset => counting::block(self.line, fault.which),
                 Kind::LatePoint => self.line.track.points[fault.which % self.line.track.points.len()].name.clone(),
                 Kind::LostTelegram | Kind::DelayedTelegram => self.line.stations[fault.which % stations].name.clone(),
                 Kind::RestartStation => {
@@ -280,7 +289,8 @@ impl<'a> World<'a> {
 
     /// What is reported occupied, on the whole line.
     fn report(&self) -> Vec<bool> {
-        let mut reported: Vec<bool> = self.on_circuit.iter().map(|trains| *trains > 0).collect();
+        let own = |(circuit, trains): (usize, &u16)| *trains > 0 && !counting::is_counted(self.line, circuit);
+        let mut reported: Vec<bool> = self.on_circuit.iter().enumerate().map(own).collect();
         let (track, length) = (&self.line.track, f64::from(self.line.cycle_ms));
         let mut hide = |fault: &Fault| {
             let train = &self.trains[fault.which % self.trains.len()];
@@ -303,8 +313,8 @@ impl<'a> World<'a> {
             self.faults(kind, length).for_each(&mut hide);
         }
         for fault in self.faults(Kind::FalseOccupancy, length) {
-            let circuits = reported.len();
-            reported[fault.which % circuits] = true;
+            let circuit = fault.which % reported.len();
+            reported[circuit] |= !counting::is_counted(self.line, circuit);
         }
         reported
     }
@@ -313,9 +323,9 @@ impl<'a> World<'a> {
     fn cycle(&mut self) {
         let line = self.line;
         let length = f64::from(line.cycle_ms);
-        let reported = self.report();
+        let mut reported = self.report();
         for (circuit, ms) in self.unheard_ms.iter_mut().enumerate() {
-            let unheard = self.on_circuit[circuit] > 0 && !reported[circuit];
+            let unheard = self.on_circuit[circuit] > 0 && !reported[circuit] && !counting::is_counted(line, circuit);
             *ms = if unheard { ms.saturating_add(line.cycle_ms) } else { 0 };
         }
         let track = &line.track;
@@ -352,13 +362,21 @@ impl<'a> World<'a> {
                 frozen = frozen.or(CircuitSet::nth(number).only_if(stuck.contains(circuit)));
             }
             let times = (self.now_ms, u64::from(consent_life_ms(line)));
-            self.stations[station].cycle(times, (occupied, detected), request, frozen);
+            let (agree, mut since) = (self.stations[station].reply.agree, self.stations[station].disagreeing);
+            let blocks = counting::read(self, station, agree, &mut since);
+            self.stations[station].disagreeing = since;
+            self.stations[station].cycle(times, (occupied, detected, blocks), request, frozen);
             let answer = self.stations[station].reply.answer;
             if let Some(route) = self.dispatcher.answered(self.now_ms, station, answer) {
                 let place = &line.stations[station];
                 told.push(What::Set { station: place.name.clone(), route: place.compiled.names.routes[route].clone() });
             }
             self.signals(station, &mut told);
+        }
+        for (station, site) in self.stations.iter().zip(&track.sites) {
+            for (number, circuit) in site.circuits.iter().enumerate() {
+                reported[*circuit] |= station.reply.counted.meets(CircuitSet::nth(number));
+            }
         }
         self.reported = reported;
         self.exchange();
@@ -413,9 +431,9 @@ impl<'a> World<'a> {
     /// The telegrams between the stations.
     fn exchange(&mut self) {
         let length = f64::from(self.line.cycle_ms);
-        for (link, joined) in self.line.links.iter().enumerate() {
+        for joined in &self.line.links {
             for (from, to) in [(0, 1), (1, 0)] {
-                let (sender, receiver) = (link + from, link + to);
+                let (sender, receiver) = (joined.west + from, joined.west + to);
                 let stations = self.stations.len();
                 let lost = self.faults(Kind::LostTelegram, length).any(|fault| fault.which % stations == receiver);
                 let mut delays = self.faults(Kind::DelayedTelegram, length);

@@ -14,7 +14,7 @@ use atc_simulation::world::{Setting, World};
 
 /// Four tracks a station, so that trains follow each other on the line.
 fn line() -> Line {
-    Line::generate("Four tracks", &Shape { tracks: vec![4; 3], blocks: vec![4; 2] }).expect("a line")
+    Line::generate("Four tracks", &Shape::single(vec![4; 3], vec![4; 2])).expect("a line")
 }
 
 fn campaign(runs: u64, kinds: &[Kind], extent: Extent) -> Campaign {

@@ -136,6 +136,7 @@ fn what_cannot_be_run_is_said_and_nothing_is_written() {
         (vec![line, "--profile", "4"], 1, "--profile 4: the trains are 0 to 3"),
         (vec![line, "--campaign", "1", "--time", "60"], 1, "more than 60 s"),
         (vec![line, "--faults", "rain"], 2, "there is no such fault"),
+        (vec![line, "--faults", "missed-head"], 1, "missed-head needs a line with [[counted]] blocks"),
         (vec![], 2, "LINE.toml"),
     ] {
         let arguments: Vec<&str> = [arguments.as_slice(), &["-o", "out"]].concat();

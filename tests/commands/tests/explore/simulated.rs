@@ -19,7 +19,7 @@ fn setting(trains: usize, faults: Vec<atc_simulation::fault::Fault>, seed: u64) 
 #[allow(clippy::cast_precision_loss, reason = "distances on a line")]
 #[test]
 fn the_last_frame_is_the_world() {
-    let line = Line::generate("Three", &Shape { tracks: vec![2; 3], blocks: vec![4; 2] }).expect("a line");
+    let line = Line::generate("Three", &Shape::single(vec![2; 3], vec![4; 2])).expect("a line");
     for end_ms in [90_000, 200_000, 333_000] {
         let mut world = World::new(&line, setting(4, Vec::new(), 1)).expect("a world");
         let film = film::of(&mut world, end_ms, 1_000).expect("a film");
@@ -67,7 +67,7 @@ fn the_last_frame_is_the_world() {
 /// An old rule (a circuit is clear as soon as it is reported clear) leads to an accident: its film ends with it.
 #[test]
 fn an_accident_is_the_end_of_its_film() {
-    let line = Line::generate("Four", &Shape { tracks: vec![4; 3], blocks: vec![4; 2] }).expect("a line");
+    let line = Line::generate("Four", &Shape::single(vec![4; 3], vec![4; 2])).expect("a line");
     let campaign = Campaign {
         runs: 8,
         causes: vec![Cause { defects: vec![Defect::ClearsAtOnce], kinds: vec![Kind::ShuntLoss] }],
