@@ -480,14 +480,15 @@ static const char *drive(int p) {
 }
 
 static const char *turn_toward(int s) {
-    bool in = false, out = false, clear = !(line_and_throat(s) & now.occupied);
+    bool in = false, out = false, one_way = now.travel[s] == NEITHER, clear = !(line_and_throat(s) & now.occupied);
     for (int r = 0; r < plan.routes; r++) {
         in = in || plan.route[r].from == s;
         out = out || (plan.route[r].to == s && (now.route[r].phase != IDLE || (running & one(r))));
+        one_way = one_way && plan.route[r].to != s;
     }
     if (line_blocked(s)) return "blocked";
     if (now.travel[s] == TOWARD) return NULL;
-    if (out || !in || (!clear && now.before[s] != TOWARD && !FAULTY(18))) return "direction";
+    if (out || !in || (!clear && now.before[s] != TOWARD && !one_way && !FAULTY(18))) return "direction";
     now.travel[s] = now.before[s] = TOWARD;
     return NULL;
 }

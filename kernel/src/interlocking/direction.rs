@@ -104,9 +104,10 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
     (occupied, closed, needs, consent): (CircuitSet, SegmentSet, Needs, SegmentSet),
 ) -> (Directions<S>, Option<Turned>) {
     let mut answer = None;
-    let mut entered = SegmentSet::EMPTY;
+    let (mut entered, mut left) = (SegmentSet::EMPTY, directions.away);
     for route in &layout.plan().routes {
         entered = entered.or(route.from.only_if(route.exists()));
+        left = left.or(route.to.only_if(route.exists()));
     }
     for (number, segment) in layout.plan().segments.iter().enumerate() {
         let it = SegmentSet::nth(number);
@@ -124,9 +125,11 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
             //# A segment with a blocked circuit MUST NOT be given a direction.
             Some(Travel::Toward) if closed.meets(it) => answer = Some(Turned::Blocked),
             //= spec/interlocking.md#ilk-25-occupied-line
-            //# A segment that is occupied, or whose throat is, MUST be given the direction towards the station only if that was its last, and no segment into the station that no route leads from.
+            //# A segment that is occupied, or whose throat is, MUST be given the direction towards the station only if that was its last, or if it has none and no route leads to it, and no segment into the station that no route leads from.
             Some(Travel::Toward)
-                if entered.meets(it) && !needs.away.meets(it) && (free || directions.came.meets(it)) =>
+                if entered.meets(it)
+                    && !needs.away.meets(it)
+                    && (free || directions.came.meets(it) || !left.meets(it)) =>
             {
                 directions.away = directions.away.without(it);
                 directions.toward = directions.toward.or(it);

@@ -191,16 +191,25 @@ impl<const B: usize, const K: usize> Counted<B, K> {
         (state, output, occupied)
     }
 
-    /// The request that is told to the interlocking.
+    /// The request that is told to the interlocking, in a cycle in which the line reports this.
     ///
     /// # Errors
-    /// [`Refusal::Direction`] if it would turn the line.
+    /// [`Refusal::Direction`] if it would turn the line against its direction, or give it its own towards the station while a block disagrees.
     #[inline]
-    pub fn admit(&self, request: Option<Request>) -> Result<Option<Request>, Refusal> {
+    pub fn admit(&self, request: Option<Request>, report: &LineOutput<B>) -> Result<Option<Request>, Refusal> {
+        let mut agree = true;
+        for block in &report.blocks {
+            agree &= block.agree;
+        }
         //= spec/wayside.md#way-10-a-counted-line-is-not-turned
         //# A request to turn the segment of a counted line against its direction of travel MUST be refused.
         match request {
             Some(Request::Turn(segment, travel)) if segment == self.segment && travel != self.travel => {
+                Err(Refusal::Direction)
+            }
+            //= spec/wayside.md#way-26-a-block-that-disagrees
+            //# A request to turn the segment of a counted line towards the station MUST be refused while one of its blocks disagrees.
+            Some(Request::Turn(segment, Travel::Toward)) if segment == self.segment && !agree => {
                 Err(Refusal::Direction)
             }
             other => Ok(other),

@@ -5,7 +5,7 @@
 //! becomes frames and codes ([`crate::telegram`], [`crate::code`]), for each direction of travel apart. What two stations
 //! tell each other carries its age.
 //!
-//! Requirements: `spec/wayside.md`, WAY-1 to WAY-23. Read in this order: [`Equipment`] and [`Wayside`] (parameters), [`Input`] and
+//! Requirements: `spec/wayside.md`, WAY-1 to WAY-26. Read in this order: [`Equipment`] and [`Wayside`] (parameters), [`Input`] and
 //! [`Output`], [`State`] with its `is_valid`, [`Wayside::read`] and [`Wayside::send`], of which a step is made.
 
 mod chain;
@@ -249,8 +249,8 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
             let (next, report, told) = counted.count(state.line, input.blocks, input.occupied);
             state.line = next;
             occupied = told;
+            request = counted.admit(input.request, &report);
             line = Some(report);
-            request = counted.admit(input.request);
         }
         let input = interlocking::Input {
             occupied,

@@ -41,7 +41,7 @@ harness! {
         Consent: "trains are sent out only after the neighbour has permitted it and has not been permitted itself for the turn time, and no signal shows proceed to the segment without its permission",
         Blocked: "a segment with a blocked circuit is given no direction",
         Permits: "the neighbour is permitted to send only towards the station and while no circuit of the segment is blocked, and the time since is counted up to the turn time",
-        Given: "an occupied segment is given the direction towards the station only if the neighbour has sent since it had another, and none that no route leads from",
+        Given: "an occupied segment is given the direction towards the station only if the neighbour has sent since it had another, or it has none and no route leads to it, and none that no route leads from",
     }
     covers {
         Toward: "a segment is turned towards the station",
@@ -92,16 +92,17 @@ harness! {
         let clear = input.occupied.bits() & (line | segment.throat.bits()) == 0;
         let taken = from_toward || from_away;
         e.claim(Claim::Clear as u32, !taken || clear && !(from_toward && need_toward) && !(from_away && need_away));
-        let mut entered = false;
+        let (mut entered, mut left) = (false, false);
         let mut out = false;
         for number in 0..ROUTES {
             let route = &layout.plan().routes[number];
             entered |= route.length > 0 && route.from.bits() >> it & 1 == 1;
+            left |= route.length > 0 && route.to.bits() >> it & 1 == 1;
             out |= route.to.bits() >> it & 1 == 1 && output.proceed.bits() >> number & 1 == 1;
         }
-        // A ghost: the neighbour has sent since the segment was last seen clear, or turned away.
+        // A ghost: the neighbour has sent since the segment was last seen clear, or turned away; and where this station sends nobody, who else.
         let was_sent = before.directions.came.bits() >> it & 1 == 1;
-        e.claim(Claim::Given as u32, !to_toward || entered && (clear || was_sent));
+        e.claim(Claim::Given as u32, !to_toward || entered && (clear || was_sent || !left && !was_away));
         let consent = input.consent.bits() >> it & 1 == 1;
         e.claim(Claim::Consent as u32, (!to_away || consent && since >= limit) && (!out || consent));
         let closed = after.works.blocked.bits() & line != 0;

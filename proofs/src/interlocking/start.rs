@@ -22,12 +22,13 @@ harness! {
         LetIn: "where it stands no signal lets another one in, and nobody is granted its circuits",
         Under: "no point is driven under it",
         Staff: "no block is confirmed where it stands, or will stand",
-        Against: "plain line where it stands, or will stand, is given to nobody",
+        Against: "plain line where it stands, or will stand, is given to nobody; where no route leads out to it, so that the neighbour has sent the train, to no train that goes out",
     }
     covers {
         Runs: "it may still run, and a route is refused because of the start",
         Stands: "it stands in the path of a route that is refused because of it, after the time is over",
         Line: "it stands on plain line that is to be turned, after the time is over",
+        Arrives: "it stands on plain line that no route leads out to, and the line is turned towards the station for it",
         Last: "the last cycle in which it may run",
     }
     {
@@ -50,6 +51,9 @@ harness! {
         let its = |set: atc_kernel::interlocking::SegmentSet| u64::from(set.bits()) & bit(0) != 0;
         let directions = before.directions;
         let given = its(directions.toward) || its(directions.away) || its(directions.came);
+        // Where no route leads out to the line the train is one that the neighbour has sent.
+        let sent = plan.routes[0].length == 0 || plan.routes[0].to.bits() & 1 == 0;
+        let given = if sent { its(directions.away) } else { given };
         let invariant = before.works.confirmed.bits() & under.bits() == 0 && !(on_line && given);
         e.assume(invariant);
 
@@ -77,6 +81,7 @@ harness! {
         e.claim(Claim::Staff as u32, confirmed & under.bits() == 0);
         let to = after.directions;
         let given = its(to.toward) || its(to.away) || its(to.came) || its(output.permits);
+        let given = if sent { its(to.away) || contents.away.bits() & 1 == 1 } else { given };
         e.claim(Claim::Against as u32, !(on_line && given));
 
         let refused = |why| matches!(input.request, Some(Request::Set(_))) && output.answer == Some(Err(why));
@@ -85,6 +90,7 @@ harness! {
         e.cover(Cover::Stands as u32, over && !runs && in_path && refused(Refusal::Occupied));
         let turns = matches!(input.request, Some(Request::Turn(_, Travel::Toward)));
         e.cover(Cover::Line as u32, over && !runs && on_line && turns && output.answer.is_some());
+        e.cover(Cover::Arrives as u32, on_line && sent && !runs && its(to.toward) && !its(directions.toward));
         e.cover(Cover::Last as u32, run == 1 && after.started.0 == start);
     }
 }

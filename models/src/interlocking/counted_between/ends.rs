@@ -242,7 +242,7 @@ impl<const B: usize> End<B> {
         if wiring == Wiring::OnlyWhileCounting && agree != [true; B] {
             occupied = read.reported;
         }
-        let request = self.counted.admit(read.request).unwrap_or(None);
+        let request = self.counted.admit(read.request, &report).unwrap_or(None);
         let consent = if read.consent { the_line() } else { SegmentSet::EMPTY };
         let told = Input { occupied, detected: Positions::NONE, request, orders: read.orders, consent };
         let (mut state, output) = self.layout.cycle(before.interlocking, told);

@@ -245,9 +245,9 @@ const WAYSIDE: Table = Table {
                 let answer = output.get("answer")?;
                 Some(if answer.get("refused").is_some() { "refused".into() } else { answer.clone() })
             }),
-            ..output("answer", Danger::Appears, &["WAY-1", "WAY-8", "WAY-9", "WAY-10", "ILK-1", "ILK-4"])
+            ..output("answer", Danger::Appears, &["WAY-1", "WAY-8", "WAY-9", "WAY-10", "WAY-26", "ILK-1", "ILK-4"])
         },
         Field { shape: Shape::Entries(&[]), ..output("routes", Danger::No, &["WAY-1", "ILK-9", "ILK-10"]) },
-        reason("answer reason", |output| output.get("answer")?.get("refused").cloned(), &["WAY-10", "ILK-1"]),
+        reason("answer reason", |output| output.get("answer")?.get("refused").cloned(), &["WAY-10", "WAY-26", "ILK-1"]),
     ],
 };

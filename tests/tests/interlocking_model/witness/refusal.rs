@@ -106,8 +106,9 @@ impl Witness {
         });
         let line = &sketch.segments[segment];
         let taken = meets(&line.circuits, occupied) || line.throat.is_some_and(|throat| occupied.contains(&throat));
-        // A train on the line that the neighbour sent is let in; of any other nobody knows where it goes.
-        let loses = travel == Travel::Away || !stretch.came;
+        // A train on the line that the neighbour sent is let in, as every train is where this station sends none; of any other nobody knows where it goes.
+        let one_way = stretch.travel.is_none() && sketch.routes.iter().all(|way| way.to != Some(segment));
+        let loses = travel == Travel::Away || !(stretch.came || one_way);
         let no_way_in = travel == Travel::Toward && sketch.routes.iter().all(|way| way.from != Some(segment));
         let needs_other = needs_other || travel == Travel::Toward && self.unswept.goes_out_to(sketch, segment);
         let in_the_way = needs_other || taken && loses || no_way_in;
