@@ -275,7 +275,11 @@ impl<'a> Glue<'a> {
                 occupied = occupied.or(CircuitSet::nth(circuit));
             }
         }
-        let turns = input.request == Some(Request::Turn(SegmentId::ZERO, Travel::Away));
+        let agree = report.blocks.iter().all(|block| block.agree);
+        let turns = match input.request {
+            Some(Request::Turn(SegmentId::ZERO, travel)) => travel == Travel::Away || !agree,
+            _ => false,
+        };
         let told = kernel::Input {
             occupied,
             detected: input.detected,
