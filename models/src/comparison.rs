@@ -3,10 +3,10 @@
 //! No ground, no channel, no assumption: in each cycle the receiver detects any set of aspects. Whatever holds here
 //! holds on every line with these times.
 
-use crate::check::{Claim, Subject};
 use crate::line::Line;
 use crate::outcome::Trace;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use crate::train::{Device, Runs, Train};
 use atc_kernel::aspect::{AspectSet, Display};
 use std::marker::PhantomData;

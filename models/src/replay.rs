@@ -1,8 +1,8 @@
 //! What the models of aspect acceptance have in common: a line, what is detected and sent, and the trace of it.
 
-use crate::check::Subject;
 use crate::line::{self, ASPECTS_KM_H, Line};
 use crate::outcome::{Step, Trace};
+use crate::subject::Subject;
 use crate::train::{Displays, Train};
 use atc_kernel::aspect::{Acceptance, AspectSet};
 use serde::{Deserialize, Serialize};

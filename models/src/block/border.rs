@@ -7,8 +7,8 @@
 use super::fault::Faults;
 use super::lines::Lining;
 use super::single::SLOTS;
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::block::{
     Beyond, Block, Detection, Direction, Hold, Line, LineInput, LineOutput, LineState, Metres, SectionSet, Status,
     TrainCount,

@@ -7,9 +7,9 @@
 
 use super::device::Counting;
 use super::fault::Faults;
-use crate::check::{Claim, Limits, Subject};
 use crate::outcome::{CutSet, FailureMode, Trace};
-use crate::spin::Twin;
+use crate::subject::{Claim, Limits, Subject};
+use crate::twin::Twin;
 use atc_kernel::block::{Block, Hold, Input, Output, SectionSet, State as Kernel, TrainCount};
 use atc_kernel::time::Ticks;
 

@@ -6,7 +6,7 @@ use super::ground::{Ahead, Blade, Ground, Heading};
 use super::stations::{POINTS, ROUTES};
 use super::train::{Place, Train};
 use super::yard::{Harm, RESTRICTED, State, Yard, mask};
-use crate::check::{Checked, Claim};
+use crate::subject::{Checked, Claim};
 use atc_kernel::interlocking::{Epoch, Movement, Output, Phase, SegmentSet, SpeedCode, movement};
 
 /// What a model is there to show.

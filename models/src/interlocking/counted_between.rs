@@ -21,8 +21,8 @@ pub use known::{Number, Outcome};
 
 use super::between::Lives;
 use crate::block::fault::{self, Kind};
-use crate::check::{Claim, Limits, Subject};
 use crate::outcome::{CutSet, Trace};
+use crate::subject::{Claim, Limits, Subject};
 use ends::{Device, End, FIRST, PLATFORM, THROAT, ends};
 use known::{Key, Known};
 use std::hash::{Hash, Hasher};

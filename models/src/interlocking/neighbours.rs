@@ -6,8 +6,8 @@
 
 use super::stations::circuits;
 use super::trace::{Run, direction_word};
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{

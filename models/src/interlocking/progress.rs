@@ -4,7 +4,7 @@ use super::device::Device;
 use super::train::Place;
 use super::yard::{State, Yard};
 use crate::block::graph::Graph;
-use crate::check::{Limits, Subject};
+use crate::subject::{Limits, Subject};
 use ahash::AHashSet;
 use std::sync::{Arc, OnceLock};
 

@@ -10,8 +10,8 @@ use super::ground::{Blade, Station};
 use super::progress::Doomed;
 use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, circuits};
 use super::train::{Fate, Place, Train};
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Input, Orders, Output, PointSet, Position, Positions, Request, SegmentSet, Travel,
 };

@@ -3,7 +3,7 @@
 use super::device::Device;
 use super::layout::SPEEDS;
 use super::ride::{Cycle, Ghosts, Ride, Shown, State, Told, Train, Transmitter};
-use crate::check::Claim;
+use crate::subject::Claim;
 use atc_kernel::permitted::{Basis, LineKind};
 use atc_kernel::telegram::Main;
 
@@ -211,7 +211,7 @@ impl<D: Device> Ride<D> {
     }
 
     fn sight(sight: Sight) -> Claim<Self> {
-        let (name, text, condition): (_, _, fn(&crate::check::Checked<Self>, &State) -> bool) = match sight {
+        let (name, text, condition): (_, _, fn(&crate::subject::Checked<Self>, &State) -> bool) = match sight {
             Sight::Pattern => ("on-the-pattern", "the train runs on the pattern, above the lowest limit", |_, s| {
                 matches!(s.shown.basis, Basis::Pattern | Basis::Both)
                     && s.shown.speed > Some(SPEEDS[0])

@@ -1,8 +1,8 @@
 //! What is claimed of ground, channel and train; and the bounds as formulas.
 
 use super::{Environment, Reception, State};
-use crate::check::Claim;
 use crate::line::DEFAULT;
+use crate::subject::Claim;
 use crate::train::Device;
 use atc_kernel::aspect::{Display, Times};
 
