@@ -10,6 +10,7 @@
 //! | [`train`] | how trains move |
 //! | [`yard`] | the model: trains, points, requests, and the kernel |
 //! | `state` | what it remembers |
+//! | `purpose` | what a model is there to show |
 //! | `claims` | what is claimed of it |
 //! | `progress` | the states from which not every train can arrive any more |
 //! | `trace` | a path as a run of the kernel |
@@ -27,10 +28,11 @@ pub mod environment;
 pub mod ground;
 pub mod neighbours;
 mod progress;
+mod purpose;
 mod state;
 pub mod stations;
 mod trace;
 pub mod train;
 pub mod yard;
 
-pub use claims::{Purpose, Sight};
+pub use purpose::{Purpose, Sight};
