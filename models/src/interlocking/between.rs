@@ -13,7 +13,8 @@ pub use conditions::{Faults, Lives, Times};
 pub use known::{Number, Outcome};
 
 use super::neighbours::View;
-use super::stations::{self, IN, OUT, Small, circuits, stop};
+use super::sizes::{Small, circuits};
+use super::stations::{self, IN, OUT, stop};
 use super::trace::{Run, direction_word};
 use super::yard::Kept;
 use crate::outcome::Trace;

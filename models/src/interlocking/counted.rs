@@ -8,8 +8,9 @@
 //! section: what the station tells the block is [`Joint`].
 
 use super::device::Real;
+use super::sizes::circuits;
 use super::state::{Cycle as YardCycle, Harm, State as YardState};
-use super::stations::{circuits, counted};
+use super::stations::counted;
 use super::train::{Place, Train};
 use super::yard::{Yard, mask};
 use crate::block::fault::Faults;

@@ -4,6 +4,7 @@
 //! | module | what is in it |
 //! |---|---|
 //! | [`ground`] | the tracks as they really are: circuits, points, signals; arithmetic of its own, none of the kernel's |
+//! | `sizes` | how large a station may be |
 //! | [`stations`] | a passing loop, a junction, a crossing, a terminus, and their layouts |
 //! | [`device`] | the machine in a model |
 //! | [`environment`] | what may happen |
@@ -29,6 +30,7 @@ pub mod ground;
 pub mod neighbours;
 mod progress;
 mod purpose;
+mod sizes;
 mod state;
 pub mod stations;
 mod trace;

@@ -7,7 +7,7 @@ use super::device::Device;
 use super::environment::{Detection, Drives, Environment, Obey, TRAINS};
 use super::ground::{Blade, Station};
 use super::purpose::Purpose;
-use super::stations::{CIRCUITS, POINTS, ROUTES, circuits};
+use super::sizes::{CIRCUITS, POINTS, ROUTES, circuits};
 use super::train::{Fate, Place, Train};
 use ahash::AHashSet;
 use atc_kernel::interlocking::{

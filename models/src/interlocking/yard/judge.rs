@@ -5,7 +5,7 @@ use crate::interlocking::device::Device;
 use crate::interlocking::environment::TRAINS;
 use crate::interlocking::ground::{Ahead, Blade, Ground, Heading};
 use crate::interlocking::purpose::Purpose;
-use crate::interlocking::stations::{POINTS, ROUTES};
+use crate::interlocking::sizes::{POINTS, ROUTES};
 use crate::interlocking::train::{Fate, Place, Train};
 use atc_kernel::interlocking::{Epoch, Movement, Output, SegmentSet, SpeedCode, movement};
 

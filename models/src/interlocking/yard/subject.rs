@@ -4,7 +4,7 @@ use super::{Cycle, Harm, Kept, Shown, State, Yard, mask};
 use crate::interlocking::device::Device;
 use crate::interlocking::environment::{Drives, Obey, TRAINS};
 use crate::interlocking::ground::Heading;
-use crate::interlocking::stations::{SEGMENTS, SIGNALS, circuits};
+use crate::interlocking::sizes::{SEGMENTS, SIGNALS, circuits};
 use crate::interlocking::train::{Place, Train};
 use crate::outcome::Trace;
 use crate::subject::{Claim, Subject};
