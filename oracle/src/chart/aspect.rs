@@ -3,8 +3,10 @@
 
 use atc_kernel::aspect::{AspectId, AspectSet, MAX_ASPECTS, Parts, Times};
 
-use super::{Lane, Mark, Scene, Sign, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scene, Sign, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::aspect::{Aspect, Config};

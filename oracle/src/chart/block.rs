@@ -3,8 +3,11 @@
 
 use atc_kernel::block::{Parts, Status};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::block::{Config, Counted, Fault, Output};
 

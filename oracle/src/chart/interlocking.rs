@@ -5,9 +5,13 @@ use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{self as kernel, CircuitSet, Position, SegmentSet};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::drawn::{Cycle, Drawn};
-use crate::film::{self, Take};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::film::interlocking;
+use crate::film::take::Take;
+use crate::trace::run::Cycle;
 use atc_film::Film;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{
@@ -37,7 +41,7 @@ impl Drawn for Interlocked {
     }
 
     fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
-        film::interlocking::put(take, film).map(|()| true)
+        interlocking::put(take, film).map(|()| true)
     }
 }
 

@@ -2,8 +2,10 @@
 
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::changes;
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_line::refusal::{brake, gradient};
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;

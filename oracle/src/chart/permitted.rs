@@ -5,8 +5,10 @@ use atc_kernel::telegram::Route;
 
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, metres, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::decimal::Metres;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;

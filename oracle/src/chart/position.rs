@@ -1,8 +1,10 @@
 //! The timing chart of the train's position: the interval as a band, the truth if it is given, its width, and the levels.
 
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, metres, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::decimal::{Decibels, Metres};
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::position::{Config, Output, Positioned};

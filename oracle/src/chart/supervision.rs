@@ -1,8 +1,10 @@
 //! The timing chart of speed supervision: the two speeds as curves, the brake below. It counts no time, so the axis
 //! is in logic cycles.
 
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::supervision::{Brake, Config, Supervised};

@@ -2,8 +2,10 @@
 
 use atc_kernel::telegram::{FRAME_BITS, Frame, Route, Telegram, decode};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::telegram::{Codec, Config, Found, Output, Step};
 use atc_protocol::names::Named as _;

@@ -1,8 +1,10 @@
 //! The timing chart of the on-board device: what is displayed, permitted and measured as curves, the brake below.
 
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
 use super::supervision::{brake_lane, brake_signal, numbers, speed_lane};
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::train::{Config, OnBoard, Step};

@@ -3,8 +3,11 @@
 
 use std::collections::BTreeSet;
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{Answer, Request};
 use atc_protocol::machine::wayside::{Config, Ground, Output, Permission, Step, Transmission};
