@@ -17,7 +17,7 @@ pub struct Measurement {
 /// The line through one pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassFit {
-    /// The difference at the knots from [`Fit::first`] to [`Fit::last`], dB.
+    /// The difference at the knots from [`first`](super::Fit::first) to [`last`](super::Fit::last), dB.
     pub knots: Vec<f64>,
     /// Measured less fitted, dB, for each measurement within the table, with its place in what was given.
     pub residuals: Vec<(usize, f64)>,
