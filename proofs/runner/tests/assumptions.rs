@@ -124,7 +124,7 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("wayside/consent.rs", "life.0 <= MAX_TICKS", "a range: a time that the constructor accepts"),
     ("wayside/consent.rs", "!granted || sent <= u32::from(before.age.0)", AGAIN),
     ("train/facing.rs", "own(&before)", AGAIN),
-    ("wayside/speech.rs", "fixed.left.section != fixed.right.section", "what the constructor guarantees (WAY-19)"),
+    ("wayside/said.rs", "fixed.left.section != fixed.right.section", "what the constructor guarantees (WAY-19)"),
     (
         "wayside/speech.rs",
         "match told.main.route { Route::OpenFor(distance) => front <= u32::from(distance.0), Route::Closed => front == 0, }",

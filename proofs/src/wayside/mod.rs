@@ -8,6 +8,8 @@ mod counter;
 mod direction;
 mod joint;
 mod occupancy;
+mod said;
+mod signals;
 mod speech;
 mod track;
 
@@ -33,11 +35,11 @@ pub const ALL: &[Harness] = &[
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
     joint::way_join::HARNESS,
-    speech::way_signals::HARNESS,
-    speech::way_codes::HARNESS,
-    speech::way_speeds::HARNESS,
-    speech::way_words::HARNESS,
-    speech::way_word::HARNESS,
+    signals::way_signals::HARNESS,
+    signals::way_codes::HARNESS,
+    signals::way_speeds::HARNESS,
+    signals::way_words::HARNESS,
+    signals::way_word::HARNESS,
     speech::t_way_8_sent::HARNESS,
     speech::way_safe::HARNESS,
 ];
