@@ -4,7 +4,7 @@
 //! The train that goes out is that of T-ILK-10 ([`super::train`]). What comes in is seen when it is reported on the line, and not before.
 
 use super::any_circuits;
-use super::train::{BOUND, BUILT_IN, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
+use super::scene::{BOUND, BUILT_IN, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Directions, Plan, SegmentSet, State};

@@ -17,6 +17,7 @@ mod pair;
 mod point;
 mod room;
 mod route;
+mod scene;
 mod signal;
 mod start;
 mod table;
@@ -64,8 +65,8 @@ pub const SMALLER: [&str; 9] = [
     point::BOUND,
     route::BOUND,
     signal::BOUND,
-    train::ALONE,
-    train::BOUND,
+    scene::ALONE,
+    scene::BOUND,
     unswept::BOUND,
     works::BOUND,
 ];

@@ -6,7 +6,7 @@
 //!
 //! The train is a ghost: the kernel sees nothing of it but the circuits in which it is reported, and any other may be reported at any time.
 
-use super::train::{LENGTH, order};
+use super::scene::{LENGTH, order};
 use super::{any_input, any_plan, any_state, held, kept};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
