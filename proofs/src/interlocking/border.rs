@@ -4,7 +4,8 @@
 //! is ahead of the train tells it to stop for ever.
 
 use super::any_heading;
-use super::atc::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_contents, any_line, sent};
+use super::atc::{any_contents, sent};
+use super::line::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_line};
 use atc_kernel::interlocking::{CircuitId, CircuitSet, SegmentSet, silent};
 
 harness! {

@@ -4,7 +4,8 @@
 //! runs over the point ahead of it, where nothing is set for it.
 
 use super::any_heading;
-use super::atc::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_contents, any_line, sent};
+use super::atc::{any_contents, sent};
+use super::line::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_line};
 use crate::engine::any_flag;
 use atc_kernel::interlocking::CircuitId;
 

@@ -11,6 +11,7 @@ mod device;
 mod direction;
 mod heading;
 mod layout;
+mod line;
 mod meeting;
 mod out;
 mod pair;
