@@ -6,9 +6,10 @@ use std::collections::VecDeque;
 use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
+use super::source::{Source, Walk};
 use super::station::{Segment, Station};
 use super::varied::varied;
-use super::{Source, Walk, rows, wrong_plans};
+use super::{rows, wrong_plans};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
