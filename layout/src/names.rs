@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::at::At;
 use crate::form::Station;
+use crate::model::Circuits;
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -31,6 +32,11 @@ impl Names {
     /// The number of a circuit.
     pub fn circuit(&self, name: &At<String>, problems: &mut Vec<Problem>) -> Option<usize> {
         find("circuit", &self.circuits, name, &name.span, problems)
+    }
+
+    /// The circuits of a list of names.
+    pub fn circuits(&self, given: &[At<String>], problems: &mut Vec<Problem>) -> Circuits {
+        given.iter().filter_map(|name| self.circuit(name, problems)).collect()
     }
 
     /// The number of a circuit whose name stands inside something at `span`.

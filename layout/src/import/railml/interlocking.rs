@@ -6,7 +6,7 @@ use super::circuits::Placed;
 use super::xml::{Xml, reference};
 use crate::at::At;
 use crate::form::{Route, Station};
-use crate::import::Report;
+use crate::import::report::Report;
 use reader::Reader;
 
 mod course;

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use crate::form::{Position, Station};
-use crate::import::Report;
 use crate::import::railml::circuits::Placed;
 use crate::import::railml::infrastructure::Switched;
 use crate::import::railml::xml::{Xml, children, duration, is_set, reference, references};
+use crate::import::report::Report;
 
 pub(super) struct Reader<'a, 'b> {
     pub(super) xml: &'b Xml<'a>,
