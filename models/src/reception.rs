@@ -9,13 +9,15 @@
 
 use crate::line::Line;
 use crate::outcome::Trace;
-use crate::reception::claims::Purpose;
 use crate::replay::{self, Receiving};
 use crate::subject::{Claim, Subject};
 use crate::train::{Device, Train};
 use atc_kernel::aspect::AspectSet;
 
 pub mod claims;
+mod purpose;
+
+use purpose::Purpose;
 
 /// What the ground and the channel may do. Times in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
