@@ -3,8 +3,8 @@
 //! What a route grants is proven elsewhere (T-ATC-1) and supposed here (`held-routes-compatible`): circuits of its path that follow each other and
 //! are free and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
 
+use super::any::{any_circuits, bit};
 use super::line::{BOUND, Line, PATH, ROUTES, SEGMENTS, UNDER_KANI, any_line, in_direction, is_joint, passed};
-use super::{any_circuits, bit};
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{

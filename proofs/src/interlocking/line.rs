@@ -1,6 +1,6 @@
 //! Layouts as far as the ATC looks at them, and what follows what on plain line.
 
-use super::{any_circuits, any_heading};
+use super::any::{any_circuits, any_heading};
 use crate::engine::any_byte;
 use atc_kernel::interlocking::{CircuitSet, Contents, Element, Layout, Plan, Route, Segment, SegmentSet, Standing};
 use atc_kernel::time::Ticks;

@@ -5,7 +5,7 @@
 //!
 //! What [`holds`] says of ghost and route is the invariant: it is assumed before one cycle of the whole device, and claimed after it.
 
-use super::{any_input, any_plan, any_route_state};
+use super::any::{any_input, any_plan, any_route_state};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{
@@ -284,16 +284,16 @@ impl<const S: usize> Beside<S> {
 
 /// Any state of a device whose circuits count as occupied as the input says.
 fn any_device<E: Engine + ?Sized, const R: usize, const S: usize>(e: &mut E, beside: Beside<S>) -> State<R, S> {
-    let restricted = super::any_circuits(e, "restricted (bits)", 0..=0);
+    let restricted = super::any::any_circuits(e, "restricted (bits)", 0..=0);
     State {
         track: Track::INITIAL,
         started: Ticks(u16::MAX),
-        unswept: super::any_unswept(e),
+        unswept: super::any::any_unswept(e),
         points: beside.points,
         routes: core::array::from_fn(|_| any_route_state(e)),
         directions: beside.directions,
         works: Works {
-            blocked: super::any_circuits(e, "blocked (bits)", 0..=0),
+            blocked: super::any::any_circuits(e, "blocked (bits)", 0..=0),
             confirmed: beside.confirmed,
             restrictions: SpeedLimits::from_parts(core::array::from_fn(|code| {
                 restricted.only_if(code == usize::from(SLOW))
@@ -349,7 +349,7 @@ pub fn any_scene<E: Engine + ?Sized, const R: usize, const N: usize, const S: us
     // A rule of engineering, kept from the start: who draws values would break it with nearly all of them.
     let own = plan.routes.first_mut()?;
     own.approach = own.approach.or(own.entry);
-    let slow = super::any_circuits(e, "slow line (bits)", 0..=0);
+    let slow = super::any::any_circuits(e, "slow line (bits)", 0..=0);
     plan.line = SpeedLimits::from_parts(core::array::from_fn(|code| slow.only_if(code == usize::from(SLOW))));
     order(&mut plan);
     let beside = beside(e, &mut plan);

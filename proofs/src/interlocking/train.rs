@@ -1,9 +1,9 @@
 //! One route and one train (T-ILK-10): nothing is released in front of the train, or under it, whatever else is reported occupied.
 
+use super::any::{held, kept};
 use super::scene::{
     ALONE, BOUND, BUILT_IN, Beside, ENTRY, FIRST, LENGTH, ROUTES, SLOW, Scene, UNDER_KANI, any_scene, holds,
 };
-use super::{held, kept};
 use crate::engine::any_byte;
 use atc_kernel::interlocking::{CircuitSet, Phase, Rear, Request, Route, RouteState};
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "a code is a number in several arrays")]
 
-use super::LONGEST;
+use super::plans::LONGEST;
 use super::said::{SPEEDS, any_facing, any_lengths, any_word};
 use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};

@@ -1,7 +1,7 @@
 //! From movements to frames and codes (T-WAY-3, T-WAY-4), what is sent where, and the safe output (T-WAY-8).
 
+use super::plans::{LONGEST, plan};
 use super::said::{CIRCUITS, any_lengths, any_movement, any_said, heard};
-use super::{LONGEST, plan};
 use crate::engine::{any_byte, any_flag};
 use crate::interlocking::any_heading;
 use atc_kernel::Machine;
