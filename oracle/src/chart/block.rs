@@ -78,12 +78,6 @@ impl Drawn for Counted {
 fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
     let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let mut scene = Scene {
-        machine: Counted::NAME,
-        notes: Vec::new(),
-        unit,
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied: detected"),
             (Tone::Held, "occupied: held for a tail"),
@@ -92,9 +86,7 @@ fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
             (Tone::Dropped, "unverified"),
             (Tone::Emergency, "fault, reset refused"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Counted::NAME, unit, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Counted::open(config) else { return scene };

@@ -48,12 +48,6 @@ impl Drawn for Interlocked {
 /// Lays out a case.
 fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
     let mut scene = Scene {
-        machine: Interlocked::NAME,
-        notes: Vec::new(),
-        unit: Unit { axis: "time", name: "ms", per_cycle: 1 },
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied; route in use"),
             (Tone::Held, "held; route set"),
@@ -63,9 +57,7 @@ fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
             (Tone::Emergency, "failed, refused"),
             (Tone::Code, "what trains are told"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Interlocked::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Interlocked::open(config) else { return scene };

@@ -53,12 +53,8 @@ fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
         });
     }
     let mut scene = Scene {
-        machine: Positioned::NAME,
         notes,
-        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
-        cycles: cycles.len() as u64,
         lanes: lanes(cycles, &intervals, &truths, &widths),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "interval"),
             (Tone::Signal, "truth; second level"),
@@ -66,8 +62,7 @@ fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
             (Tone::Dropped, "unknown"),
         ],
         signals: signals(cycles, &intervals, &truths),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Positioned::NAME, Unit { axis: "time", name: "cycles", per_cycle: 1 }, cycles.len() as u64)
     };
     let said = cycles.iter().map(|cycle| cycle.recorded.filter(|said| *said != cycle.output));
     let texts = said.map(|said| {

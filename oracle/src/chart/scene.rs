@@ -27,6 +27,24 @@ pub struct Scene {
     pub figure: Option<Figure>,
 }
 
+impl Scene {
+    /// A chart of so many cycles with nothing in it.
+    pub(super) const fn of(machine: &'static str, unit: Unit, cycles: u64) -> Self {
+        Self {
+            machine,
+            notes: Vec::new(),
+            unit,
+            cycles,
+            lanes: Vec::new(),
+            guides: Vec::new(),
+            legend: Vec::new(),
+            signals: Vec::new(),
+            differences: Vec::new(),
+            figure: None,
+        }
+    }
+}
+
 /// The unit of the axis below the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {

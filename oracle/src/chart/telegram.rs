@@ -167,16 +167,10 @@ fn scene(_: Config, cycles: &[Cycle<Codec>]) -> Scene {
         notes.push(format!("The first {MOST} of {} steps are drawn.", cycles.len()));
     }
     let mut scene = Scene {
-        machine: Codec::NAME,
         notes,
-        unit: Unit { axis: "place", name: "bits", per_cycle: 1 },
-        cycles: longest as u64,
         lanes,
-        guides: Vec::new(),
-        legend: Vec::new(),
         signals: signals(&shown),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Codec::NAME, Unit { axis: "place", name: "bits", per_cycle: 1 }, longest as u64)
     };
     let said = cycles.iter().map(|cycle| cycle.recorded.as_ref().filter(|said| **said != cycle.output));
     let said: Vec<_> = said.map(|said| said.map(|said| serde_json::to_string(said).unwrap_or_default())).collect();

@@ -29,12 +29,6 @@ impl Drawn for Ground {
 /// Lays out a case.
 fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
     let mut scene = Scene {
-        machine: Ground::NAME,
-        notes: Vec::new(),
-        unit: Unit { axis: "time", name: "ms", per_cycle: 1 },
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied"),
             (Tone::Held, "told to be occupied, not reported"),
@@ -42,9 +36,7 @@ fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
             (Tone::Emergency, "refused, fault, restart"),
             (Tone::Code, "what trains are told"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Ground::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Ground::open(config) else { return scene };
