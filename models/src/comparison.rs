@@ -104,10 +104,6 @@ impl<D: Device, const N: usize> Receiving for Comparison<D, N> {
     fn detected(&self, _: &Self::State, detected: &AspectSet) -> AspectSet {
         *detected
     }
-
-    fn sent(&self, _: &Self::State, _: &AspectSet) -> Option<AspectSet> {
-        None
-    }
 }
 
 impl<D: Device, const N: usize> Comparison<D, N> {

@@ -231,8 +231,4 @@ impl<D: Device> Receiving for Interruption<D> {
     fn detected(&self, _: &Self::State, detected: &AspectSet) -> AspectSet {
         *detected
     }
-
-    fn sent(&self, _: &Self::State, _: &AspectSet) -> Option<AspectSet> {
-        None
-    }
 }
