@@ -8,7 +8,7 @@ use crate::conflict::reasons;
 use crate::form::Position;
 use crate::model::{Model, Positions, Route};
 
-/// The heads of the columns of [`csv()`].
+/// The heads of the columns of [`csv`](super::csv()).
 pub const COLUMNS: [&str; 20] = [
     "route",
     "signal",
