@@ -1,11 +1,10 @@
 //! Names and the numbers that stand for them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::at::At;
 use crate::form::Station;
-use crate::model::Circuits;
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -35,7 +34,7 @@ impl Names {
     }
 
     /// The circuits of a list of names.
-    pub fn circuits(&self, given: &[At<String>], problems: &mut Vec<Problem>) -> Circuits {
+    pub fn circuits(&self, given: &[At<String>], problems: &mut Vec<Problem>) -> BTreeSet<usize> {
         given.iter().filter_map(|name| self.circuit(name, problems)).collect()
     }
 
