@@ -24,6 +24,7 @@ pub mod interlocking;
 mod memory;
 pub mod pattern;
 pub mod permitted;
+mod pointer;
 pub mod status;
 pub mod supervision;
 pub mod telegram;

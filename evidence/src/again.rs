@@ -2,11 +2,11 @@
 
 use crate::build::Results;
 use crate::case::Provenance;
-use crate::cli::HERE;
 use crate::files::SUMS;
+use crate::inputs::measured::{self, HERE};
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::provenance::{differences, sha256};
-use crate::inputs::{measured, tests};
+use crate::inputs::tests;
 use crate::results;
 use crate::scope::Scope;
 use atc_models::Outcome;

@@ -1,6 +1,6 @@
 //! Names and the numbers that stand for them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::at::At;
@@ -31,6 +31,11 @@ impl Names {
     /// The number of a circuit.
     pub fn circuit(&self, name: &At<String>, problems: &mut Vec<Problem>) -> Option<usize> {
         find("circuit", &self.circuits, name, &name.span, problems)
+    }
+
+    /// The circuits of a list of names.
+    pub fn circuits(&self, given: &[At<String>], problems: &mut Vec<Problem>) -> BTreeSet<usize> {
+        given.iter().filter_map(|name| self.circuit(name, problems)).collect()
     }
 
     /// The number of a circuit whose name stands inside something at `span`.

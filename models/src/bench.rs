@@ -3,8 +3,9 @@
 use crate::block::device::Real;
 use crate::block::fault::Faults;
 use crate::block::single::{Beyond, Purpose, Single};
-use crate::check::{Subject, visit};
+use crate::search::visit;
 use crate::spin::{COUNTER, Counted, Folder, Spin};
+use crate::subject::Subject;
 use std::time::Instant;
 
 /// One checker's figures.

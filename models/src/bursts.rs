@@ -5,10 +5,10 @@
 //! smaller share of bursts than the formula says. [`Schedule`] runs every regular pattern, so many cycles on and so
 //! many off, at the real times of a line.
 
-use crate::check::{Claim, Subject};
 use crate::line::{Line, credited_gap};
 use crate::outcome::Trace;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use crate::train::Device;
 use atc_kernel::aspect::{AspectSet, Display, Times};
 

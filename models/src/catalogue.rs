@@ -7,6 +7,7 @@ use crate::interruption::Interruption;
 use crate::line::{COARSE, DEFAULT, EARLY, FINE, LATE, Line, SHORTEST};
 use atc_kernel::aspect::Acceptance;
 
+mod about;
 mod block;
 mod interlocking;
 mod permitted;
@@ -22,32 +23,6 @@ pub fn catalogue() -> Vec<Entry> {
     entries.extend(permitted::entries());
     entries.extend(interlocking::entries());
     entries
-}
-
-/// The names of one list, and then those of another.
-const fn joined<const A: usize, const B: usize, const C: usize>(
-    one: [&'static str; A],
-    other: [&'static str; B],
-) -> [&'static str; C] {
-    assert!(A + B == C);
-    let mut all = [""; C];
-    let mut place = 0;
-    while place < C {
-        all[place] = if place < A { one[place] } else { other[place - A] };
-        place += 1;
-    }
-    all
-}
-
-/// All conditions but the one at `place`. `M` is one less than `N`.
-const fn all_but<const N: usize, const M: usize>(all: [&'static str; N], place: usize) -> [&'static str; M] {
-    let mut kept = [""; M];
-    let mut next = 0;
-    while next < M {
-        kept[next] = all[if next < place { next } else { next + 1 }];
-        next += 1;
-    }
-    kept
 }
 
 fn comparisons() -> Vec<Entry> {

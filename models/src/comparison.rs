@@ -3,10 +3,10 @@
 //! No ground, no channel, no assumption: in each cycle the receiver detects any set of aspects. Whatever holds here
 //! holds on every line with these times.
 
-use crate::check::{Claim, Subject};
 use crate::line::Line;
 use crate::outcome::Trace;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use crate::train::{Device, Runs, Train};
 use atc_kernel::aspect::{AspectSet, Display};
 use std::marker::PhantomData;
@@ -103,10 +103,6 @@ impl<D: Device, const N: usize> Receiving for Comparison<D, N> {
 
     fn detected(&self, _: &Self::State, detected: &AspectSet) -> AspectSet {
         *detected
-    }
-
-    fn sent(&self, _: &Self::State, _: &AspectSet) -> Option<AspectSet> {
-        None
     }
 }
 

@@ -1,7 +1,7 @@
 //! A model without its types, for Stateright's Explorer: the server in it is compiled once, and not once a model.
 
-use crate::check::{Checked, Entry, Subject};
 use crate::outcome::Expectation;
+use crate::subject::{Checked, Subject};
 use stateright::{Model, Property};
 use std::any::Any;
 use std::fmt;
@@ -128,11 +128,6 @@ impl Model for Shown {
         };
         named.map(property).collect()
     }
-}
-
-/// A model of the catalogue, as the Explorer has it.
-pub fn shown(entry: &Entry) -> Shown {
-    Shown(Arc::clone(&entry.explored))
 }
 
 /// Serves the Explorer for one model, until the process ends.

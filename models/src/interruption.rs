@@ -3,10 +3,10 @@
 //! The ghosts follow each interruption from the detections alone: how many cycles `g` lie between the loss and the
 //! detection that is accepted, and whether the display failed in between.
 
-use crate::check::{Claim, Subject};
 use crate::line::Line;
 use crate::outcome::Trace;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use crate::train::{Device, Runs, Train};
 use atc_kernel::aspect::{AspectSet, Display, Times};
 
@@ -230,9 +230,5 @@ impl<D: Device> Receiving for Interruption<D> {
 
     fn detected(&self, _: &Self::State, detected: &AspectSet) -> AspectSet {
         *detected
-    }
-
-    fn sent(&self, _: &Self::State, _: &AspectSet) -> Option<AspectSet> {
-        None
     }
 }

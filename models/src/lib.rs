@@ -37,18 +37,24 @@ pub mod permitted;
 mod pool;
 pub mod reception;
 pub mod replay;
+mod search;
 pub mod spin;
+mod subject;
 pub mod train;
+mod twin;
 
 /// What the tests look at. A test of the library itself would compile all models once more.
 #[doc(hidden)]
 pub mod inside {
-    pub use crate::explorer::{Shown, Thing, shown};
+    pub use crate::check::shown;
+    pub use crate::explorer::{Shown, Thing};
     pub use crate::spin::{Counted, counted, difference, refuted};
 }
 
 pub use catalogue::catalogue;
-pub use check::{About, Checked, Claim, Entry, Limits, Subject, Visit, check, check_within, explore, visit};
+pub use check::{About, Entry, check, check_within, explore};
 pub use outcome::{CutSet, Expectation, FailureMode, Outcome, PropertyOutcome, Searched, Step, Trace, Verdict};
 pub use pool::in_parallel;
+pub use search::{Visit, visit};
 pub use spin::{Agreement, SecondOpinion};
+pub use subject::{Checked, Claim, Limits, Subject};

@@ -1,6 +1,5 @@
 //! What a check says: verdicts, figures and traces, for people, for the safety case and for the oracle.
 
-use crate::check::Search;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -128,37 +127,6 @@ impl Outcome {
     /// Whether the search was complete and every expectation is met. A model without properties is not.
     pub fn ok(&self) -> bool {
         self.complete && !self.properties.is_empty() && self.properties.iter().all(PropertyOutcome::ok)
-    }
-}
-
-pub(crate) struct Found {
-    pub model: String,
-    pub statement: String,
-    pub requirements: Vec<String>,
-    pub parameters: String,
-    pub in_force: Vec<String>,
-    pub lifted: Vec<String>,
-    pub search: Search,
-}
-
-impl From<Found> for Outcome {
-    fn from(found: Found) -> Self {
-        Self {
-            model: found.model,
-            statement: found.statement,
-            requirements: found.requirements,
-            parameters: found.parameters,
-            assumptions_in_force: found.in_force,
-            assumptions_lifted: found.lifted,
-            complete: found.search.complete,
-            unique_states: found.search.unique,
-            generated_states: found.search.generated,
-            max_depth: found.search.depth,
-            seconds: found.search.seconds,
-            properties: found.search.properties,
-            cut_sets: found.search.cut_sets,
-            failure_modes: found.search.failure_modes,
-        }
     }
 }
 

@@ -7,15 +7,17 @@
 //! Exposure is counted for every aspect: the cycles since the ground last sent it or a higher one. A display with
 //! exposure 0 is no more permissive than what is sent now.
 
-use crate::check::{Claim, Subject};
 use crate::line::Line;
 use crate::outcome::Trace;
-use crate::reception::claims::Purpose;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use crate::train::{Device, Train};
 use atc_kernel::aspect::AspectSet;
 
 pub mod claims;
+mod purpose;
+
+use purpose::Purpose;
 
 /// What the ground and the channel may do. Times in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

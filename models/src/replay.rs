@@ -1,8 +1,8 @@
 //! What the models of aspect acceptance have in common: a line, what is detected and sent, and the trace of it.
 
-use crate::check::Subject;
 use crate::line::{self, ASPECTS_KM_H, Line};
 use crate::outcome::{Step, Trace};
+use crate::subject::Subject;
 use crate::train::{Displays, Train};
 use atc_kernel::aspect::{Acceptance, AspectSet};
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,9 @@ pub trait Receiving: Subject {
     /// What the receiver detected in the cycle `action` from `state`.
     fn detected(&self, state: &Self::State, action: &Self::Action) -> AspectSet;
     /// What the ground sent in it; `None` if the model has no ground.
-    fn sent(&self, state: &Self::State, action: &Self::Action) -> Option<AspectSet>;
+    fn sent(&self, _state: &Self::State, _action: &Self::Action) -> Option<AspectSet> {
+        None
+    }
     /// If the last state closes a loop: of how many cycles.
     fn loop_length(&self, _last: &Self::State) -> Option<usize> {
         None

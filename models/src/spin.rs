@@ -7,27 +7,15 @@ use crate::check::{Entry, check};
 use crate::outcome::{Expectation, Outcome, PropertyOutcome, Verdict};
 use crate::pool::in_parallel;
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::time::Instant;
 
 mod tool;
 
+pub use crate::twin::Twin;
 use tool::CHECKER;
 pub use tool::Spin;
 pub(crate) use tool::{COUNTER, Folder};
 pub use tool::{Counted, counted, refuted};
-
-/// A model in Promela.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Twin {
-    /// The text. Its properties are named as ours, with `_` for `-`: `always` ones as they are, those to be reached `never_…`.
-    pub promela: Cow<'static, str>,
-    /// What its macros are defined as.
-    pub parameters: Vec<(&'static str, u8)>,
-    /// Whether it starts in one state and then chooses the faulty components, where ours has an initial state for each choice. The
-    /// choice of none leads from that state to itself: one step more than we have.
-    pub chooses: bool,
-}
 
 /// Whether two checkers agree on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

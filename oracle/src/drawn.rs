@@ -1,37 +1,18 @@
 //! Machines that are drawn: what a recorded case of each looks like as a chart and as a film. One line in [`DRAWINGS`] for each.
 
 use atc_film::Film;
-use atc_protocol::machine::{Machine, aspect, block, interlocking, pattern, permitted, position, supervision};
+use atc_protocol::machine::{aspect, block, interlocking, pattern, permitted, position, supervision};
 use atc_protocol::machine::{telegram, train, wayside};
 
-use crate::chart::Scene;
-use crate::film::{Setting, Take};
-use crate::trace::{Record, Replies, TraceError};
+use crate::chart::scene::Scene;
+use crate::film::made::made;
+use crate::film::take::{Setting, Take};
+use crate::trace::error::{Replies, TraceError};
+use crate::trace::run::{Recorded, Run, run};
 
-/// A machine that is drawn.
-pub trait Drawn: Machine {
-    /// The timing chart of a case.
-    fn chart(config: &Self::Config, cycles: &[Cycle<Self>]) -> Scene;
+pub(crate) mod machine;
 
-    /// Puts into a film what the machine shows besides the rows of its chart; false: nothing, and the film tells the
-    /// values of each step as they stand on the wire.
-    ///
-    /// # Errors
-    /// Why what the film is to be made with does not fit.
-    fn film(_: &Take<'_, Self>, _: &mut Film) -> Result<bool, String> {
-        Ok(false)
-    }
-}
-
-/// One logic cycle of a recorded case.
-pub struct Cycle<M: Machine> {
-    /// What was read.
-    pub step: M::Step,
-    /// What the kernel puts out.
-    pub output: M::Output,
-    /// What the record says was put out, if it says anything.
-    pub recorded: Option<M::Output>,
-}
+pub use machine::Drawn;
 
 /// How recorded cases of a machine are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +20,9 @@ pub struct Drawing {
     /// The machine's name.
     pub name: &'static str,
     /// Checks a recorded case against the kernel and draws it.
-    pub chart: fn(&Record, Replies) -> Result<Scene, TraceError>,
+    pub chart: fn(&Recorded, Replies) -> Result<Scene, TraceError>,
     /// Checks a recorded case against the kernel and makes its film.
-    pub film: fn(&Record, &Setting) -> Result<Film, TraceError>,
+    pub film: fn(&Recorded, &Setting) -> Result<Film, TraceError>,
 }
 
 /// Every machine's.
@@ -64,7 +45,20 @@ pub fn find(name: &str) -> Option<&'static Drawing> {
 }
 
 const fn drawing<M: Drawn>() -> Drawing {
-    Drawing { name: M::NAME, chart: crate::trace::chart::<M>, film: crate::trace::film::<M> }
+    Drawing { name: M::NAME, chart: chart::<M>, film: film::<M> }
+}
+
+/// Runs a record through the kernel, compares, and lays out the chart.
+fn chart<M: Drawn>(record: &Recorded, replies: Replies) -> Result<Scene, TraceError> {
+    let Run { config, cycles, .. } = run::<M>(record, replies)?;
+    Ok(M::chart(&config, &cycles))
+}
+
+/// Runs a record through the kernel, compares, and lays out the film.
+fn film<M: Drawn>(record: &Recorded, setting: &Setting) -> Result<Film, TraceError> {
+    let Run { config, cycles, steps } = run::<M>(record, setting.replies)?;
+    let take = Take { config: &config, cycles: &cycles, steps: &steps, setting };
+    made(&take).map_err(|what| record.error(what))
 }
 
 #[cfg(test)]

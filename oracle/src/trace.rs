@@ -4,50 +4,24 @@
 //! client that sends ahead. Empty lines are passed over. Every case is run through the kernel again.
 
 use std::collections::VecDeque;
-use std::fmt;
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use serde_json::Value;
 use serde_json::value::RawValue;
 
 use atc_film::Film;
 
-use crate::chart::Scene;
-use crate::drawn::{self, Cycle, DRAWINGS, Drawing, Drawn};
-use crate::film::{self, Setting, Take};
+use crate::chart::scene::Scene;
+use crate::drawn::{self, DRAWINGS, Drawing};
+use crate::film::take::Setting;
 use atc_protocol::form::{self, Fault, Rejected, Stop};
-use atc_protocol::machine::{self, Machine};
 
-/// What a recorded reply that differs from the kernel's means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replies {
-    /// The record is wrong: an error.
-    MustAgree,
-    /// The record is of another implementation: the difference is drawn.
-    AsRecorded,
-}
+pub(crate) mod error;
+pub(crate) mod run;
 
-/// What is wrong with a trace, and in which of its lines.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TraceError {
-    /// The line, from 1; 0 for the trace as a whole.
-    pub line: usize,
-    /// What is wrong there.
-    pub fault: Fault,
-}
+use run::{Answer, Recorded, RecordedStep};
 
-impl fmt::Display for TraceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.line, self.fault.column) {
-            (0, _) => write!(f, "{}", self.fault),
-            (line, Some(_)) => write!(f, "line {line}, {}", self.fault),
-            (line, None) => write!(f, "line {line}: {}", self.fault),
-        }
-    }
-}
-
-impl std::error::Error for TraceError {}
+pub use error::{Replies, TraceError};
 
 /// A recorded session: one record for each start.
 #[derive(Clone, Debug)]
@@ -60,30 +34,17 @@ pub struct Trace {
 #[derive(Clone, Debug)]
 pub struct Record {
     drawing: &'static Drawing,
-    line: usize,
-    config: Box<RawValue>,
-    steps: Vec<RecordedStep>,
+    case: Recorded,
 }
 
 impl Record {
-    /// The machine that it is of.
-    pub(crate) const fn drawing(&self) -> &'static Drawing {
-        self.drawing
+    /// Runs it through the kernel and lays out its film.
+    ///
+    /// # Errors
+    /// As [`Trace::scenes`]; and what the film is to be made with does not fit.
+    pub(crate) fn film(&self, setting: &Setting) -> Result<Film, TraceError> {
+        (self.drawing.film)(&self.case, setting)
     }
-}
-
-/// A step and what was answered to it.
-#[derive(Clone, Debug)]
-struct RecordedStep {
-    line: usize,
-    text: String,
-    reply: Option<Answer>,
-}
-
-#[derive(Clone, Debug)]
-enum Answer {
-    Output(usize, Box<RawValue>),
-    Malformed,
 }
 
 /// Any line of a trace.
@@ -134,7 +95,7 @@ impl Trace {
     /// A configuration or step that the kernel does not take, a reply that cannot be read, or, if replies must
     /// agree, the first that does not.
     pub fn scenes(&self, replies: Replies) -> Result<Vec<Scene>, TraceError> {
-        self.cases.iter().map(|record| (record.drawing.chart)(record, replies)).collect()
+        self.cases.iter().map(|record| (record.drawing.chart)(&record.case, replies)).collect()
     }
 }
 
@@ -152,8 +113,8 @@ impl Reader {
             Line::Start(body) => self.start(number, text, body)?,
             Line::Step(_) => match self.cases.last_mut() {
                 Some(case) if self.open => {
-                    case.steps.push(RecordedStep { line: number, text: text.to_owned(), reply: None });
-                    let step = case.steps.len() - 1;
+                    case.case.steps.push(RecordedStep { line: number, text: text.to_owned(), reply: None });
+                    let step = case.case.steps.len() - 1;
                     self.awaiting.push_back(Awaiting::Step { case: self.cases.len() - 1, step });
                 }
                 _ => return Err(Fault::whole("a step outside a case")),
@@ -204,7 +165,7 @@ impl Reader {
             Some(config) => config.to_owned(),
             None => RawValue::from_string("{}".to_owned()).map_err(|error| Fault::whole(error.to_string()))?,
         };
-        self.cases.push(Record { drawing, line, config, steps: Vec::new() });
+        self.cases.push(Record { drawing, case: Recorded { line, config, steps: Vec::new() } });
         self.open = true;
         self.awaiting.push_back(Awaiting::Start);
         Ok(())
@@ -216,7 +177,7 @@ impl Reader {
         while let Some(request) = self.awaiting.pop_front() {
             if answers(&request) {
                 if let (Awaiting::Step { case, step }, Some(answer)) = (request, answer) {
-                    self.cases[case].steps[step].reply = Some(answer);
+                    self.cases[case].case.steps[step].reply = Some(answer);
                 }
                 return Ok(());
             }
@@ -225,92 +186,5 @@ impl Reader {
             }
         }
         Err(Fault::whole(format!("a reply {name:?} to no request")))
-    }
-}
-
-/// Runs a record through the kernel, compares, and lays out the chart.
-pub(crate) fn chart<M: Drawn>(record: &Record, replies: Replies) -> Result<Scene, TraceError> {
-    let Run { config, cycles, .. } = run::<M>(record, replies)?;
-    Ok(M::chart(&config, &cycles))
-}
-
-/// Runs a record through the kernel, compares, and lays out the film.
-pub(crate) fn film<M: Drawn>(record: &Record, setting: &Setting) -> Result<Film, TraceError> {
-    let Run { config, cycles, steps } = run::<M>(record, setting.replies)?;
-    let take = Take { config: &config, cycles: &cycles, steps: &steps, setting };
-    film::made(&take).map_err(|what| TraceError { line: record.line, fault: Fault::whole(what) })
-}
-
-/// A case that was run through the kernel.
-struct Run<M: Machine> {
-    config: M::Config,
-    cycles: Vec<Cycle<M>>,
-    /// The body of the step of each cycle, as it was recorded.
-    steps: Vec<Value>,
-}
-
-/// Runs a record through the kernel and compares.
-fn run<M: Machine>(record: &Record, replies: Replies) -> Result<Run<M>, TraceError> {
-    let at = |line: usize| move |fault: Fault| TraceError { line, fault };
-    let config: M::Config = machine::config_of::<M>("", &record.config).map_err(|fault| TraceError {
-        line: record.line,
-        // The column would count from the config.
-        fault: Fault::whole(fault.what),
-    })?;
-    let mut machine = M::open(&config).map_err(|reason| TraceError {
-        line: record.line,
-        fault: Fault::whole(format!("a start to reject: {reason}")),
-    })?;
-    let mut cycles = Vec::with_capacity(record.steps.len());
-    let mut steps = Vec::with_capacity(record.steps.len());
-    for recorded in &record.steps {
-        let step = read_step::<M>(&recorded.text);
-        let result = step.and_then(|step| match machine.step(&step) {
-            Ok(output) => Ok((step, output)),
-            Err(what) => Err(Fault::whole(what)),
-        });
-        let (step, output) = match (result, &recorded.reply) {
-            (Ok(done), _) => done,
-            (Err(_), Some(Answer::Malformed)) => continue,
-            (Err(fault), _) => return Err(at(recorded.line)(fault)),
-        };
-        let said = match &recorded.reply {
-            None => None,
-            Some(Answer::Malformed) => {
-                let fault = Fault::whole("recorded as malformed, but the kernel takes this step");
-                return Err(at(recorded.line)(fault));
-            }
-            Some(Answer::Output(line, body)) => {
-                let said: M::Output = form::body("", body).map_err(|fault| {
-                    at(*line)(Fault::whole(format!("an output of {} cannot be read: {}", M::NAME, fault.what)))
-                })?;
-                if said != output && replies == Replies::MustAgree {
-                    let kernel = serde_json::to_string(&output).unwrap_or_default();
-                    return Err(at(*line)(Fault::whole(format!(
-                        "the record says {}, the kernel {kernel} (cycle {} of the case); draw the record with --as-recorded",
-                        body.get(),
-                        cycles.len(),
-                    ))));
-                }
-                Some(said)
-            }
-        };
-        cycles.push(Cycle { step, output, recorded: said });
-        let whole: Value = serde_json::from_str(&recorded.text).unwrap_or_default();
-        steps.push(whole.get("step").cloned().unwrap_or_default());
-    }
-    if cycles.is_empty() {
-        return Err(TraceError {
-            line: record.line,
-            fault: Fault::whole("the case has no step, so there is nothing to draw"),
-        });
-    }
-    Ok(Run { config, cycles, steps })
-}
-
-fn read_step<M: Machine>(text: &str) -> Result<M::Step, Fault> {
-    match form::request(text)? {
-        form::Request::Step(body) => machine::step_of::<M>(text, body),
-        _ => Err(Fault::whole("not a step")),
     }
 }

@@ -4,14 +4,15 @@
 //! spread evenly over the tolerance, and gives everything as numbers; [`plots`] draws them. The same run gives the same
 //! numbers every time.
 
-use crate::calibration::{Arrangement, Calibration, Ground, Plan, Weather};
-use crate::position_run::{Ballast, Odometer, Site, device, reading};
+use crate::calibration::{Arrangement, Calibration};
+use crate::position_run::{Ballast, Site, reading};
 use crate::rail::chain::{Piece, loss};
-use crate::rail::{Decibels, Hertz, Line, Metres, OhmKilometres, Rails};
-use atc_kernel::position::{Correction, Interval, Measured, Millibels, Position, step};
+use crate::rail::{Decibels, Hertz, Metres, OhmKilometres};
+use drive::{ANY_WEATHER, Points, SECTION, SEED, TOLERANCE, calibration, drive, kernel, line};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+mod drive;
 mod reflections;
 mod results;
 mod samples;
@@ -19,19 +20,6 @@ mod samples;
 pub use crate::measure::Extent;
 pub use crate::position_plot::plots;
 pub use results::{Limits, LineCurve, MeterPoint, Odometry, Outside, Point, PositionBench, Reflection, Run};
-
-/// By how much a level may be off: 0.1 dB, which [`MeterPoint`] shows to be kept from 30 dB of signal over noise.
-const TOLERANCE: Millibels = Millibels(10);
-/// The section's length, metres.
-const SECTION: f64 = 400.0;
-/// Metres in one cycle: 20 m/s, ten cycles a second.
-const CYCLE: f64 = 2.0;
-/// The odometer is known to 2 % and counts 1 % too much.
-const ODOMETER: Odometer = Odometer { scale: 1.01, bound: 0.02 };
-const SEED: u64 = 4_045_174;
-
-/// The limits of "any weather": 2 to 50 Ω·km.
-const ANY_WEATHER: (f64, f64) = (2.0, 50.0);
 
 /// Runs everything. [`Extent::Quick`] takes fewer windows of noise.
 ///
@@ -66,38 +54,6 @@ pub fn bench(extent: Extent) -> PositionBench {
     }
 }
 
-fn line(ohm_km: f64) -> Line {
-    Line::new(Rails::default(), OhmKilometres(ohm_km)).expect("a usual track")
-}
-
-fn calibration(arrangement: char, (wet, dry): (f64, f64)) -> Calibration {
-    let (first, arrangement) = match arrangement {
-        'a' => (1000.0, Arrangement::OneTransmitter),
-        'b' => (1000.0, Arrangement::TwoAhead { apart_m: Metres(60.0) }),
-        _ => (3000.0, Arrangement::AheadAndBehind { apart_m: Metres(600.0), train_m: Metres(200.0) }),
-    };
-    let weather = Weather { wet_ohm_km: OhmKilometres(wet), dry_ohm_km: OhmKilometres(dry), ground: Ground::Uniform };
-    // The table must reach as far as the weather may make a train in the section seem to be.
-    let plan = Plan {
-        first_hz: Hertz(first),
-        second_hz: Hertz(3000.0),
-        transmitted_db: Decibels(0.0),
-        spacing_dm: 2048,
-        arrangement,
-        weather,
-        rails: Rails::default(),
-    };
-    Calibration::new(plan).expect("a usual plan")
-}
-
-fn kernel(calibration: &Calibration) -> Position {
-    device(calibration, TOLERANCE, Millibels(0), Correction::NONE).expect("a tolerance over 0")
-}
-
-fn metres(interval: Interval) -> [f64; 2] {
-    [interval.nearest(), interval.farthest()].map(|end| f64::from(end.0) / 1000.0)
-}
-
 fn run(calibration: &Calibration, arrangement: char, ohm_km: f64, odometer: Odometry) -> Run {
     let position = kernel(calibration);
     let site = Site {
@@ -118,52 +74,6 @@ fn run(calibration: &Calibration, arrangement: char, ohm_km: f64, odometer: Odom
         })
     };
     drive(&position, odometer, read).into_run(arrangement, ohm_km, odometer)
-}
-
-/// What the kernel says while a train runs from one end of the section to the other.
-fn drive(position: &Position, odometer: Odometry, mut read: impl FnMut(f64) -> [Option<Millibels>; 2]) -> Points {
-    let moved = ODOMETER.moved(Metres(CYCLE)).expect("two metres");
-    let mut state = None;
-    let points = (0..200_u32).map(|cycle| {
-        let truth = SECTION - CYCLE * f64::from(cycle);
-        let [first, second] = read(truth);
-        let before = if odometer == Odometry::With { state } else { None };
-        state = step(position, before, Measured { first, second, moved });
-        Point { seconds: f64::from(cycle) / 10.0, truth, interval: state.map(metres) }
-    });
-    Points(points.collect())
-}
-
-struct Points(Vec<Point>);
-
-impl Points {
-    /// Intervals that do not contain the train.
-    fn wrong(&self) -> usize {
-        let missed =
-            |p: &&Point| p.interval.is_some_and(|[nearest, farthest]| !(nearest..=farthest).contains(&p.truth));
-        self.0.iter().filter(missed).count()
-    }
-
-    #[allow(clippy::cast_precision_loss, reason = "200 cycles")]
-    fn into_run(self, arrangement: char, ohm_km: f64, odometer: Odometry) -> Run {
-        let answers: Vec<(f64, [f64; 2])> = self.0.iter().filter_map(|p| Some((p.truth, p.interval?))).collect();
-        let widths = || answers.iter().map(|(_, [nearest, farthest])| farthest - nearest);
-        let errors =
-            || answers.iter().map(|(truth, [nearest, farthest])| (f64::midpoint(*nearest, *farthest) - truth).abs());
-        let (cycles, answered) = (self.0.len() as f64, answers.len() as f64);
-        Run {
-            arrangement,
-            ohm_km,
-            odometer,
-            answered: answered / cycles,
-            wrong: self.wrong() as f64 / cycles,
-            mean_width: widths().sum::<f64>() / answered.max(1.0),
-            greatest_width: widths().fold(0.0, f64::max),
-            mean_error: errors().sum::<f64>() / answered.max(1.0),
-            greatest_error: errors().fold(0.0, f64::max),
-            points: self.0,
-        }
-    }
 }
 
 fn curves() -> Vec<LineCurve> {

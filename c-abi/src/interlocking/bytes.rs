@@ -8,7 +8,7 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 
-use super::{Counts, Plan};
+use super::input::{Counts, Plan};
 use crate::memory::{Reader, Writer};
 
 type KernelPlan = atc_kernel::interlocking::Plan<64, 16, 32, 8>;
@@ -194,7 +194,7 @@ const fn rear(rear: Rear) -> u8 {
 }
 
 fn put_held(route: &RouteState, to: &mut Writer<'_>) {
-    to.u8(super::phase(route.phase));
+    to.u8(super::output::phase(route.phase));
     to.u8(route.tail);
     to.u8(route.head);
     to.flag(route.overlap);

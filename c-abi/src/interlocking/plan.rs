@@ -7,11 +7,12 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 
-use super::{
+use super::forms::{
     ATC_HEADING_LEFT, ATC_HEADING_RIGHT, ATC_PLACE_CIRCUIT, ATC_PLACE_OVERLAP, ATC_PLACE_PATH, ATC_PLACE_PLAN,
-    ATC_PLACE_POINT, ATC_PLACE_ROUTE, ATC_PLACE_ROUTES, ATC_PLACE_SEGMENT, ATC_PLACE_SEGMENTS, Counts, Plan,
-    atc_element, atc_interlocking_config, atc_place, atc_route, atc_segment, within,
+    ATC_PLACE_POINT, ATC_PLACE_ROUTE, ATC_PLACE_ROUTES, ATC_PLACE_SEGMENT, ATC_PLACE_SEGMENTS, atc_element,
+    atc_interlocking_config, atc_place, atc_route, atc_segment,
 };
+use super::input::{Counts, Plan, within};
 use crate::{atc_status, flag};
 
 /// What is wrong in a plan, and where.

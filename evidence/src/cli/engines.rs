@@ -6,12 +6,13 @@
 //! theorem says more than that one more mutant is rejected by it.
 
 use super::budget::Budget;
-use super::{HERE, Run};
+use super::options::Run;
 use crate::again::{self, Kept};
 use crate::error::Fault;
+use crate::inputs::faults;
+use crate::inputs::measured::{self, HERE};
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::second::{self, Opinion};
-use crate::inputs::{faults, measured};
 use crate::live::Live;
 use crate::output::Folder;
 use crate::plan::Plan;
@@ -43,9 +44,6 @@ const MEASURED: &str = "measurements";
 const BENCH: &str = "waveform bench";
 /// The tests, as a phase.
 pub(super) const TESTS: &str = "tests";
-
-/// Runs of each harness natively, in the tests as here.
-pub const NATIVE_RUNS: usize = 4000;
 
 /// A theorem that takes more seconds than an ordinary one belongs to the second pass.
 const LONG: f64 = 1.5;

@@ -1,7 +1,8 @@
 //! `safety-case merge` and `safety-case compare`.
 
+use super::checkout::{checkout, planned};
+use super::options::{Merge, required};
 use super::render::load;
-use super::{Merge, checkout, planned, required};
 use crate::alike::without_times;
 use crate::build::build;
 use crate::error::Fault;

@@ -1,6 +1,6 @@
 //! `safety-case render` and `safety-case verify`.
 
-use super::checkout;
+use super::checkout::checkout;
 use crate::build::at_station;
 use crate::case::{Case, Kind, SCHEMA};
 use crate::error::{Fault, read};

@@ -1,7 +1,8 @@
 //! The tests of a run: after all else, or beside the theorems that take long.
 
-use super::engines::{Engines, NATIVE_RUNS, TESTS};
-use super::run;
+use super::engines::{Engines, TESTS};
+use super::imported;
+use super::options::NATIVE_RUNS;
 use crate::again;
 use crate::case::Phase;
 use crate::error::{Fault, read};
@@ -56,7 +57,7 @@ impl Engines<'_> {
     pub(super) fn take(&self, live: &Live) {
         let (files, mut found) = (self.files(), BTreeSet::new());
         if files.native.is_file() && !self.options.no_native && self.options.native_runs == NATIVE_RUNS {
-            let taken = run::import(&files.native, self.sources).map_err(|fault| eprintln!("not used: {fault}"));
+            let taken = imported::import(&files.native, self.sources).map_err(|fault| eprintln!("not used: {fault}"));
             if let Some(Campaigned { campaign, .. }) = taken.ok().filter(|one| !one.stale) {
                 self.enter(live, "native", &campaign.harnesses, Some(&campaign.provenance));
                 found.extend(campaign.harnesses.iter().map(|one| format!("native:{}", one.name)));
@@ -64,13 +65,13 @@ impl Engines<'_> {
         }
         if files.outcomes.is_file() && !self.options.no_models {
             let now = live.with(|results| results.provenance.clone());
-            let taken = run::outcomes(&files.outcomes, self.plan, self.chosen, &now)
+            let taken = imported::outcomes(&files.outcomes, self.plan, self.chosen, &now)
                 .map_err(|fault| eprintln!("not used: {fault}"));
             let mut new = taken.unwrap_or_default();
             new.retain(|one| !self.has(&format!("model:{}", one.model)));
             found.extend(new.iter().map(|one| format!("model:{}", one.model)));
             live.with(|results| {
-                results.open.extend(run::searched_by_tests(new.len()));
+                results.open.extend(imported::searched_by_tests(new.len()));
                 results.outcomes.extend(new);
             });
         }

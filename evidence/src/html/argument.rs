@@ -1,6 +1,7 @@
 //! The argument as an outline that can be folded, and as a drawing.
 
-use super::{badge, drawing, link};
+use super::drawing;
+use super::parts::{badge, link};
 use crate::case::{Case, Defeater, Node, NodeKind};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! Minimal cut sets with their charts, the failure-mode table, and the second opinions on the models.
 
-use super::{anchor, badge, seconds};
+use super::parts::{anchor, badge, seconds};
 use crate::case::{Case, CutSet, FailureMode};
 use crate::inputs::models::thousands;
 use crate::verdict::{Verdict, list};

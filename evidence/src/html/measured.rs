@@ -1,6 +1,6 @@
 //! What was measured: figures beside theory and targets, and the plots.
 
-use super::{badge, seconds};
+use super::parts::{badge, seconds};
 use crate::case::{Case, Evidence, Figure, Kind};
 use crate::inputs::measured::{HERE, shown};
 use crate::verdict::Verdict;
@@ -63,7 +63,7 @@ fn targets(case: &Case) -> Markup {
         table {
             thead { tr { th style="width:19%" { "Target" } th { "What it says" } th style="width:13%" { "Verdict" } th { "Measured" } } }
             @for one in of(case) {
-                tr id=(super::anchor(&one.id)) {
+                tr id=(super::parts::anchor(&one.id)) {
                     td { code { (one.title) } }
                     td { (one.statement) }
                     td { (badge(one.verdict)) @if let Some(reason) = &one.reason { p.small { (reason) } } }

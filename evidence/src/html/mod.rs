@@ -6,6 +6,7 @@ mod drawing;
 mod faults;
 mod measured;
 mod page_one;
+mod parts;
 mod registers;
 mod report;
 mod station;
@@ -13,7 +14,6 @@ mod theorems;
 mod times;
 
 use crate::case::Case;
-use crate::verdict::Verdict;
 pub use page_one::headline;
 pub use station::page as station_page;
 
@@ -83,51 +83,6 @@ fn contents() -> Markup {
             }
         }
     }
-}
-
-/// A verdict as a badge: a word and a colour.
-fn badge(verdict: Verdict) -> Markup {
-    html! { span class={ "badge " (verdict.word()) } title=(verdict.meaning()) { (verdict.word()) } }
-}
-
-/// Seconds, short.
-fn seconds(seconds: f64) -> String {
-    if seconds <= 0.0 {
-        "–".to_owned()
-    } else if seconds < 9.95 {
-        format!("{seconds:.1} s")
-    } else {
-        format!("{seconds:.0} s")
-    }
-}
-
-/// A date and time, UTC.
-fn date(unix: u64) -> String {
-    i64::try_from(unix)
-        .ok()
-        .and_then(|unix| chrono::DateTime::from_timestamp(unix, 0))
-        .map_or_else(|| "unknown".to_owned(), |time| time.format("%Y-%m-%d %H:%M UTC").to_string())
-}
-
-/// An evidence id as a link to its row.
-fn link(id: &str) -> Markup {
-    let target = id.replace([':', '*'], "-");
-    html! { a href={ "#" (target) } { code { (id) } } }
-}
-
-/// Links, with commas.
-fn links(ids: &[String]) -> Markup {
-    html! {
-        @for (place, id) in ids.iter().enumerate() {
-            @if place > 0 { ", " }
-            (link(id))
-        }
-    }
-}
-
-/// The anchor of an evidence id.
-fn anchor(id: &str) -> String {
-    id.replace([':', '*'], "-")
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! The headline is made from the status and the open items. It cannot be better than they are, and they stand before
 //! anything that reassures.
 
-use super::{badge, date};
+use super::parts::{badge, date};
 use crate::case::{Case, Condition, Kind, Severity};
 use crate::verdict::Verdict;
 use maud::{Markup, html};

@@ -1,7 +1,7 @@
 //! The registers: hazard log, conditions, traceability, techniques, tools, the specific application.
 
 use super::checks::rules;
-use super::{badge, link, links};
+use super::parts::{badge, link, links};
 use crate::case::{Case, Line, Outcome};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
@@ -118,7 +118,7 @@ fn traceability(case: &Case) -> Markup {
 fn short(ids: &[String], most: usize) -> Markup {
     html! {
         @for id in ids.iter().take(most) {
-            a href={ "#" (super::anchor(id)) } { (id.split_once(':').map_or(id.as_str(), |(_, name)| name)) } br;
+            a href={ "#" (super::parts::anchor(id)) } { (id.split_once(':').map_or(id.as_str(), |(_, name)| name)) } br;
         }
         @if ids.len() > most { span.soft { "and " (ids.len() - most) " more" } }
     }

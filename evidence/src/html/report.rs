@@ -1,6 +1,6 @@
 //! The parts of EN 50129 around the technical safety report; each says what verification cannot support.
 
-use super::{badge, date};
+use super::parts::{badge, date};
 use crate::case::Case;
 use maud::{Markup, html};
 

@@ -1,7 +1,7 @@
 //! The specific application on the ground: a section of the case, and the station's own page, made to be signed.
 
 use super::checks::rules;
-use super::{badge, date, links};
+use super::parts::{badge, date, links};
 use crate::case::{Case, Confirm, NeededRule, Origin, Station};
 use crate::files::STATION;
 use crate::station::conclusion;
@@ -299,7 +299,7 @@ fn theorems(case: &Case, station: &Station) -> Markup {
 
 /// A link to the row of the evidence in the whole case.
 fn in_case(id: &str) -> Markup {
-    html! { a href={ "index.html#" (super::anchor(id)) } { code { (id.trim_start_matches("harness:")) } } }
+    html! { a href={ "index.html#" (super::parts::anchor(id)) } { code { (id.trim_start_matches("harness:")) } } }
 }
 
 fn signatures(case: &Case, station: &Station) -> Markup {

@@ -1,6 +1,6 @@
 //! The results: engines, theorems, wrong kernels, models, tests.
 
-use super::{anchor, badge, links, seconds};
+use super::parts::{anchor, badge, links, seconds};
 use crate::case::{Case, Evidence, Kind, Model};
 use crate::inputs::models::thousands;
 use crate::verdict::Verdict;

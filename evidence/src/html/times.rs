@@ -1,6 +1,6 @@
 //! Where the time of the run went.
 
-use super::seconds;
+use super::parts::seconds;
 use crate::case::Run;
 use crate::times::named;
 use maud::{Markup, html};

@@ -6,9 +6,12 @@ mod bench;
 mod figures;
 mod harm;
 mod line;
+mod target;
 
 pub use bench::Bench;
 pub use figures::{SPEED, shown};
+use target::target;
+pub use target::{Target, id};
 
 use super::cargo;
 use crate::case::{Engine, Evidence, Figure, Kind, Measurements, Plot};
@@ -28,21 +31,6 @@ const COMMAND: &str = "cargo run -p atc-waveform --bin waveform -- bench --quick
 
 /// The source of a run that was started here, on these sources.
 pub const HERE: &str = "run here";
-
-/// A target that figures must meet.
-#[derive(Clone, Copy, Debug)]
-pub struct Target {
-    /// Its name: evidence `measured:` and this.
-    pub name: &'static str,
-    /// The part of the railway that it is about.
-    pub part: &'static str,
-    /// What is shown when it is met.
-    pub statement: &'static str,
-}
-
-const fn target(name: &'static str, part: &'static str, statement: &'static str) -> Target {
-    Target { name, part, statement }
-}
 
 /// Every target there is: part of the manifest before anything runs.
 pub const TARGETS: &[Target] = &[
@@ -88,11 +76,6 @@ pub const TARGETS: &[Target] = &[
         "The known pairs of wrong parts and faults do lead to harm there, so that it can be seen; and neither of the two alone does.",
     ),
 ];
-
-/// The evidence id of a target.
-pub fn id(name: &str) -> String {
-    format!("measured:{name}")
-}
 
 /// What became of the run.
 #[derive(Clone, Debug, Serialize, Deserialize)]

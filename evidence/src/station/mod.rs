@@ -19,6 +19,7 @@ use atc_layout::import::{Imported, read_any};
 use atc_layout::lives::{self, TrainLives};
 use atc_layout::model::Model;
 use atc_layout::{Description, Errors, Rule, draw, table};
+use parameters::place;
 use rules::{Scope, Stage};
 use std::path::Path;
 
@@ -60,11 +61,6 @@ fn faults(errors: Errors) -> Vec<Fault> {
         Fault::new(&place(&source, problem.place), format!("{}{right} [{}]", problem.what, problem.rule.name()))
     };
     errors.problems.into_iter().map(one).collect()
-}
-
-/// File, line and column; the file alone where the line is not known.
-fn place(source: &str, place: Option<atc_layout::LineColumn>) -> String {
-    place.map_or_else(|| source.to_owned(), |at| format!("{source}:{}:{}", at.line, at.column))
 }
 
 fn finding(source: &str, problem: atc_layout::Problem) -> Finding {

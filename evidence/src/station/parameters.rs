@@ -1,6 +1,5 @@
 //! A station's parameters, and everything that somebody must confirm.
 
-use super::place;
 use crate::case::{Confirm, Derived, Origin};
 use atc_layout::form::Station;
 use atc_layout::import::Imported;
@@ -178,4 +177,9 @@ fn defaults(station: &Station, model: Option<&Model>) -> Vec<(&'static str, Stri
     all.push(("overlaps.least_m", &least.span, format!("{least} m")));
     let missing = all.into_iter().filter(|(_, span, _)| span.is_empty());
     missing.map(|(name, _, value)| (name, format!("the file does not say; {value} is taken"))).collect()
+}
+
+/// File, line and column; the file alone where the line is not known.
+pub(super) fn place(source: &str, place: Option<atc_layout::LineColumn>) -> String {
+    place.map_or_else(|| source.to_owned(), |at| format!("{source}:{}:{}", at.line, at.column))
 }

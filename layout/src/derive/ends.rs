@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{all, values};
+use super::values;
 use crate::form::Station;
 use crate::model::{Circuits, Model, Note, Route};
 use crate::names::Names;
@@ -17,7 +17,7 @@ pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut 
             given.conflicts.iter().filter_map(|name| names.route(name, problems)).collect();
         let from = given.from.as_ref().map(|name| names.segment(name, problems));
         let to = given.to.as_ref().map(|name| names.segment(name, problems));
-        let beyond = given.beyond.as_ref().map(|given| all(given, names, problems));
+        let beyond = given.beyond.as_ref().map(|given| names.circuits(given, problems));
         let continuing: Option<BTreeSet<usize>> = given
             .continuing
             .as_ref()

@@ -42,7 +42,7 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
         }
     }
     for platform in &station.platforms {
-        all(&platform.circuits, &names, problems);
+        names.circuits(&platform.circuits, problems);
     }
     for given in &station.routes {
         let mut route = route::route(station, given, &names, &model, cycle, problems);
@@ -95,19 +95,14 @@ fn circuits(station: &Station, problems: &mut Vec<Problem>) -> Vec<Circuit> {
     made.collect()
 }
 
-/// The circuits of a list of names.
-fn all(given: &[At<String>], names: &Names, problems: &mut Vec<Problem>) -> Circuits {
-    given.iter().filter_map(|name| names.circuit(name, problems)).collect()
-}
-
 fn points(station: &Station, names: &Names, notes: &mut Vec<Note>, problems: &mut Vec<Problem>) -> Vec<Point> {
     let mut points = Vec::new();
     for given in &station.points {
         // The graph has told of a circuit that is not there.
         let circuit = names.circuit(&given.circuit, &mut Vec::new());
-        let fouled_in = all(&given.fouled_in, names, problems);
+        let fouled_in = names.circuits(&given.fouled_in, problems);
         let detectors = if let Some(detectors) = &given.detectors {
-            all(detectors, names, problems)
+            names.circuits(detectors, problems)
         } else {
             let detectors: Circuits = fouled_in.iter().copied().chain(circuit).collect();
             let listed: Vec<&str> = detectors.iter().map(|circuit| station.circuits[*circuit].name.as_str()).collect();
@@ -195,7 +190,7 @@ fn approaches(station: &Station, names: &Names, model: &mut Model, problems: &mu
         }
         let given = &station.routes[number];
         let approach = if let Some(given) = &given.approach {
-            all(given, names, problems)
+            names.circuits(given, problems)
         } else {
             let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
             let from = (route.start, route.entry);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Report;
+use super::report::Report;
 use crate::at::At;
 use crate::derive;
 use crate::form::{EndKind, Segment, Station};

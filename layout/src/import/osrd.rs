@@ -6,8 +6,8 @@ use serde::Deserialize;
 
 use super::complete::{complete, steepest};
 use super::network::{Cut, Divided, Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
+use super::report::{Imported, Report};
 use super::search::{Sought, search};
-use super::{Imported, Report};
 use crate::at::At;
 use crate::description::Description;
 use crate::form::{Element, Position, Route, Station};

@@ -326,6 +326,12 @@ impl<'a> File<'a> {
         self.sections = sections;
         self.dividers = dividers;
     }
+
+    /// The ids of buffer stops at a place on a net element.
+    pub fn stops_at(&self, (element, at): (&str, f64)) -> Vec<&'a str> {
+        let stops = self.stops.get(element).into_iter().flatten();
+        stops.filter(|(place, _)| (place - at).abs() < 0.01).map(|(_, id)| *id).collect()
+    }
 }
 
 /// What shares one set of names in a layout.

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
-use super::Difference;
-use super::compare::left_is_normal;
+use super::difference::Difference;
 use super::file::{Divider, End, File, figure, milliseconds, refers};
+use super::positions::left_is_normal;
 use crate::model::{Model, Route};
 use crate::problem::Source;
 

@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::COLUMNS;
-use super::row::Row;
+use super::row::{COLUMNS, Row};
 use crate::conflict::{Reason, reasons};
 use crate::derive::positions::opposite;
 use crate::form::Position;

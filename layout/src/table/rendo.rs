@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::line;
+use super::csv::line;
 use crate::compare::Differing;
 use crate::conflict::{Reason, reasons};
 use crate::form::Position;

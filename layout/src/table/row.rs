@@ -8,6 +8,30 @@ use crate::conflict::reasons;
 use crate::form::Position;
 use crate::model::{Model, Positions, Route};
 
+/// The heads of the columns of [`csv`](super::csv()).
+pub const COLUMNS: [&str; 20] = [
+    "route",
+    "signal",
+    "heading",
+    "entry",
+    "path",
+    "normal",
+    "reverse",
+    "flank normal",
+    "flank reverse",
+    "overlap",
+    "overlap normal",
+    "overlap reverse",
+    "beyond",
+    "approach",
+    "conflicts",
+    "continued by",
+    "direction",
+    "speed km/h",
+    "times",
+    "releases",
+];
+
 /// The row of a route.
 pub struct Row<'a> {
     model: &'a Model,
@@ -21,7 +45,7 @@ impl<'a> Row<'a> {
         Self { model, number, route: &model.routes[number] }
     }
 
-    /// The cells under [`super::COLUMNS`].
+    /// The cells under [`COLUMNS`].
     pub fn cells(&self) -> Vec<String> {
         let (model, route) = (self.model, self.route);
         let run_over: Positions =

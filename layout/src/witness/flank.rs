@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use atc_kernel::interlocking::{Route, SegmentSet};
 
 use super::routes::Way;
+use super::sides::{Sides, members};
 use super::tracks::{Stand, Tracks, Vehicle};
-use super::{Sides, members};
 use crate::form::Position;
 use crate::problem::Problem;
 

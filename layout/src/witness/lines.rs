@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::Heading;
 
+use super::sides::{Sides, difference, members};
 use super::tracks::Vehicle;
-use super::{Sides, difference, members};
 use crate::problem::Problem;
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {

@@ -16,25 +16,15 @@ mod flank;
 mod lines;
 mod numbers;
 mod routes;
+mod sides;
 mod tracks;
 
-use std::ops::Range;
-
-use atc_kernel::interlocking::{CircuitSet, PointSet, Positions};
-
-use crate::form::{Position, Station};
+use crate::form::Station;
 use crate::problem::Problem;
-use crate::rule::Rule;
 
 pub use atc_kernel::interlocking::Plan;
-use tracks::{Stand, Tracks};
-
-/// What is held against each other.
-struct Sides<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
-    station: &'a Station,
-    tracks: Tracks,
-    plan: &'a Plan<R, P, N, S>,
-}
+use sides::Sides;
+use tracks::Tracks;
 
 /// Everything in which `plan` is not what vehicles meet on the tracks of `station`, a file that breaks no other rule.
 pub fn differences<const R: usize, const P: usize, const N: usize, const S: usize>(
@@ -51,42 +41,4 @@ pub fn differences<const R: usize, const P: usize, const N: usize, const S: usiz
     sides.ends(&ways, &mut found);
     sides.approaches(&ways, &mut found);
     found
-}
-
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
-    fn differs(&self, route: usize, what: &str) -> Problem {
-        let name = &self.station.routes[route].name;
-        difference(&name.span, format!("route {name}: {what}"))
-    }
-
-    fn circuit(&self, number: usize) -> &str {
-        &self.station.circuits[number].name.value
-    }
-
-    fn place_of(&self, circuit: &str) -> Option<usize> {
-        self.station.circuits.iter().position(|given| given.name.value == circuit)
-    }
-}
-
-/// Something in which the plan is not what the tracks are.
-fn difference(span: &Range<usize>, what: String) -> Problem {
-    Problem::new(Rule::PlanAgainstTracks, span, what, "tell the authors: the layout was derived wrongly")
-}
-
-/// The numbers in a set of circuits.
-fn members(set: CircuitSet) -> impl Iterator<Item = usize> {
-    (0..64).filter(move |circuit| set.meets(CircuitSet::nth(*circuit)))
-}
-
-/// Positions as places in the file. A point that is to stand both ways stands neither.
-fn stand(positions: Positions) -> Stand {
-    let of = |point: usize| match (
-        positions.normal.meets(PointSet::nth(point)),
-        positions.reverse.meets(PointSet::nth(point)),
-    ) {
-        (true, false) => Some((point, Position::Normal)),
-        (false, true) => Some((point, Position::Reverse)),
-        _ => None,
-    };
-    (0..32).filter_map(of).collect()
 }

@@ -6,8 +6,8 @@ use atc_kernel::interlocking::{CircuitSet, SpeedCode};
 use atc_kernel::time::Ticks;
 
 use super::routes::Way;
+use super::sides::{Sides, difference, members};
 use super::tracks::Vehicle;
-use super::{Sides, difference, members};
 use crate::form::Position;
 use crate::problem::Problem;
 

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{CircuitSet, Heading, RouteSet, SegmentSet};
 
+use super::sides::{Sides, members, stand};
 use super::tracks::{Stand, Vehicle};
-use super::{Sides, members, stand};
 use crate::problem::Problem;
 
 /// A way of a route's train.

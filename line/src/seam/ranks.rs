@@ -1,9 +1,9 @@
 //! The speed codes of stations and the ranks in telegrams: one table, or a mapping that is never faster.
 
-use atc_kernel::aspect::{AspectId, AspectTable};
-use atc_kernel::interlocking::SpeedCode;
+use atc_kernel::aspect::AspectTable;
 
-use super::{Judged, NO_SIGNAL, NO_STATION, Sound, Station, count, finding, judged};
+use super::judged::{Judged, NO_SIGNAL, NO_STATION, count, finding, judged};
+use super::sound::Sound;
 use crate::check::{DataCheck, Finding};
 use crate::kmh::Kmh;
 use crate::line::Line;
@@ -25,27 +25,6 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
         judged(Rule::RankFaster, count(codes, "speed code"), each(&|_, one| faster(line, one))),
         judged(Rule::RankStop, count(stations.len(), "station"), each(&|speeds, one| stop(line, speeds, one))),
     ]
-}
-
-impl Station {
-    /// The speeds of its codes 1, 2, …, in km/h.
-    fn codes(&self) -> &[u16] {
-        &self.description.station.braking.speeds_kmh.value
-    }
-
-    /// What telegrams name for each of its codes.
-    fn named(&self) -> Vec<Kmh> {
-        let own = || self.codes().iter().map(|speed| Kmh(i32::from(*speed) * 10)).collect();
-        self.code_speeds.clone().unwrap_or_else(own)
-    }
-
-    /// The rank in telegrams of a speed code; none if the station has no such code, or the line no such speed.
-    ///
-    /// Where the rules `rank-missing` and `rank-faster` are met, every code of the station has a rank, and it means no higher speed.
-    pub fn rank(&self, speeds: &AspectTable, code: SpeedCode) -> Option<AspectId> {
-        let Some(place) = usize::from(code.0).checked_sub(1) else { return AspectId::new(0) };
-        rank(speeds, *self.named().get(place)?)
-    }
 }
 
 /// Where a speed stands that telegrams name for a code: in the line's file, or in the layout.

@@ -3,7 +3,8 @@
 use atc_kernel::telegram::Gradient;
 use atc_layout::lives::TrainLives;
 
-use super::{Judged, NO_SIGNAL, NO_STATION, NO_TRAIN, Sound, count, finding, judged};
+use super::judged::{Judged, NO_SIGNAL, NO_STATION, NO_TRAIN, count, finding, judged};
+use super::sound::Sound;
 use crate::blocks::Detection;
 use crate::check::{DataCheck, Finding};
 use crate::kmh::Kmh;

@@ -4,8 +4,8 @@ use super::device::Counting;
 use super::fault::{Faults, Kind};
 use super::graph::Graph;
 use super::single::{Cycle, Single, State};
-use crate::check::{Limits, Subject};
 use crate::outcome::CutSet;
+use crate::subject::{Limits, Subject};
 use std::collections::BTreeSet;
 
 /// The states after `state`, by the steps that `allowed` lets pass.

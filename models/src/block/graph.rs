@@ -1,6 +1,6 @@
 //! A plain breadth-first search that keeps its graph: for questions that are not about single states.
 
-use crate::check::Limits;
+use crate::subject::Limits;
 use ahash::AHashMap;
 use std::collections::hash_map::Entry;
 use std::hash::Hash;

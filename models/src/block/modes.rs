@@ -5,8 +5,8 @@ use super::device::Counting;
 use super::fault::{Faults, Kind};
 use super::graph::Graph;
 use super::single::{Cycle, Single, State};
-use crate::check::{Limits, Subject};
 use crate::outcome::FailureMode;
+use crate::subject::{Limits, Subject};
 
 /// One line for each kind of fault. `None`: not every state was visited.
 pub(super) fn failure_modes<D: Counting>(model: &Single<D>, limits: Limits) -> Option<Vec<FailureMode>> {

@@ -7,13 +7,11 @@
 
 use super::device::Counting;
 use super::fault::Faults;
-use crate::check::{Claim, Limits, Subject};
-use crate::outcome::{CutSet, FailureMode, Trace};
-use crate::spin::Twin;
-use atc_kernel::block::{Block, Hold, Input, Output, SectionSet, State as Kernel, TrainCount};
+use atc_kernel::block::{Block, Hold, Input, Output, SectionSet, State as Kernel};
 use atc_kernel::time::Ticks;
 
 mod claims;
+mod subject;
 mod trace;
 mod twin;
 
@@ -304,91 +302,5 @@ impl<D: Counting> Single<D> {
                 || output.behind_hold.sections() < self.tail.saturating_sub(head)
         };
         trains.heads.iter().any(|head| *head > 0 && exposed(*head)) || trains.rear > 0 && free(trains.rear - 1)
-    }
-}
-
-impl<D: Counting> Subject for Single<D> {
-    type State = State;
-    type Action = Cycle;
-
-    fn initial(&self) -> Vec<State> {
-        let trains =
-            Trains { heads: [0; SLOTS], since: self.apart, left: false, on_border: 0, dead: 0, rear: 0, used: false };
-        let start =
-            State { trains, faults: Faults::NONE, kernel: Kernel::INITIAL, agree: false, lost: false, hazard: false };
-        self.faults.iter().map(|faults| State { faults: *faults, ..start }).collect()
-    }
-
-    fn actions(&self, state: &State, cycles: &mut Vec<Cycle>) {
-        // What follows a hazard is of no interest.
-        if state.hazard {
-            return;
-        }
-        let power: &[bool] = if self.beyond == Beyond::PowerLoss { &[false, true] } else { &[false] };
-        for moved in self.moves(&state.trains) {
-            let resets = state.faults.resets(self.inside(&moved.trains), self.trains, 0);
-            for check_in in state.faults.check_in(moved.check_in, 0) {
-                for check_out in state.faults.check_out(moved.check_out, 0) {
-                    for present in state.faults.present(moved.heard) {
-                        for reset in &resets {
-                            let input = Input {
-                                check_in,
-                                check_out,
-                                present: present.and(SectionSet::first(self.sections)),
-                                reset: reset.map(TrainCount),
-                                ahead_hold: moved.ahead_hold,
-                                ahead_entered: true,
-                            };
-                            let cycle =
-                                |power_loss: &bool| Cycle { trains: moved.trains, input, power_loss: *power_loss };
-                            cycles.extend(power.iter().map(cycle));
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn next(&self, state: &State, cycle: &Cycle) -> Option<State> {
-        let kernel = if cycle.power_loss { Kernel::INITIAL } else { state.kernel };
-        let (kernel, output) = self.device.step(self.block(), kernel, cycle.input);
-        Some(State {
-            trains: cycle.trains,
-            faults: state.faults,
-            kernel,
-            agree: output.agree,
-            lost: state.lost || state.agree && !output.agree,
-            hazard: self.endangered(&cycle.trains, output),
-        })
-    }
-
-    fn claims(&self) -> Vec<Claim<Self>> {
-        self.purpose_claims()
-    }
-
-    fn parameters(&self) -> String {
-        self.describe()
-    }
-
-    fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
-        self.run_of(path)
-    }
-
-    fn twin(&self) -> Option<Twin> {
-        self.promela()
-    }
-
-    fn cut_sets(&self, limits: Limits) -> Option<Vec<CutSet>> {
-        match self.purpose {
-            Purpose::CutSets(_) => super::cut_sets::enumerate(self, limits),
-            _ => Some(Vec::new()),
-        }
-    }
-
-    fn failure_modes(&self, limits: Limits) -> Option<Vec<FailureMode>> {
-        match self.purpose {
-            Purpose::CutSets(_) => super::modes::failure_modes(self, limits),
-            _ => Some(Vec::new()),
-        }
     }
 }

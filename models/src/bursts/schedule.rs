@@ -1,10 +1,10 @@
 //! Every regular pattern of bursts, at the real times of a line.
 
 use super::{STALE, duty_cycle, percent};
-use crate::check::{Claim, Subject};
 use crate::line::{Line, credited_gap};
 use crate::outcome::Trace;
 use crate::replay::{self, Receiving};
+use crate::subject::{Claim, Subject};
 use atc_kernel::Machine;
 use atc_kernel::aspect::{Acceptance, AspectSet, Display, State as Kernel, Times};
 

@@ -3,9 +3,15 @@
 use crate::block::device::{Real, WithoutComparison};
 use crate::block::fault::{Faults, Kind};
 use crate::block::single::{Beyond, Purpose, Single};
-use crate::check::{About, Entry};
+use crate::check::Entry;
 
 mod border;
+mod shared;
+
+use shared::{
+    COUNT, CUTS, FAULTS, NO_FAULT, NOT_APART, NOT_COVERED, NOT_HEARD_BY_ONE, NOT_LIVE, NOT_WHOLE, ONE_FAULT, REVERSING,
+    SINGLE_FAULTS, USUAL, about,
+};
 
 /// One block and two: without faults, with one, with two, and with what the assumptions exclude.
 pub(super) fn entries() -> Vec<Entry> {
@@ -14,107 +20,6 @@ pub(super) fn entries() -> Vec<Entry> {
     entries.extend(events());
     entries.extend(border::entries());
     entries
-}
-
-// The assumptions of a model: which are in force, which are lifted. One component that fails breaches one of [`FAULTS`] or the
-// working of one detector, but not that of two.
-
-/// No fault.
-const NO_FAULT: &[&str] = &[
-    "live-transmitter",
-    "train-whole",
-    "no-reversing-over-exit",
-    "entries-apart",
-    "hold-covers-train",
-    "heard-by-one",
-    "independent-detectors",
-    "check-in-fail-safe",
-    "check-out-not-spurious",
-    "verified-reset",
-];
-/// One faulty component.
-const ONE_FAULT: &[&str] = &[
-    "live-transmitter",
-    "train-whole",
-    "no-reversing-over-exit",
-    "entries-apart",
-    "hold-covers-train",
-    "heard-by-one",
-    "independent-detectors",
-];
-/// No fault, at a border.
-const BORDER_NO_FAULT: &[&str] = &[
-    "live-transmitter",
-    "train-whole",
-    "no-reversing-over-exit",
-    "entries-apart",
-    "hold-covers-train",
-    "heard-by-one",
-    "independent-detectors",
-    "check-in-fail-safe",
-    "check-out-not-spurious",
-    "verified-reset",
-    "loops-overlap",
-];
-/// One faulty component, at a border.
-const BORDER_ONE_FAULT: &[&str] = &[
-    "live-transmitter",
-    "train-whole",
-    "no-reversing-over-exit",
-    "entries-apart",
-    "hold-covers-train",
-    "heard-by-one",
-    "independent-detectors",
-    "loops-overlap",
-];
-/// Two faulty components.
-const USUAL: &[&str] = &[
-    "live-transmitter",
-    "train-whole",
-    "no-reversing-over-exit",
-    "entries-apart",
-    "hold-covers-train",
-    "heard-by-one",
-];
-/// Entries in any two cycles.
-const NOT_APART: &[&str] =
-    &["live-transmitter", "train-whole", "no-reversing-over-exit", "hold-covers-train", "heard-by-one"];
-/// A hold that is too short.
-const NOT_COVERED: &[&str] =
-    &["live-transmitter", "train-whole", "no-reversing-over-exit", "entries-apart", "heard-by-one"];
-/// Heads on borders heard by none or by two.
-const NOT_HEARD_BY_ONE: &[&str] =
-    &["live-transmitter", "train-whole", "no-reversing-over-exit", "entries-apart", "hold-covers-train"];
-/// A dead transmitter.
-const NOT_LIVE: &[&str] =
-    &["train-whole", "no-reversing-over-exit", "entries-apart", "hold-covers-train", "heard-by-one"];
-/// A split train.
-const NOT_WHOLE: &[&str] =
-    &["live-transmitter", "no-reversing-over-exit", "entries-apart", "hold-covers-train", "heard-by-one"];
-/// Reversing over the exit.
-const REVERSING: &[&str] = &["live-transmitter", "train-whole", "entries-apart", "hold-covers-train", "heard-by-one"];
-/// What one faulty component breaches.
-const FAULTS: &[&str] = &["check-in-fail-safe", "check-out-not-spurious", "verified-reset"];
-/// The same, where the check-out lies before the check-in ahead.
-const BORDER_FAULTS: &[&str] = &["check-in-fail-safe", "check-out-not-spurious", "verified-reset", "loops-overlap"];
-/// What excludes the cut sets.
-const SINGLE_FAULTS: &[&str] =
-    &["independent-detectors", "check-in-fail-safe", "check-out-not-spurious", "verified-reset"];
-
-const COUNT: &[&str] =
-    &["BLK-1", "BLK-2", "BLK-3", "BLK-4", "BLK-5", "BLK-7", "T-BLK-1", "T-BLK-2", "T-BLK-3", "T-BLK-4", "T-BLK-5"];
-const CUTS: &[&str] = &["BLK-1", "BLK-2", "T-BLK-1", "T-BLK-6"];
-const BORDER: &[&str] = &["BLK-5", "BLK-6", "BLK-10", "T-BLK-1", "T-BLK-4"];
-
-fn about(
-    name: &'static str,
-    statement: &str,
-    environment: &str,
-    requirements: &'static [&'static str],
-    in_force: &'static [&'static str],
-    lifted: &'static [&'static str],
-) -> About {
-    About { name, statement: statement.to_owned(), requirements, environment: environment.to_owned(), in_force, lifted }
 }
 
 fn safe() -> Vec<Entry> {

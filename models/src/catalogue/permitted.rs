@@ -1,14 +1,18 @@
 //! The models of the permitted speed.
 
-use crate::check::{About, Entry};
-use crate::permitted::device::{Conventional, Device, Real};
+use crate::catalogue::about::about;
+use crate::check::Entry;
+use crate::permitted::device::Conventional;
 use crate::permitted::layout::{Layout, Section};
-use crate::permitted::ride::{Changes, Delivery, Environment, Fix, Odometer, Ride, Small, Told};
+use crate::permitted::ride::{Changes, Delivery, Environment, Fix, Odometer, Small, Told};
 use crate::permitted::{Purpose, Sight};
 use atc_kernel::permitted::LineKind;
 
 mod border;
 mod counter;
+mod shared;
+
+use shared::{AGE, DISTANCE, NO_ODOMETER, NO_POINT_LIFE, NO_WORST, NOT_TOLD, SOUND, WORST, other, ride};
 
 /// Two kinds of line, losses, changes on the ground, borders, distances and counters.
 pub(super) fn entries() -> Vec<Entry> {
@@ -19,66 +23,6 @@ pub(super) fn entries() -> Vec<Entry> {
     entries.extend(distances());
     entries.extend(counter::entries());
     entries
-}
-
-/// What all models assume that do not lift it.
-const ALL: [&str; 8] = [
-    "limits-reach-over-the-border",
-    "odometer-bound",
-    "stop-point-life",
-    "transmitter-does-not-loop",
-    "sub-data-worst",
-    "fix-of-the-section-heard",
-    "margin-covers-the-crossing",
-    "line-is-told",
-];
-
-/// All but the one at `place`.
-const fn without(place: usize) -> [&'static str; ALL.len() - 1] {
-    super::all_but(ALL, place)
-}
-
-/// What a model assumes, and what it lifts.
-type Conditions = (&'static [&'static str], &'static [&'static str]);
-
-const SOUND: Conditions = (&ALL, &[]);
-const NO_LIMITS: Conditions = (&without(0), &["limits-reach-over-the-border"]);
-const NO_ODOMETER: Conditions = (&without(1), &["odometer-bound"]);
-const NO_POINT_LIFE: Conditions = (&without(2), &["stop-point-life"]);
-const LOOPS: Conditions = (&without(3), &["transmitter-does-not-loop"]);
-const NO_WORST: Conditions = (&without(4), &["sub-data-worst"]);
-const NO_FIX: Conditions = (&without(5), &["fix-of-the-section-heard"]);
-const NO_MARGIN: Conditions = (&without(6), &["margin-covers-the-crossing"]);
-const NOT_TOLD: Conditions = (&without(7), &["line-is-told"]);
-
-const DISTANCE: &[&str] = &["PER-1", "PER-4", "PER-8"];
-const WORST: &[&str] = &["PER-1", "PER-5", "PER-8"];
-const AGE: &[&str] = &["PER-6", "PER-8", "PER-12", "TEL-6", "TEL-8"];
-
-fn about(
-    name: &'static str,
-    statement: &str,
-    environment: &str,
-    requirements: &'static [&'static str],
-    (in_force, lifted): Conditions,
-) -> About {
-    About { name, statement: statement.to_owned(), requirements, environment: environment.to_owned(), in_force, lifted }
-}
-
-/// A ride with the kernel's device.
-fn ride(about: About, layout: &Layout, small: Small, environment: Environment, purpose: Purpose) -> Entry {
-    other(about, Real, layout, small, environment, purpose)
-}
-
-fn other<D: Device>(
-    about: About,
-    device: D,
-    layout: &Layout,
-    small: Small,
-    environment: Environment,
-    purpose: Purpose,
-) -> Entry {
-    Entry::new(about, Ride::new(device, layout.clone(), small, environment, purpose))
 }
 
 fn lines() -> Vec<Entry> {

@@ -13,11 +13,12 @@ pub use conditions::{Faults, Lives, Times};
 pub use known::{Number, Outcome};
 
 use super::neighbours::View;
-use super::stations::{self, IN, OUT, Small, circuits, stop};
+use super::sizes::{Small, circuits};
+use super::stations::{self, IN, OUT, stop};
 use super::trace::{Run, direction_word};
 use super::yard::Kept;
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Input, Orders, Positions, Request, RouteId, SegmentId, SegmentSet, Travel,

@@ -8,13 +8,14 @@
 //! section: what the station tells the block is [`Joint`].
 
 use super::device::Real;
+use super::sizes::circuits;
 use super::state::{Cycle as YardCycle, Harm, State as YardState};
-use super::stations::{circuits, counted};
+use super::stations::counted;
 use super::train::{Place, Train};
 use super::yard::{Yard, mask};
 use crate::block::fault::Faults;
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::block::{Block, Hold, Input, SectionSet, State as Kernel, Status, TrainCount, step};
 use atc_kernel::interlocking::{self as kernel, CircuitSet};
 use atc_kernel::time::Ticks;

@@ -1,6 +1,6 @@
 //! The machine in a model: the kernel's, or a wrong one to compare with.
 
-use super::stations::{ROUTES, SEGMENTS, Small};
+use super::sizes::{ROUTES, SEGMENTS, Small};
 use atc_kernel::interlocking::{Input, Output, State};
 use std::fmt::Debug;
 

@@ -1,7 +1,7 @@
 //! What may happen in a model of the interlocking.
 
 use super::ground::{Blade, Heading};
-use super::stations::POINTS;
+use super::sizes::POINTS;
 use atc_kernel::interlocking::Request;
 
 /// The most trains of a model.

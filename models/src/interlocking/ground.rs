@@ -3,7 +3,7 @@
 //! Nothing of it comes from the layout that the kernel reads, so that a layout may be wrong about it. Circuits are numbered as in the layout;
 //! sets of them are masks, a bit each.
 
-use super::stations::{POINTS, Small};
+use super::sizes::{POINTS, Small};
 use atc_kernel::interlocking::{self as kernel, Position};
 
 /// The way that a train goes.

@@ -4,12 +4,14 @@
 //! | module | what is in it |
 //! |---|---|
 //! | [`ground`] | the tracks as they really are: circuits, points, signals; arithmetic of its own, none of the kernel's |
+//! | `sizes` | how large a station may be |
 //! | [`stations`] | a passing loop, a junction, a crossing, a terminus, and their layouts |
 //! | [`device`] | the machine in a model |
 //! | [`environment`] | what may happen |
 //! | [`train`] | how trains move |
 //! | [`yard`] | the model: trains, points, requests, and the kernel |
 //! | `state` | what it remembers |
+//! | `purpose` | what a model is there to show |
 //! | `claims` | what is claimed of it |
 //! | `progress` | the states from which not every train can arrive any more |
 //! | `trace` | a path as a run of the kernel |
@@ -27,10 +29,12 @@ pub mod environment;
 pub mod ground;
 pub mod neighbours;
 mod progress;
+mod purpose;
+mod sizes;
 mod state;
 pub mod stations;
 mod trace;
 pub mod train;
 pub mod yard;
 
-pub use claims::{Purpose, Sight};
+pub use purpose::{Purpose, Sight};

@@ -4,10 +4,10 @@
 //! over, or never, and in any order. Each station commands either direction, or nothing. While a station has the direction away, it sends a
 //! train; the line is then occupied for both until the train has left it.
 
-use super::stations::circuits;
+use super::sizes::circuits;
 use super::trace::{Run, direction_word};
-use crate::check::{Claim, Subject};
 use crate::outcome::Trace;
+use crate::subject::{Claim, Subject};
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{

@@ -4,13 +4,7 @@ use super::device::Device;
 use super::train::Place;
 use super::yard::{State, Yard};
 use crate::block::graph::Graph;
-use crate::check::{Limits, Subject};
-use ahash::AHashSet;
-use std::sync::{Arc, OnceLock};
-
-/// The states from which not every train can arrive, once somebody has asked; `None` if there are too many to know.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Doomed(Arc<OnceLock<Option<AHashSet<State>>>>);
+use crate::subject::{Limits, Subject};
 
 impl<D: Device> Yard<D> {
     /// Whether every train of the timetable is where it ends.

@@ -2,7 +2,7 @@
 
 use super::environment::TRAINS;
 use super::ground::Blade;
-use super::stations::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circuits};
+use super::sizes::{CIRCUITS, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, circuits};
 use super::train::{Fate, Train};
 use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Directions, Input, Positions, RouteState, Settling, SpeedCode, SpeedLimits, Track,

@@ -23,40 +23,17 @@ pub use others::{
     terminus,
 };
 
+pub use super::sizes::{CIRCUITS, PLACES, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, SmallPlan, circuits};
+
 use super::ground::{Edge, Ground, Heading, Signal, Station};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Layout, Plan, Point, PointSet, Position, Positions, Route, RouteSet, Segment, SegmentSet,
-    SpeedCode,
+    CircuitSet, Element, Layout, Point, PointSet, Position, Positions, Route, RouteSet, Segment, SegmentSet, SpeedCode,
 };
 use atc_kernel::time::Ticks;
 
-/// The most routes of a model.
-pub const ROUTES: usize = 8;
-/// The most circuits of a route.
-pub const PLACES: usize = 3;
-/// The most points.
-pub const POINTS: usize = 2;
-/// The most segments of plain line.
-pub const SEGMENTS: usize = 2;
-/// The most circuits of a station.
-pub const CIRCUITS: usize = 8;
-
-/// The most signals.
-pub const SIGNALS: usize = 6;
-
-/// A layout of this size.
-pub type Small = Layout<ROUTES, PLACES, POINTS, SEGMENTS>;
-/// A plan of this size.
-pub type SmallPlan = Plan<ROUTES, PLACES, POINTS, SEGMENTS>;
-
 use Heading::{Down, Up};
 use Position::{Normal, Reverse};
-
-/// The set of circuits of a mask.
-pub const fn circuits(mask: u8) -> CircuitSet {
-    CircuitSet::from_bits(mask as u64)
-}
 
 const fn points(mask: u8) -> PointSet {
     PointSet::from_bits(mask as u32)

@@ -2,7 +2,7 @@
 
 use super::environment::{Environment, Obey};
 use super::ground::{Ahead, Blade, Ground, Heading};
-use super::stations::{POINTS, SIGNALS};
+use super::sizes::{POINTS, SIGNALS};
 
 /// Where a train is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

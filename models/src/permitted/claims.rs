@@ -2,48 +2,11 @@
 
 use super::device::Device;
 use super::layout::SPEEDS;
+use super::purpose::{Purpose, Sight};
 use super::ride::{Cycle, Ghosts, Ride, Shown, State, Told, Train, Transmitter};
-use crate::check::Claim;
+use crate::subject::Claim;
 use atc_kernel::permitted::{Basis, LineKind};
 use atc_kernel::telegram::Main;
-
-/// What a model is there to show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// The permitted speed is never above what the ground allows; and these are seen.
-    Safe(&'static [Sight]),
-    /// It is, and each of these assumptions or requirements excludes it.
-    Hazard(&'static [&'static str]),
-}
-
-/// What must be seen, so that a model is not empty.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sight {
-    /// The train runs on the pattern, faster than the worst limit and gradient would let it.
-    Pattern,
-    /// Telegrams are missing, and the last pattern runs down.
-    RunsDown,
-    /// Telegrams are missing for too long, and the train stands.
-    Starved,
-    /// It runs on the pattern again after that.
-    Recovers,
-    /// It runs on codes alone again, after an analog line and a digital one.
-    Crosses,
-    /// It runs at the restriction, after it was faster in the same section.
-    Restricted,
-    /// It still runs on a point that was withdrawn as long ago as the ground allows for.
-    OldPoint,
-    /// It uses a telegram that the transmitter repeats.
-    Repeated,
-    /// It uses one whose number is the counter's range further on than that of the next one.
-    Wrapped,
-    /// It still runs on a limit that was restricted as long ago as the ground allows for.
-    OldLimit,
-    /// It runs to the stopping point and stands there.
-    Arrives,
-    /// The conventional train runs at the highest speed.
-    Conventional,
-}
 
 impl<D: Device> Ride<D> {
     /// More than this is not counted.
@@ -211,7 +174,7 @@ impl<D: Device> Ride<D> {
     }
 
     fn sight(sight: Sight) -> Claim<Self> {
-        let (name, text, condition): (_, _, fn(&crate::check::Checked<Self>, &State) -> bool) = match sight {
+        let (name, text, condition): (_, _, fn(&crate::subject::Checked<Self>, &State) -> bool) = match sight {
             Sight::Pattern => ("on-the-pattern", "the train runs on the pattern, above the lowest limit", |_, s| {
                 matches!(s.shown.basis, Basis::Pattern | Basis::Both)
                     && s.shown.speed > Some(SPEEDS[0])

@@ -8,6 +8,7 @@
 //! | [`ride`] | the model: ground, channel and train |
 //! | `state` | what it remembers |
 //! | `environment` | what may happen in it |
+//! | `purpose` | what it is there to show |
 //! | `claims` | what is claimed of it |
 //! | `trace` | a path as a run of the kernel |
 
@@ -15,8 +16,9 @@ mod claims;
 pub mod device;
 mod environment;
 pub mod layout;
+mod purpose;
 pub mod ride;
 mod state;
 mod trace;
 
-pub use claims::{Purpose, Sight};
+pub use purpose::{Purpose, Sight};

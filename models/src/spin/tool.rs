@@ -1,6 +1,6 @@
 //! SPIN and the C compiler as processes, and what the checkers that they make print.
 
-use super::Twin;
+use crate::twin::Twin;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};

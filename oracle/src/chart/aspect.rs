@@ -3,8 +3,10 @@
 
 use atc_kernel::aspect::{AspectId, AspectSet, MAX_ASPECTS, Parts, Times};
 
-use super::{Lane, Mark, Scene, Sign, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scene, Sign, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::aspect::{Aspect, Config};
@@ -44,18 +46,7 @@ impl Drawn for Aspect {
 fn scene(config: &Config, cycles: &[Cycle<Aspect>]) -> Scene {
     let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let end = cycles.len() as u64;
-    let mut scene = Scene {
-        machine: Aspect::NAME,
-        notes: Vec::new(),
-        unit,
-        cycles: end,
-        lanes: Vec::new(),
-        guides: Vec::new(),
-        legend: Vec::new(),
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
-    };
+    let mut scene = Scene::of(Aspect::NAME, unit, end);
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Aspect::open(config) else { return scene };
     let times = machine.times();

@@ -3,8 +3,11 @@
 
 use atc_kernel::block::{Parts, Status};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::block::{Config, Counted, Fault, Output};
 
@@ -75,12 +78,6 @@ impl Drawn for Counted {
 fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
     let unit = Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms };
     let mut scene = Scene {
-        machine: Counted::NAME,
-        notes: Vec::new(),
-        unit,
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied: detected"),
             (Tone::Held, "occupied: held for a tail"),
@@ -89,9 +86,7 @@ fn scene(config: &Config, cycles: &[Cycle<Counted>]) -> Scene {
             (Tone::Dropped, "unverified"),
             (Tone::Emergency, "fault, reset refused"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Counted::NAME, unit, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Counted::open(config) else { return scene };

@@ -4,33 +4,28 @@
 use svg::node::element::{Group, Polygon, Rectangle, SVG, Title};
 use svg::{Document, Node};
 
-use super::figure::{self, Figure};
-use super::ink::{INK, dashes, join, line, paint, polyline, rectangle, round, sign_at, text, width, wrap};
-use super::{Lane, Mark, Part, Scene, Sign, Tone, View};
-use crate::trace::TraceError;
+use super::distance;
+use super::ink::{
+    FAINT, INK, LEFT, RIGHT, axis_step, dashes, join, line, paint, polyline, rectangle, round, sign_at, text, width,
+    wrap,
+};
+use super::plot::{Plot, float};
+use super::scene::{Lane, Mark, Scene, Sign, Tone};
+use super::view::{Part, View};
+use crate::trace::error::TraceError;
 use atc_protocol::form::Fault;
 
 const WIDTH: f64 = 1000.0;
-pub(super) const LEFT: f64 = 160.0;
-pub(super) const RIGHT: f64 = 980.0;
 const TEXT: f64 = 12.0;
-pub(super) const FAINT: &str = "#dddddd";
-
-/// One scene's part of the drawing: its window of cycles and where it stands on the page.
-pub(super) struct Plot<'a> {
-    pub(super) scene: &'a Scene,
-    from: f64,
-    to: f64,
-}
 
 pub(super) fn svg(scenes: &[Scene], view: &View) -> Result<String, TraceError> {
     let mut body =
         Group::new().set("font-family", "Helvetica, Arial, sans-serif").set("font-size", TEXT).set("fill", INK);
     let mut y = 14.0;
     let heading = view.title.as_deref().or(scenes.first().map(|scene| scene.machine)).unwrap_or_default();
-    let figure = Figure::of_all(scenes);
+    let figure = distance::of_all(scenes);
     if let (Some(figure), true) = (&figure, view.only != Some(Part::Rows)) {
-        y = figure::draw(figure, &mut body, heading, y);
+        y = distance::draw(figure, &mut body, heading, y);
     } else if view.only == Some(Part::Figure) {
         let what = format!("the cases of {heading} have no figure, only rows over time");
         return Err(TraceError { line: 0, fault: Fault::whole(what) });
@@ -53,33 +48,7 @@ pub(super) fn svg(scenes: &[Scene], view: &View) -> Result<String, TraceError> {
     Ok(format!("{document}\n"))
 }
 
-impl<'a> Plot<'a> {
-    fn new(scene: &'a Scene, view: &View, place: usize) -> Result<Self, TraceError> {
-        let end = scene.unit.value(scene.cycles);
-        let (from, to) = (view.from.unwrap_or(0), view.to.unwrap_or(end).min(end));
-        if from >= to {
-            let unit = scene.unit.name;
-            let fault = Fault::whole(format!(
-                "case {} is {end} {unit} long; the view from {from} to {} {unit} shows nothing of it",
-                place + 1,
-                view.to.unwrap_or(end)
-            ));
-            return Err(TraceError { line: 0, fault });
-        }
-        let per_cycle = f64::from(scene.unit.per_cycle);
-        Ok(Self { scene, from: float(from) / per_cycle, to: float(to) / per_cycle })
-    }
-
-    pub(super) fn x(&self, cycle: f64) -> f64 {
-        LEFT + (cycle - self.from) / (self.to - self.from) * (RIGHT - LEFT)
-    }
-
-    /// The part of a span that is in view, in pixels.
-    pub(super) fn clip(&self, from: u64, to: u64) -> Option<(f64, f64)> {
-        let (from, to) = (float(from).max(self.from), float(to).min(self.to));
-        (from < to).then(|| (self.x(from), self.x(to)))
-    }
-
+impl Plot<'_> {
     /// Draws the scene from `y` down and returns where it ends.
     fn draw(&self, body: &mut Group, title: &str, mut y: f64) -> f64 {
         y += 12.0;
@@ -313,15 +282,4 @@ impl<'a> Plot<'a> {
 
 fn lane_height(lane: &Lane) -> f64 {
     f64::from(lane.height)
-}
-
-/// 1, 2 or 5 times a power of ten, at least `least` and at least 1.
-pub(super) fn axis_step(least: f64) -> f64 {
-    let power = 10_f64.powf(least.max(1.0).log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= least).unwrap_or(10.0 * power)
-}
-
-#[expect(clippy::cast_precision_loss, reason = "a chart of 2^53 cycles is not drawn")]
-fn float(cycles: u64) -> f64 {
-    cycles as f64
 }

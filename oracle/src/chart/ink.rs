@@ -3,10 +3,16 @@
 use svg::Node;
 use svg::node::element::{Group, Line, Polygon, Polyline, Rectangle, Text};
 
-use super::{Sign, Tone};
+use super::scene::{Sign, Tone};
 
 /// The colour of lines and text.
 pub(super) const INK: &str = "#111111";
+/// The colour of the lines of a grid.
+pub(super) const FAINT: &str = "#dddddd";
+/// Where rows begin.
+pub(super) const LEFT: f64 = 160.0;
+/// Where they end.
+pub(super) const RIGHT: f64 = 980.0;
 
 /// How a tone is painted: fill, edge, and the ink of a text on it.
 pub(super) struct Paint {
@@ -109,4 +115,10 @@ pub(super) fn polyline(points: &[(f64, f64)]) -> Polyline {
 pub(super) fn join(points: &[(f64, f64)]) -> String {
     let points: Vec<_> = points.iter().map(|(x, y)| format!("{},{}", round(*x), round(*y))).collect();
     points.join(" ")
+}
+
+/// 1, 2 or 5 times a power of ten, at least `least` and at least 1.
+pub(super) fn axis_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.max(1.0).log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * power).find(|step| *step >= least).unwrap_or(10.0 * power)
 }

@@ -5,9 +5,13 @@ use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{self as kernel, CircuitSet, Position, SegmentSet};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::drawn::{Cycle, Drawn};
-use crate::film::{self, Take};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::film::interlocking;
+use crate::film::take::Take;
+use crate::trace::run::Cycle;
 use atc_film::Film;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{
@@ -37,19 +41,13 @@ impl Drawn for Interlocked {
     }
 
     fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
-        film::interlocking::put(take, film).map(|()| true)
+        interlocking::put(take, film).map(|()| true)
     }
 }
 
 /// Lays out a case.
 fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
     let mut scene = Scene {
-        machine: Interlocked::NAME,
-        notes: Vec::new(),
-        unit: Unit { axis: "time", name: "ms", per_cycle: 1 },
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied; route in use"),
             (Tone::Held, "held; route set"),
@@ -59,9 +57,7 @@ fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
             (Tone::Emergency, "failed, refused"),
             (Tone::Code, "what trains are told"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Interlocked::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Interlocked::open(config) else { return scene };

@@ -2,8 +2,10 @@
 
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::changes;
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_line::refusal::{brake, gradient};
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
@@ -34,12 +36,8 @@ fn scene(config: Config, cycles: &[Cycle<Braking>]) -> Scene {
     let signal =
         |name: &str, values: Vec<(u64, Option<f64>)>| Signal { name: name.to_owned(), values: Values::Real(values) };
     let mut scene = Scene {
-        machine: Braking::NAME,
         notes: vec!["The answers in the order of the questions.".to_owned()],
-        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
-        cycles: cycles.len() as u64,
         lanes: vec![lane("speed, km/h", &kernel, Tone::Limit)],
-        guides: Vec::new(),
         legend: vec![(Tone::Limit, "speed from which the train stops in the distance")],
         signals: vec![
             signal("distance_m", distances.into_iter().map(|(at, metres)| (at, Some(f64::from(metres)))).collect()),
@@ -49,8 +47,8 @@ fn scene(config: Config, cycles: &[Cycle<Braking>]) -> Scene {
             ),
             signal("speed_km_h", speeds(&kernel)),
         ],
-        differences: Vec::new(),
         figure: Some(figure(config, cycles)),
+        ..Scene::of(Braking::NAME, Unit { axis: "time", name: "cycles", per_cycle: 1 }, cycles.len() as u64)
     };
     let said = cycles.iter().map(|cycle| cycle.recorded.filter(|said| *said != cycle.output));
     record::differences(&mut scene, 0, said.map(|said| said.map(|said| format!("{} km/h", said.speed_km_h))));

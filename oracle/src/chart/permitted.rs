@@ -5,8 +5,10 @@ use atc_kernel::telegram::Route;
 
 use super::figure::{Curve, Figure, Stroke};
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, metres, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::decimal::Metres;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
@@ -43,7 +45,6 @@ impl Drawn for Permitting {
 /// Lays out a case.
 fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
     let mut scene = Scene {
-        machine: Permitting::NAME,
         notes: vec![
             format!(
                 "Brake {} mm/s², margin {} m; a main telegram is fresh for {} ms and its pattern runs down for {} ms; cycle {} ms. Until the sub telegram: gradient {} ‰, limit {} km/h.",
@@ -51,10 +52,7 @@ fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
             ),
             "What is heard is drawn over the cycle in which it was heard; what is permitted stands from the end of the cycle on.".to_owned(),
         ],
-        unit: Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms },
-        cycles: cycles.len() as u64,
         lanes: lanes(cycles),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Limit, "permitted; to stop"),
             (Tone::Signal, "train; telegram used"),
@@ -66,8 +64,8 @@ fn scene(config: &Config, cycles: &[Cycle<Permitting>]) -> Scene {
             (Tone::Emergency, "nothing"),
         ],
         signals: signals(cycles),
-        differences: Vec::new(),
         figure: Some(figure(config, cycles)),
+        ..Scene::of(Permitting::NAME, Unit { axis: "time", name: "ms", per_cycle: config.cycle_ms }, cycles.len() as u64)
     };
     let texts = cycles.iter().map(|cycle| {
         let said = cycle.recorded.as_ref().filter(|said| **said != cycle.output);

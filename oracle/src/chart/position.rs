@@ -1,8 +1,10 @@
 //! The timing chart of the train's position: the interval as a band, the truth if it is given, its width, and the levels.
 
 use super::record;
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, metres, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, metres, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::decimal::{Decibels, Metres};
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::position::{Config, Output, Positioned};
@@ -51,12 +53,8 @@ fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
         });
     }
     let mut scene = Scene {
-        machine: Positioned::NAME,
         notes,
-        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
-        cycles: cycles.len() as u64,
         lanes: lanes(cycles, &intervals, &truths, &widths),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "interval"),
             (Tone::Signal, "truth; second level"),
@@ -64,8 +62,7 @@ fn scene(config: &Config, cycles: &[Cycle<Positioned>]) -> Scene {
             (Tone::Dropped, "unknown"),
         ],
         signals: signals(cycles, &intervals, &truths),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Positioned::NAME, Unit { axis: "time", name: "cycles", per_cycle: 1 }, cycles.len() as u64)
     };
     let said = cycles.iter().map(|cycle| cycle.recorded.filter(|said| *said != cycle.output));
     let texts = said.map(|said| {

@@ -1,6 +1,7 @@
 //! What a record says otherwise than the kernel, as one row of a chart.
 
-use super::{Lane, Mark, Scene, Signal, Tone, Values, spans};
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Values};
+use super::series::spans;
 
 /// The sentence of the first difference: every field that differs there.
 pub(super) fn note(first: &str, says: &str) -> String {

@@ -1,8 +1,10 @@
 //! The timing chart of speed supervision: the two speeds as curves, the brake below. It counts no time, so the axis
 //! is in logic cycles.
 
-use super::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scale, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::supervision::{Brake, Config, Supervised};
@@ -22,13 +24,10 @@ fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
     let recorded: Vec<_> =
         cycles.iter().map(|cycle| cycle.recorded.map_or(cycle.output.brake, |said| said.brake)).collect();
     let mut scene = Scene {
-        machine: Supervised::NAME,
         notes: vec![format!(
             "Highest plausible speed {} km/h, release margin {} km/h. A speed is drawn over the cycle in which it was read; the brake stands from the end of the cycle on.",
             config.maximum_km_h, config.release_margin_km_h
         )],
-        unit: Unit { axis: "time", name: "cycles", per_cycle: 1 },
-        cycles: end,
         lanes: vec![speed_lane(&measured, &permitted), brake_lane("brake", &brakes, &brakes)],
         guides: changes(&brakes).into_iter().skip(1).map(|(at, _)| at + 1).collect(),
         legend: vec![
@@ -42,8 +41,7 @@ fn scene(config: &Config, cycles: &[Cycle<Supervised>]) -> Scene {
             Signal { name: "permitted_km_h".to_owned(), values: Values::Real(numbers(&permitted)) },
             brake_signal("brake", &brakes),
         ],
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Supervised::NAME, Unit { axis: "time", name: "cycles", per_cycle: 1 }, end)
     };
     let differ = spans(brakes.iter().zip(&recorded).map(|(kernel, said)| kernel != said));
     scene.differences = differ.into_iter().filter(|span| span.2).map(|(from, to, _)| (from + 1, to + 1)).collect();

@@ -2,8 +2,10 @@
 
 use atc_kernel::telegram::{FRAME_BITS, Frame, Route, Telegram, decode};
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::telegram::{Codec, Config, Found, Output, Step};
 use atc_protocol::names::Named as _;
@@ -165,16 +167,10 @@ fn scene(_: Config, cycles: &[Cycle<Codec>]) -> Scene {
         notes.push(format!("The first {MOST} of {} steps are drawn.", cycles.len()));
     }
     let mut scene = Scene {
-        machine: Codec::NAME,
         notes,
-        unit: Unit { axis: "place", name: "bits", per_cycle: 1 },
-        cycles: longest as u64,
         lanes,
-        guides: Vec::new(),
-        legend: Vec::new(),
         signals: signals(&shown),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Codec::NAME, Unit { axis: "place", name: "bits", per_cycle: 1 }, longest as u64)
     };
     let said = cycles.iter().map(|cycle| cycle.recorded.as_ref().filter(|said| **said != cycle.output));
     let said: Vec<_> = said.map(|said| said.map(|said| serde_json::to_string(said).unwrap_or_default())).collect();

@@ -1,8 +1,10 @@
 //! The timing chart of the on-board device: what is displayed, permitted and measured as curves, the brake below.
 
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans};
 use super::supervision::{brake_lane, brake_signal, numbers, speed_lane};
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, spans};
-use crate::drawn::{Cycle, Drawn};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::kmh::Kmh;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::train::{Config, OnBoard, Step};
@@ -26,12 +28,9 @@ fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
     let display = shown(|cycle| cycle.output.display_km_h);
     let brakes: Vec<_> = cycles.iter().map(|cycle| cycle.output.brake).collect();
     let mut scene = Scene {
-        machine: OnBoard::NAME,
         notes: vec![
             "Codes and telegrams are drawn over the cycle in which they were received; what is displayed, permitted and commanded stands from the end of the cycle on.".to_owned(),
         ],
-        unit: Unit { axis: "time", name: "ms", per_cycle: config.permitted.cycle_ms },
-        cycles: end,
         lanes: vec![
             received("codes", Tone::Signal, cycles, |step| step.main.code_hz.is_some() && step.sub.code_hz.is_some()),
             received("main telegrams", Tone::Limit, cycles, |step| step.main.telegram.is_some() || step.main.frame.is_some()),
@@ -54,8 +53,7 @@ fn scene(config: &Config, cycles: &[Cycle<OnBoard>]) -> Scene {
             Signal { name: "display_km_h".to_owned(), values: Values::Real(numbers(&display)) },
             brake_signal("brake", &brakes),
         ],
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(OnBoard::NAME, Unit { axis: "time", name: "ms", per_cycle: config.permitted.cycle_ms }, end)
     };
     let differ = spans(cycles.iter().map(|cycle| cycle.recorded.is_some_and(|said| said != cycle.output)));
     scene.differences = differ.into_iter().filter(|span| span.2).map(|(from, to, _)| (from + 1, to + 1)).collect();

@@ -3,9 +3,9 @@
 use svg::Node;
 use svg::node::element::{Group, Title};
 
-use super::draw::{FAINT, LEFT, Plot, RIGHT, axis_step};
-use super::ink::{INK, dashes, line, paint, polyline, rectangle, round, text, width};
-use super::{Scale, Tone};
+use super::ink::{FAINT, INK, LEFT, RIGHT, axis_step, dashes, line, paint, polyline, rectangle, round, text, width};
+use super::plot::Plot;
+use super::scene::{Scale, Tone};
 
 /// Where a value stands between the two rows.
 fn height(value: f64, scale: Scale, rows: (f64, f64)) -> f64 {

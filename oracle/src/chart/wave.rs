@@ -4,8 +4,8 @@ use std::io;
 
 use vcd::{IdCode, SimulationCommand, TimescaleUnit, VarType, Writer};
 
-use super::{Scene, Values};
-use crate::trace::TraceError;
+use super::scene::{Scene, Values};
+use crate::trace::error::TraceError;
 use atc_protocol::form::Fault;
 
 /// One change of one signal.

@@ -3,8 +3,11 @@
 
 use std::collections::BTreeSet;
 
-use super::{Lane, Mark, Scene, Signal, Tone, Unit, Values, changes, record, spans, standing};
-use crate::drawn::{Cycle, Drawn};
+use super::record;
+use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
+use super::series::{changes, spans, standing};
+use crate::drawn::machine::Drawn;
+use crate::trace::run::Cycle;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{Answer, Request};
 use atc_protocol::machine::wayside::{Config, Ground, Output, Permission, Step, Transmission};
@@ -26,12 +29,6 @@ impl Drawn for Ground {
 /// Lays out a case.
 fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
     let mut scene = Scene {
-        machine: Ground::NAME,
-        notes: Vec::new(),
-        unit: Unit { axis: "time", name: "ms", per_cycle: 1 },
-        cycles: cycles.len() as u64,
-        lanes: Vec::new(),
-        guides: Vec::new(),
         legend: vec![
             (Tone::Detected, "occupied"),
             (Tone::Held, "told to be occupied, not reported"),
@@ -39,9 +36,7 @@ fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
             (Tone::Emergency, "refused, fault, restart"),
             (Tone::Code, "what trains are told"),
         ],
-        signals: Vec::new(),
-        differences: Vec::new(),
-        figure: None,
+        ..Scene::of(Ground::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Ground::open(config) else { return scene };

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::alike::limits;
 use super::fields::{Shape, table};
-use super::vectors::Vector;
+use super::vector::Vector;
 
 /// A limit, and the vector that decides it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -21,5 +21,6 @@ pub mod report;
 pub mod run;
 pub mod shrink;
 pub mod side;
+pub(crate) mod vector;
 pub mod vectors;
 pub mod walk;

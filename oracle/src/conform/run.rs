@@ -12,7 +12,7 @@ use super::play::{At, Finding, Found, Judge, play};
 use super::profile::Profile;
 use super::shrink::{Trace, shrink};
 use super::side::{Answers as _, Broken, Side};
-use super::vectors::Vector;
+use super::vector::Vector;
 use super::walk::{self, Sizes};
 use atc_protocol::machine::KINDS;
 

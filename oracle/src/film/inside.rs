@@ -8,7 +8,7 @@ use atc_kernel::interlocking::{MAX_CODES, SpeedCode};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::Take;
+use super::take::Take;
 use atc_protocol::machine::interlocking::{Interlocked, Phase, Reason};
 use atc_protocol::names::Named;
 

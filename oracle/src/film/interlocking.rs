@@ -4,7 +4,8 @@
 use atc_film::{Class, Film, Plan};
 use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet};
 
-use super::{Take, inside, schematic, stage};
+use super::take::Take;
+use super::{inside, schematic, stage};
 use atc_protocol::machine::Machine as _;
 use atc_protocol::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, State, Step, Travel};
 use atc_protocol::names::Named as _;

@@ -2,7 +2,7 @@
 
 use atc_film::{Film, Lane, Legend, Line, Mark};
 
-use crate::chart::{self, Scale, Scene, Sign, Tone};
+use crate::chart::scene::{self, Scale, Scene, Sign, Tone};
 
 /// Puts the rows of a chart into a film.
 pub(super) fn put(film: &mut Film, scene: &Scene) {
@@ -11,39 +11,39 @@ pub(super) fn put(film: &mut Film, scene: &Scene) {
         scene.legend.iter().map(|(of, text)| Legend { tone: tone(*of).to_owned(), text: (*text).to_owned() }).collect();
 }
 
-fn lane(of: &chart::Lane) -> Lane {
+fn lane(of: &scene::Lane) -> Lane {
     let mut lane = Lane { label: of.label.clone(), first: of.first, height: of.height, ..Lane::default() };
     let mut bars = Vec::new();
     let mut signs = Vec::new();
     for mark in &of.marks {
         match mark {
-            chart::Mark::Wave(spans) => lane.marks.push(Mark::Wave(spans.clone())),
-            chart::Mark::Bar { from, to, tone: of, texts } => {
+            scene::Mark::Wave(spans) => lane.marks.push(Mark::Wave(spans.clone())),
+            scene::Mark::Bar { from, to, tone: of, texts } => {
                 bars.push((*from, *to, tone(*of).to_owned(), texts.first().cloned().unwrap_or_default()));
             }
-            chart::Mark::Dimension { from, to, text } => {
+            scene::Mark::Dimension { from, to, text } => {
                 bars.push((*from, *to, tone(Tone::Blank).to_owned(), text.clone()));
             }
-            chart::Mark::Tick { from, to, tone: of, hint } => {
+            scene::Mark::Tick { from, to, tone: of, hint } => {
                 bars.push((*from, *to, tone(*of).to_owned(), hint.clone()));
             }
-            chart::Mark::Sign { at, sign } => {
+            scene::Mark::Sign { at, sign } => {
                 let letter = match sign {
                     Sign::Accepted => "▲",
                     Sign::Gone => "✕",
                 };
                 signs.push((*at, letter.to_owned()));
             }
-            chart::Mark::Curve { points, tone: of, scale } => {
+            scene::Mark::Curve { points, tone: of, scale } => {
                 lane.scale = Some(range(*scale));
                 lane.marks.push(Mark::Line(Line { tone: tone(*of).to_owned(), points: points.clone() }));
             }
-            chart::Mark::Band { points, tone: of, scale } => {
+            scene::Mark::Band { points, tone: of, scale } => {
                 lane.scale = Some(range(*scale));
                 lane.marks.push(Mark::Band(tone(*of).to_owned(), points.clone()));
             }
-            chart::Mark::Letters { from, text } => lane.marks.push(Mark::Letters(*from, text.clone())),
-            chart::Mark::Steps { points, top } => {
+            scene::Mark::Letters { from, text } => lane.marks.push(Mark::Letters(*from, text.clone())),
+            scene::Mark::Steps { points, top } => {
                 lane.scale = Some((0.0, f64::from((*top).max(1))));
                 let points = points.iter().map(|(at, number)| (*at, number.map(f64::from))).collect();
                 lane.marks.push(Mark::Line(Line { tone: tone(Tone::Code).to_owned(), points }));

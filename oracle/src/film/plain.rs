@@ -4,7 +4,7 @@
 use atc_film::{Class, Film};
 use serde_json::Value;
 
-use super::Take;
+use super::take::Take;
 use atc_protocol::machine::Machine;
 
 /// The longest text of a value.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest as _, Sha256};
 
 use super::report::Unread;
-use crate::conform::vectors::hex;
+use crate::conform::vector::hex;
 
 /// The name that stands for standard input.
 pub const STANDARD_INPUT: &str = "-";

@@ -1,9 +1,10 @@
 //! One mutant in a copy of the kernel of its own: for what cannot be selected at run time, and to check the other way by.
 
-use crate::campaign::{Asking, Options};
+use crate::asked::Asked;
 use crate::compile::{Kernel, compile, copy, write};
-use crate::mutants::{Mutant, changed};
-use crate::together::{Asked, Judged};
+use crate::judged::Judged;
+use crate::mutant::{Mutant, changed};
+use crate::options::{Asking, Options};
 use crate::tools::Tools;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -3,65 +3,21 @@
 use crate::cbmc::{Answer, CBMC, Halves, PROOF, Question, Silence, Solver, ask_both};
 use crate::compile::{Compiled, Kernel, RUSTC, compile};
 use crate::native::{self, blank};
+use crate::options::Options;
+use crate::pool::{in_parallel, lock};
 use crate::process::only_run;
 use crate::report::{Campaign, HarnessResult, SCHEMA, Verdict};
 use crate::tools::Tools;
 use crate::{provenance, root, selftest};
 use atc_proofs::Harness;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// The name of the engine.
 const ENGINE: &str = "cbmc";
-
-/// How to run.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Harnesses, or mutants, at a time.
-    pub jobs: usize,
-    /// CPU time for each run of the prover.
-    pub limit: Duration,
-    /// Which solver.
-    pub solver: Solver,
-    /// Ranks of the aspect machine; only the compiled engines can change it.
-    pub aspects: usize,
-    /// Accepted runs for each harness of the native engine.
-    pub tests: usize,
-    /// Of which mutants the prover is asked.
-    pub asking: Asking,
-    /// Where all of it is compiled, by one run at a time.
-    pub folder: PathBuf,
-}
-
-/// Of which mutants the prover is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asking {
-    /// Of those that no kept counterexample rejects, and of a sample that the hash of the sources draws.
-    Some,
-    /// Of all.
-    All,
-    /// Of all, each compiled alone, to check those that are compiled together.
-    Alone,
-    /// Of all, with the harnesses as large as they prove: for counterexamples to keep.
-    Record,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            jobs: std::thread::available_parallelism().map_or(2, usize::from),
-            limit: Duration::from_mins(10),
-            solver: Solver::Auto,
-            aspects: atc_proofs::ASPECTS,
-            tests: 20_000,
-            asking: Asking::Some,
-            folder: root().join("target").join("proofs"),
-        }
-    }
-}
 
 /// Proves `harnesses` with CBMC. `progress` hears of every result as it comes.
 ///
@@ -309,31 +265,4 @@ fn conclude(harness: &Harness, options: &Options, cases: &[Halves]) -> HarnessRe
         result.verdict = worst;
     }
     result
-}
-
-/// `work(0)`, …, `work(count - 1)` on `jobs` threads, the results in order.
-pub fn in_parallel<T: Send>(jobs: usize, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<(usize, T)>> = Mutex::new(Vec::with_capacity(count));
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.clamp(1, count.max(1)) {
-            scope.spawn(|| {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    if index >= count {
-                        break;
-                    }
-                    let result = work(index);
-                    lock(&results).push((index, result));
-                }
-            });
-        }
-    });
-    let mut results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    results.sort_by_key(|(index, _)| *index);
-    results.into_iter().map(|(_, result)| result).collect()
-}
-
-pub(crate) fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

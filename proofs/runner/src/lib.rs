@@ -5,16 +5,24 @@
 //! what a run said: a prover that is missing, was killed or was silent is never a pass.
 
 mod alone;
+mod asked;
 pub mod campaign;
 mod cbmc;
 mod compile;
 mod control;
+mod copied;
+mod copies;
+mod importer;
 pub mod importers;
+mod judged;
 pub mod kani;
 mod loops;
+mod mutant;
 pub mod mutants;
 pub mod native;
 pub mod old_rules;
+mod options;
+mod pool;
 mod process;
 mod program;
 pub mod provenance;
@@ -33,10 +41,12 @@ pub mod unwound;
 
 use std::path::{Path, PathBuf};
 
-pub use campaign::{Asking, Options, campaign, in_parallel};
+pub use campaign::campaign;
 pub use cbmc::{Answer, Solver, parse as parse_cbmc};
 pub use control::is_smaller;
 pub use mutants::mutants;
+pub use options::{Asking, Options};
+pub use pool::in_parallel;
 pub use process::end_all_on_interrupt;
 pub use tools::Tools;
 

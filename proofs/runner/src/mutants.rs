@@ -4,90 +4,24 @@
 //! compiled together and selected at run time (`together.rs`); those that cannot be are compiled alone (`alone.rs`).
 
 use crate::alone::attempt;
-use crate::campaign::{Asking, Options, flags, in_parallel, lock};
+use crate::campaign::flags;
+use crate::judged::Judged;
+use crate::mutant::is_together;
+use crate::options::{Asking, Options};
+use crate::pool::{in_parallel, lock};
 use crate::process::only_run;
 use crate::recorded::{self, Recorded};
 use crate::report::{Control, MutantResult, MutantVerdict, Mutants, SCHEMA};
-use crate::schemata::{Change, is_selectable};
-use crate::together::{self, Judged};
 use crate::tools::Tools;
-use crate::{provenance, root, select};
-use serde::Deserialize;
+use crate::{provenance, root, together};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// A mutant, as `proofs/mutants.toml` has it.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Mutant {
-    /// Its name, unique.
-    pub name: String,
-    /// What is wrong with it, in a sentence.
-    pub what: String,
-    /// The requirements that it breaks.
-    pub requirements: Vec<String>,
-    /// The file: from the kernel's `src`, or from the checkout if it begins with `arithmetic/src/`.
-    pub file: String,
-    /// The text to replace; it stands in the file exactly once.
-    pub find: String,
-    /// What replaces it.
-    pub replace: String,
-    /// The harnesses that must reject it: each one on its own.
-    pub killed_by: Vec<String>,
-    /// Whether the prover needs it in a copy of the kernel of its own: where what it changes is computed when the kernel is compiled, and
-    /// the harness has no answer otherwise.
-    #[serde(default)]
-    pub alone: bool,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    mutant: Vec<Mutant>,
-}
-
-/// The mutants of `proofs/mutants.toml`, checked against the kernel and the harnesses of this checkout.
-///
-/// # Errors
-/// What is wrong with the file: a text that does not stand in the kernel exactly once, an unknown harness.
-pub fn list(root: &Path) -> Result<Vec<Mutant>, String> {
-    let path = root.join("proofs").join("mutants.toml");
-    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let file: File = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
-    for (place, mutant) in file.mutant.iter().enumerate() {
-        let wrong = |reason: String| Err(format!("proofs/mutants.toml: mutant `{}`: {reason}", mutant.name));
-        if file.mutant[..place].iter().any(|other| other.name == mutant.name) {
-            return wrong("the name is taken".to_owned());
-        }
-        if mutant.killed_by.is_empty() {
-            return wrong("no harness is to reject it".to_owned());
-        }
-        if let Err(reason) = select(&mutant.killed_by).map(drop).and(changed(root, mutant).map(drop)) {
-            return wrong(reason);
-        }
-    }
-    Ok(file.mutant)
-}
-
-impl Mutant {
-    /// The file that it changes, from the checkout.
-    pub fn path(&self) -> String {
-        if self.file.starts_with("arithmetic/src/") { self.file.clone() } else { format!("kernel/src/{}", self.file) }
-    }
-}
-
-/// The text of the file that the mutant changes, changed.
-pub(crate) fn changed(root: &Path, mutant: &Mutant) -> Result<String, String> {
-    let path = root.join(mutant.path());
-    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    match text.matches(&mutant.find).count() {
-        1 => Ok(text.replacen(&mutant.find, &mutant.replace, 1)),
-        count => Err(format!("`{}` stands {count} times in {}, not once", mutant.find, mutant.file)),
-    }
-}
+pub use crate::asked::SLOW;
+pub use crate::mutant::{Mutant, list};
 
 /// Judges the named mutants (all of them, if no name is given). `progress` hears of every result.
 ///
@@ -220,13 +154,6 @@ fn goes_together(root: &Path, mutant: &Mutant) -> bool {
     !mutant.alone && is_together(root, mutant)
 }
 
-/// Whether the mutant can be selected at run time.
-pub(crate) fn is_together(root: &Path, mutant: &Mutant) -> bool {
-    let change = Change { number: 1, find: &mutant.find, replace: &mutant.replace };
-    let text = std::fs::read_to_string(root.join(mutant.path())).unwrap_or_default();
-    is_selectable(&text, &change)
-}
-
 /// What the harnesses have said of the mutants so far.
 struct Tally<'a> {
     mutants: &'a [&'a Mutant],
@@ -298,13 +225,3 @@ impl<'a> Tally<'a> {
         (0..self.mutants.len()).map(|index| self.result(index, &all)).collect()
     }
 }
-
-/// The harnesses on whose mutants MiniSat is known to have no answer in the time that it is given; found by running them, and a matter of
-/// time only.
-pub const SLOW: [&str; 5] = ["t_per_4", "t_per_4_fix", "t_per_7", "per_machine", "t_pos_1"];
-
-/// The harnesses whose mutants have no answer together, and each at once: sums of many bits, which are another sum with each mutant.
-pub(crate) const SINGLY: [&str; 1] = ["t_tel_3_linear"];
-
-/// What is wrong is found more easily than that nothing is: MiniSat gets some time, and Kissat what that leaves.
-pub(crate) const FIRST: Duration = Duration::from_secs(40);

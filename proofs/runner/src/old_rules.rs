@@ -4,20 +4,17 @@
 //! It is compiled once, into two programs; which mutants they run with is named in the environment when they start. With none named they
 //! run the kernel as it is.
 
-use crate::importers;
-use crate::mutants::{is_together, list};
+use crate::copied::{Files, VARIABLE, once, read, rewrite, selector, settle, text};
+use crate::importer;
+use crate::mutant::{is_together, list};
 use crate::process::only_run;
 use crate::schemata::{Change, instrument, with_cells};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the programs read besides the members of the workspace.
 const DATA: &str = "layouts";
-
-/// The names of the mutants to select, with commas.
-const VARIABLE: &str = "ATC_OLD_RULES";
 
 /// What stands before the version of the copied packages: 0.1.0 becomes 90.1.0.
 const VERSION: &str = "9";
@@ -223,9 +220,6 @@ pub fn build(root: &Path, programs: &[Program]) -> Result<Programs, String> {
     Ok(Programs { root: root.to_owned(), folder: root.join("target").join(built), mutants })
 }
 
-/// Files by their path from the checkout.
-pub(crate) type Files = BTreeMap<PathBuf, Vec<u8>>;
-
 /// What the programs are compiled from: the workspace's folders, and the data.
 fn folders(root: &Path) -> Result<BTreeSet<String>, String> {
     let path = root.join("Cargo.toml");
@@ -236,26 +230,6 @@ fn folders(root: &Path) -> Result<BTreeSet<String>, String> {
     let members = members.ok_or_else(|| format!("{}: no members of the workspace", path.display()))?;
     let folder = |member: &str| member.split('/').next().unwrap_or_default().to_owned();
     Ok(members.iter().filter_map(|member| member.as_str()).map(folder).chain([DATA.to_owned()]).collect())
-}
-
-fn text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-/// All files below a folder.
-fn read(root: &Path, folder: &Path, files: &mut Files) -> Result<(), String> {
-    let from = root.join(folder);
-    let failed = |error: std::io::Error| format!("{}: {error}", from.display());
-    for entry in std::fs::read_dir(&from).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
-        let path = folder.join(entry.file_name());
-        if !entry.path().is_dir() {
-            files.insert(path, std::fs::read(entry.path()).map_err(failed)?);
-        } else if entry.file_name() != "target" {
-            read(root, &path, files)?;
-        }
-    }
-    Ok(())
 }
 
 /// Puts the mutants in, and what selects them. Their names.
@@ -277,8 +251,8 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
         let names: Vec<&str> = mutants.iter().map(|mutant| mutant.name.as_str()).collect();
         rewrite(files, library, |text| with_cells(text, names.len(), &selector(&names, rest)))?;
     }
-    let importers = importers::list(root)?;
-    importers::put_in(&importers, files)?;
+    let importers = importer::list(root)?;
+    importer::put_in(&importers, files)?;
     rewrite(files, "Cargo.toml", |text| {
         // Cargo tells packages apart by name and version, not by where the workspace is: without another version these crates would
         // stand in the place of the checkout's in `target/`.
@@ -309,70 +283,4 @@ fn put_in(root: &Path, files: &mut Files) -> Result<BTreeSet<String>, String> {
     let names = chosen.iter().map(|mutant| mutant.name.as_str());
     let all = names.chain(importers.iter().map(|importer| importer.name.as_str()));
     Ok(all.map(ToOwned::to_owned).collect())
-}
-
-/// What a program calls before anything else, and what selects one mutant alone while it runs. `rest`: what is done with another name.
-pub(crate) fn selector(names: &[&str], rest: &str) -> String {
-    let mut written = format!(
-        "extern crate std;
-         /// Selects the mutants that the environment names.
-         pub fn select() {{
-             let names = std::env::var({VARIABLE:?}).unwrap_or_default();
-             for name in names.split(',').filter(|name| !name.is_empty()) {{
-                 assert!(add(name).is_ok(), \"there is no mutant {{name}}\");
-             }}
-         }}
-         /// Selects this mutant alone; none, if the name is empty.
-         pub fn choose(name: &str) -> Result<(), ()> {{
-             unsafe {{ SELECTED = [0; {count}]; }}
-             add(name)
-         }}
-         fn add(name: &str) -> Result<(), ()> {{
-             let number = match name {{\n",
-        count = names.len()
-    );
-    for (number, name) in names.iter().enumerate() {
-        let _ = writeln!(written, "{name:?} => {number},");
-    }
-    let _ = write!(written, "_ => {rest},\n}};\nunsafe {{ SELECTED[number] = 1; }}\nOk(()) }}\n");
-    written
-}
-
-pub(crate) fn rewrite(
-    files: &mut Files,
-    path: &str,
-    change: impl FnOnce(&str) -> Result<String, String>,
-) -> Result<(), String> {
-    let file = files.get_mut(Path::new(path)).ok_or_else(|| format!("{path} is not there"))?;
-    let text = std::str::from_utf8(file).map_err(|error| format!("{path}: {error}"))?;
-    *file = change(text).map_err(|error| format!("{path}: {error}"))?.into_bytes();
-    Ok(())
-}
-
-fn once(text: &str, find: &str, replace: &str) -> Result<String, String> {
-    match text.matches(find).count() {
-        1 => Ok(text.replacen(find, replace, 1)),
-        count => Err(format!("`{find}` stands there {count} times, not once")),
-    }
-}
-
-/// Makes the folder hold these files and no other. One that is right already stays as it is, so that it is not compiled again.
-fn settle(folder: &Path, files: &Files) -> Result<(), String> {
-    let failed = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
-    let mut there = Files::new();
-    if folder.exists() {
-        read(folder, Path::new(""), &mut there)?;
-    }
-    for path in there.keys().filter(|path| !files.contains_key(*path)) {
-        let path = folder.join(path);
-        std::fs::remove_file(&path).map_err(|error| failed(&path, error))?;
-    }
-    for (path, bytes) in files.iter().filter(|(path, bytes)| there.get(*path) != Some(bytes)) {
-        let path = folder.join(path);
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent).map_err(|error| failed(&path, error))?;
-        }
-        std::fs::write(&path, bytes).map_err(|error| failed(&path, error))?;
-    }
-    Ok(())
 }

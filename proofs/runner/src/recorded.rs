@@ -5,14 +5,15 @@
 //! nothing may. What then rejects the mutant is a run of this very commit, and no prover has to be believed for it. One that no longer
 //! does so shows nothing: then CBMC is asked again.
 
-use crate::campaign::{Options, in_parallel};
 use crate::compile::{copy, write};
-use crate::mutants::{Mutant, changed, is_together};
+use crate::copies::put_in;
+use crate::judged::{Judged, rejects};
+use crate::mutant::{Mutant, changed, is_together};
+use crate::options::Options;
+use crate::pool::in_parallel;
 use crate::program;
 use crate::report::{Kill, MutantResult};
-use crate::together::{Judged, put_in};
 use crate::twin::{self, Tape};
-use atc_proofs::Harness;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -182,26 +183,6 @@ fn kills(
     Ok((0..tapes.len()).filter_map(kill).collect())
 }
 
-/// What shows that the harness rejects the mutant: what happens on these values with the mutant, and what without it.
-///
-/// # Errors
-/// Why it does not show that.
-pub fn rejects(harness: &Harness, tape: &Tape, with: &[String], without: &[String]) -> Result<Kill, String> {
-    let (name, values) = (harness.name, &tape.values);
-    let name_of = |number: &usize| harness.claims.get(*number).map(|claim| claim.name.to_owned());
-    let mut claims: Vec<String> = twin::failed(with).iter().filter_map(name_of).collect();
-    claims.dedup();
-    claims.extend(twin::panics(with).then(|| "trap: panic".to_owned()));
-    if claims.is_empty() {
-        Err(format!("{name}: the prover's counterexample does not fail when it is run: {values:?}"))
-    } else if !twin::failed(without).is_empty() || twin::panics(without) {
-        Err(format!("{name}: the counterexample fails with no mutant selected, too: {values:?}"))
-    } else {
-        let counterexample = Some(values.clone());
-        Ok(Kill { harness: name.to_owned(), claims, case: tape.case, counterexample, asked: false })
-    }
-}
-
 /// What the program calls before each run: it says which of the mutants, numbered from 1, this kernel is to be; 0: none of them.
 fn selector(mutants: usize) -> String {
     let cells = mutants + 1;
@@ -218,11 +199,10 @@ fn selector(mutants: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Recorded, rejects, replay};
-    use crate::campaign::Options;
-    use crate::mutants::{Mutant, list};
+    use super::{Recorded, replay};
+    use crate::mutant::{Mutant, list};
+    use crate::options::Options;
     use crate::root;
-    use crate::twin::Tape;
 
     /// Three of them: as it is; harmless, since it changes nothing; and with values that it does not fail on.
     #[test]
@@ -254,24 +234,6 @@ mod tests {
         assert!(Recorded::parse(&format!("{line}{line}")).unwrap_err().contains("line 2: the second"));
         for wrong in ["a\tt_acc_1\t0", "a\tt_acc_1\t0\t65536", "a\tt_acc_1\t-1\t1", "a\tt_acc_1\t0\t1\t2"] {
             assert!(Recorded::parse(wrong).unwrap_err().contains("line 1"), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn only_what_fails_with_the_mutant_and_not_without_it_rejects_it() {
-        let harness = crate::select(&["t_acc_1".to_owned()]).unwrap()[0];
-        let tape = Tape { mutant: 1, case: 2, values: vec![5] };
-        let said = |lines: &[&str]| lines.iter().map(ToString::to_string).collect::<Vec<_>>();
-        let (fails, holds) = (said(&["run 1", "claim 0 0", "end"]), said(&["run 0", "claim 0 1", "end"]));
-        let panics = said(&["run 1", "trap: panic 0"]);
-        let kill = rejects(harness, &tape, &fails, &holds).unwrap();
-        assert_eq!((kill.claims.len(), kill.case, kill.counterexample), (1, 2, Some(vec![5])));
-        assert_eq!(rejects(harness, &tape, &panics, &holds).unwrap().claims, ["trap: panic"]);
-        // What is assumed away says nothing.
-        for (with, without) in
-            [(&holds, &holds), (&fails, &fails), (&fails, &panics), (&said(&["run 1", "assumed away"]), &holds)]
-        {
-            assert!(rejects(harness, &tape, with, without).is_err(), "{with:?} {without:?}");
         }
     }
 }

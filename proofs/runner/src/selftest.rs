@@ -1,7 +1,8 @@
 //! The cbmc engine tests itself before it is believed: on each trap (`proofs/traps`) it must say what is known.
 
-use crate::campaign::{Options, lock};
 use crate::cbmc::Solver;
+use crate::options::Options;
+use crate::pool::lock;
 use crate::tools::Tools;
 use crate::traps::{Outcome, Trap, Trial, Way, list, trials};
 use std::path::Path;

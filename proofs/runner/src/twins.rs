@@ -4,10 +4,11 @@
 //! result, reach the same cover points, and give up at an assumption, or not, alike. It tests the compiler for WebAssembly, wasm2c and our
 //! rewriting on each harness, and no prover has a part in it.
 
-use crate::campaign::{Options, in_parallel};
 use crate::cbmc::Question;
 use crate::compile::{Compiled, Kernel, compile};
 use crate::native::{Run, drawn};
+use crate::options::Options;
+use crate::pool::in_parallel;
 use crate::process::only_run;
 use crate::root;
 use crate::tools::Tools;

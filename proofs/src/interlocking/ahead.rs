@@ -3,8 +3,8 @@
 //! The accidents: a train runs over a point that moves, or lies the other way; a train runs into a circuit whose block was confirmed.
 //! The train is that of T-ILK-10 ([`super::train`]), with all that may happen around it.
 
-use super::train::{BOUND, BUILT_IN, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
-use super::{any_circuits, any_settling, bit};
+use super::any::{any_circuits, any_settling, bit};
+use super::scene::{BOUND, BUILT_IN, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{CircuitSet, Element, PointSet, Positions, Settling};

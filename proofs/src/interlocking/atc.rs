@@ -3,71 +3,14 @@
 //! What a route grants is proven elsewhere (T-ATC-1) and supposed here (`held-routes-compatible`): circuits of its path that follow each other and
 //! are free and unblocked, to one circuit that is not among them; and no circuit is granted by two routes.
 
-use super::{any_circuits, any_heading, bit};
+use super::any::{any_circuits, bit};
+use super::line::{BOUND, Line, PATH, ROUTES, SEGMENTS, UNDER_KANI, any_line, in_direction, is_joint, passed};
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Element, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Plan, Route, Segment,
-    SegmentSet, SpeedCode, SpeedLimits, Standing, begins, connect, movement, telegram,
+    CircuitId, CircuitSet, Contents, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Route, SegmentSet, SpeedCode,
+    SpeedLimits, Standing, begins, connect, movement, telegram,
 };
-use atc_kernel::time::Ticks;
-
-pub(super) const ROUTES: usize = 2;
-/// 2 for Kani, which has no answer for 4 in its time.
-pub(super) const PATH: usize = if cfg!(kani) { 2 } else { 4 };
-pub(super) const SEGMENTS: usize = 2;
-
-pub const BOUND: &str = "2 routes of up to 4 circuits, 32 circuits, 2 segments of up to 4 circuits";
-
-pub(super) const UNDER_KANI: &str = "2 routes of up to 2 circuits, 32 circuits, 2 segments of up to 2 circuits";
-
-pub(super) type Line = Layout<ROUTES, PATH, 0, SEGMENTS>;
-
-/// Any route, as far as grants and segments look at it.
-fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
-    let mut place = first;
-    let path = core::array::from_fn(|_| {
-        let circuits = any_circuits(e, "circuit of a place (bits)", place..=place);
-        place = place.wrapping_shl(1);
-        Element { circuits, ..Element::default() }
-    });
-    let timed = Ticks(1);
-    Route {
-        heading: any_heading(e, "heading (odd: right)"),
-        path,
-        length: any_byte(e, "length (places)", 1..=3),
-        to: SegmentSet::from_bits(any_byte(e, "segments that it leads to (bits)", 0..=2) & 3),
-        drive: timed,
-        release: timed,
-        stay: timed,
-        ..Route::NONE
-    }
-}
-
-/// Any layout, as far as the ATC looks at it.
-pub(super) fn any_line<E: crate::Engine + ?Sized>(e: &mut E) -> Option<Line> {
-    let mut first = 1 << 1;
-    let routes = core::array::from_fn(|_| {
-        let route = any_path(e, first);
-        first <<= 3;
-        route
-    });
-    let mut place = 1 << 12;
-    let segments = core::array::from_fn(|_| Segment {
-        circuits: core::array::from_fn(|_| {
-            place <<= 1;
-            any_circuits(e, "circuit of a segment (bits)", place..=place)
-        }),
-        length: any_byte(e, "length of a segment (circuits)", 0..=3),
-        throat: any_circuits(e, "throat (bits)", 8..=8),
-        outward: any_heading(e, "direction out to a segment (odd: right)"),
-        shared: any_byte(e, "circuits that the neighbour sees too", 0..=1),
-    });
-    let plan = Plan { routes, segments, clear: 1, turn: Ticks(1), ..Plan::EMPTY };
-    let layout = Layout::with_what_proofs_need(plan).ok();
-    e.assume(layout.is_some());
-    layout
-}
 
 /// What a route may grant, by places of its path.
 fn any_grant<E: crate::Engine + ?Sized>(e: &mut E, route: &Route<PATH>) -> Grant {
@@ -133,50 +76,6 @@ pub(super) fn sent(line: &Line, contents: &Contents<ROUTES>, circuit: CircuitId)
 /// Whether the first route grants anything to the train in this circuit.
 fn grants_to(contents: &Contents<ROUTES>, here: u64) -> bool {
     contents.grants[0].circuits.bits() != 0 && contents.grants[0].train.bits() == here
-}
-
-/// How many circuits a segment has.
-fn length_of(segment: &Segment<PATH>) -> usize {
-    let length = usize::from(segment.length);
-    if length < PATH { length } else { PATH }
-}
-
-/// The place of `circuit` in a segment, the one next to the station first; none if it is not there.
-fn place_of(segment: &Segment<PATH>, circuit: CircuitSet) -> Option<usize> {
-    let mut found = None;
-    for place in 0..PATH {
-        if place < length_of(segment) && segment.circuits[place].bits() == circuit.bits() {
-            found = Some(place);
-        }
-    }
-    found
-}
-
-/// How many circuits of a segment a train in `here` has passed in the direction of the segment, the own one included; none if it is not on its way
-/// there, from the throat by a route to one of `to`.
-fn passed(line: &Line, contents: &Contents<ROUTES>, number: usize, here: CircuitSet, to: SegmentSet) -> Option<usize> {
-    let segment = &line.plan().segments[number];
-    let length = length_of(segment);
-    let away = contents.away.bits() >> number & 1 == 1;
-    match place_of(segment, here) {
-        Some(place) if away => Some(place + 1),
-        Some(place) if contents.toward.bits() >> number & 1 == 1 => Some(length - place),
-        None if away && segment.throat.bits() == here.bits() && to.bits() >> number & 1 == 1 => Some(0),
-        _ => None,
-    }
-}
-
-/// The circuit number `step` of a segment, counted in its direction; none if there is none.
-fn in_direction(line: &Line, contents: &Contents<ROUTES>, number: usize, step: usize) -> u64 {
-    let segment = &line.plan().segments[number];
-    let length = length_of(segment);
-    let away = contents.away.bits() >> number & 1 == 1;
-    let mut bits = 0;
-    for place in 0..PATH {
-        let its = if away { place } else { length.wrapping_sub(place + 1) };
-        bits |= if place < length && its == step { segment.circuits[place].bits() } else { 0 };
-    }
-    bits
 }
 
 harness! {
@@ -372,24 +271,6 @@ harness! {
         e.cover(Cover::ByDistance as u32, telegram.is_open() && speed < limit && its == 7 && others == 7);
         e.cover(Cover::Most as u32, speed == 7);
     }
-}
-
-/// Whether a train on `one` may stand on `other` too, by what the table says: they are of one body, next to each other on plain line with its throat,
-/// or nobody knows which train is on `one`.
-fn is_joint(line: &Line, standing: &Standing<ROUTES>, one: u64, other: u64) -> bool {
-    let mut joint = standing.loose.bits() & one != 0;
-    for body in standing.bodies {
-        joint |= body.bits() & one != 0 && body.bits() & other != 0;
-    }
-    for segment in &line.plan().segments {
-        let mut before = segment.throat.bits();
-        for place in 0..PATH {
-            let circuit = if place < length_of(segment) { segment.circuits[place].bits() } else { 0 };
-            joint |= before == one && circuit == other || before == other && circuit == one;
-            before = circuit;
-        }
-    }
-    joint
 }
 
 harness! {

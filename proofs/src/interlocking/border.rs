@@ -3,8 +3,9 @@
 //! The accident: two devices tell a train in the last circuit of a line different things for the same way; or the one that does not see what
 //! is ahead of the train tells it to stop for ever.
 
-use super::any_heading;
-use super::atc::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_contents, any_line, sent};
+use super::any::any_heading;
+use super::atc::{any_contents, sent};
+use super::line::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_line};
 use atc_kernel::interlocking::{CircuitId, CircuitSet, SegmentSet, silent};
 
 harness! {

@@ -1,6 +1,6 @@
 //! The whole cycle (T-ILK-1): that it is made of the parts that the other theorems are about, and that a refusal leaves no trace.
 
-use super::{any_cycle, any_input, any_layout, any_state, bit, held};
+use super::any::{any_cycle, any_input, any_layout, any_state, bit, held};
 use crate::Engine;
 use crate::engine::any_u32;
 use atc_kernel::Machine;

@@ -1,6 +1,6 @@
 //! The direction of plain line (T-ILK-9).
 
-use super::{any_input, any_layout, any_state};
+use super::any::{any_input, any_layout, any_state};
 use atc_kernel::interlocking::{Layout, Phase, Request, State, Travel};
 
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.

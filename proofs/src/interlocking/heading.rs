@@ -3,8 +3,9 @@
 //! The accident: a train that faces right stands at a platform from which a route to the left is set. It takes the telegram for its own and
 //! runs over the point ahead of it, where nothing is set for it.
 
-use super::any_heading;
-use super::atc::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_contents, any_line, sent};
+use super::any::any_heading;
+use super::atc::{any_contents, sent};
+use super::line::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_line};
 use crate::engine::any_flag;
 use atc_kernel::interlocking::CircuitId;
 

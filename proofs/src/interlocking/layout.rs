@@ -1,6 +1,6 @@
 //! Layouts (T-LAY-2): what the constructor lets through keeps the rules of engineering, here said once more and in another way.
 
-use super::{any_circuits, any_plan, bit};
+use super::any::{any_circuits, any_plan, bit};
 use crate::engine::any_byte;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{CircuitSet, Layout, MAX_CODES, Plan, Point, RouteSet, SpeedCode};

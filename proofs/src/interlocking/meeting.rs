@@ -3,8 +3,8 @@
 //! The accidents: two trains meet on plain line; a train of either side runs into a circuit of the line whose block was confirmed.
 //! The train that goes out is that of T-ILK-10 ([`super::train`]). What comes in is seen when it is reported on the line, and not before.
 
-use super::any_circuits;
-use super::train::{BOUND, BUILT_IN, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
+use super::any::any_circuits;
+use super::scene::{BOUND, BUILT_IN, Beside, FIRST, LENGTH, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Directions, Plan, SegmentSet, State};

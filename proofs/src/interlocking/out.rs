@@ -3,8 +3,9 @@
 //! The accident: a train has slid past its signal into the throat of the station, or the route that brought it there was withdrawn, or it is on a
 //! route to another platform. The line is free and travelled outwards, so it is told to go; the point under it lies the other way.
 
-use super::atc::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_contents, any_line, sent};
-use super::bit;
+use super::any::bit;
+use super::atc::{any_contents, sent};
+use super::line::{BOUND, PATH, SEGMENTS, UNDER_KANI, any_line};
 use atc_kernel::interlocking::CircuitId;
 
 harness! {

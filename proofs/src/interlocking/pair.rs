@@ -1,6 +1,6 @@
 //! Two routes, and three: what may be held together (T-ILK-1).
 
-use super::{
+use super::any::{
     PATH, any_circuits, any_layout, any_positions, any_route_state, any_routes_layout, any_segments, any_unswept, bit,
     held, kept,
 };

@@ -1,6 +1,6 @@
 //! Points (T-ILK-4): one point stands for all.
 
-use super::{any_cycle, held, kept};
+use super::any::{any_cycle, held, kept};
 use crate::engine::any_byte;
 use atc_kernel::interlocking::{Phase, Position, Request};
 

@@ -3,7 +3,7 @@
 //! A route's own step looks at nothing but the route and the circuits that count as occupied (`t_ilk_1_local`), so one route stands
 //! for all 64.
 
-use super::{PLACES, any_circuits, any_route_state, any_routes_layout, bit, held, kept};
+use super::any::{PLACES, any_circuits, any_route_state, any_routes_layout, bit, held, kept};
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::interlocking::{CircuitSet, Phase, Rear, Route, RouteState};

@@ -1,6 +1,6 @@
 //! Signals and grants of one route (T-ILK-3, T-ATC-1).
 
-use super::{any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, held, kept};
+use super::any::{any_circuits, any_positions, any_route_state, any_routes_layout, any_segments, held, kept};
 use crate::Engine;
 use atc_kernel::interlocking::{CircuitSet, Grant, Phase, Route, RouteState, View, grant, ready, shows_proceed};
 

@@ -4,7 +4,7 @@
 //! driven, the line is turned against it, staff are sent onto the track or another train is let in, before it has come in or stands. Or it stands, and the
 //! same is done where it is.
 
-use super::{any_circuits, any_cycle, bit};
+use super::any::{any_circuits, any_cycle, bit};
 use atc_kernel::interlocking::{Phase, Refusal, Request, Travel};
 
 harness! {

@@ -1,6 +1,6 @@
 //! The shared table (T-ATC-3): read only fresh and whole.
 
-use super::any_circuits;
+use super::any::any_circuits;
 use crate::Engine;
 use crate::engine::{any_byte, any_flag, any_u32};
 use atc_kernel::Machine;
@@ -26,7 +26,7 @@ fn any_grant<E: Engine + ?Sized>(e: &mut E) -> Grant {
         circuits: any_set(e, "granted (bits)"),
         last: any_set(e, "last (bits)"),
         complete: any_flag(e, "complete (odd: yes)"),
-        heading: super::any_heading(e, "heading (odd: right)"),
+        heading: super::any::any_heading(e, "heading (odd: right)"),
         speed: SpeedCode(e.word("speed code", 0..=7).to_le_bytes()[0]),
     }
 }

@@ -6,8 +6,8 @@
 //!
 //! The train is a ghost: the kernel sees nothing of it but the circuits in which it is reported, and any other may be reported at any time.
 
-use super::train::{LENGTH, order};
-use super::{any_input, any_plan, any_state, held, kept};
+use super::any::{any_input, any_plan, any_state, held, kept};
+use super::scene::{LENGTH, order};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{CircuitSet, Layout, Phase, Plan, Request, Route, RouteState, State};

@@ -1,6 +1,6 @@
 //! Maintenance (T-ILK-8): blocks, restrictions, and which blocks staff may rely on.
 
-use super::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
+use super::any::{any_circuits, any_input, any_layout, any_state, bit, held, kept};
 use crate::engine::any_byte;
 use atc_kernel::interlocking::{CircuitSet, Layout, SpeedCode, SpeedLimits, State, Works};
 

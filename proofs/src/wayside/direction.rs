@@ -1,6 +1,6 @@
 //! The counted line is never turned (T-WAY-7).
 
-use super::{LONGEST, with_lengths};
+use super::plans::{LONGEST, with_lengths};
 use crate::any_flag;
 use crate::interlocking::{any_input, any_plan, any_state};
 use atc_kernel::Machine;

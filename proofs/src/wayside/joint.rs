@@ -5,7 +5,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "a place is a number in several arrays")]
 
-use super::LONGEST;
+use super::plans::LONGEST;
 use crate::Engine;
 use crate::engine::any_flag;
 use atc_kernel::block::{Block, Direction, Hold, LineError};

@@ -8,13 +8,13 @@ mod counter;
 mod direction;
 mod joint;
 mod occupancy;
+mod plans;
+mod said;
+mod signals;
 mod speech;
 mod track;
 
 use crate::Harness;
-use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{MAX_CIRCUITS, Plan};
-use atc_kernel::time::Ticks;
 
 /// The harnesses of this module.
 #[cfg(not(chosen))]
@@ -33,30 +33,11 @@ pub const ALL: &[Harness] = &[
     counter::t_way_6::HARNESS,
     direction::t_way_7::HARNESS,
     joint::way_join::HARNESS,
-    speech::way_signals::HARNESS,
-    speech::way_codes::HARNESS,
-    speech::way_speeds::HARNESS,
-    speech::way_words::HARNESS,
-    speech::way_word::HARNESS,
+    signals::way_signals::HARNESS,
+    signals::way_codes::HARNESS,
+    signals::way_speeds::HARNESS,
+    signals::way_words::HARNESS,
+    signals::way_word::HARNESS,
     speech::t_way_8_sent::HARNESS,
     speech::way_safe::HARNESS,
 ];
-
-/// The longest loop: over what there is for each circuit.
-pub(crate) const LONGEST: usize = MAX_CIRCUITS;
-
-/// The circuits of the layouts here: numbers 0 to 15.
-const CIRCUITS: usize = 16;
-
-/// A plan whose circuits are 100 m long.
-fn plan<const R: usize, const P: usize, const S: usize>() -> Plan<R, P, 0, S> {
-    with_lengths(Plan { clear: 1, turn: Ticks(1), ..Plan::EMPTY })
-}
-
-/// The plan with circuits that are 100 m long.
-fn with_lengths<const R: usize, const P: usize, const S: usize>(mut plan: Plan<R, P, 0, S>) -> Plan<R, P, 0, S> {
-    for length in plan.lengths.iter_mut().take(CIRCUITS) {
-        *length = Metres(100);
-    }
-    plan
-}

@@ -1,6 +1,6 @@
 //! From sections to circuits (T-WAY-1, T-WAY-2), and what the constructor asks of the joint.
 
-use super::LONGEST;
+use super::plans::LONGEST;
 use crate::Engine;
 use crate::block::{any_detection, any_parts, suppose_count, suppose_no_phantom};
 use crate::engine::any_byte;

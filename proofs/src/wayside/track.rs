@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "a place is a number in several arrays")]
 
-use super::LONGEST;
+use super::plans::LONGEST;
 use crate::interlocking::{any_circuits, any_plan};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{CircuitSet, Layout, Plan, Route, SegmentId};

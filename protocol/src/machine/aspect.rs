@@ -7,7 +7,7 @@ pub use atc_line::aspect::Config;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::kmh::{Kmh, KmhOrNull};
 
 /// One logic cycle's input.

@@ -8,7 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::sections::Sections;
 
 fn default_entered() -> bool {

@@ -4,7 +4,7 @@ use atc_kernel::pattern::{Deceleration, pattern};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::kmh::Kmh;
 use atc_line::refusal::{brake, gradient, metres};
 

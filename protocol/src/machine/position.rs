@@ -7,7 +7,7 @@ pub use atc_line::position::{Config, TableConfig};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::decimal::{Decibels, Metres, OrNull};
 
 /// One cycle's measurement.

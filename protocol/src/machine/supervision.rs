@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::de::{Deserializer, Error as _};
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::kmh::{Kmh, KmhOrNull};
 
 /// The brake command.

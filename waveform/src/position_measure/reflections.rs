@@ -1,6 +1,7 @@
 //! What the travelling wave leaves out, as a change of the level difference.
 
-use super::{Reflection, SECTION, line};
+use super::drive::{SECTION, line};
+use super::results::Reflection;
 use crate::rail::chain::{Piece, loss, travelling};
 use crate::rail::{Hertz, Metres};
 

@@ -1,6 +1,7 @@
 //! Levels measured from samples: the meter in noise, and a train whose levels come through the moving track.
 
-use super::{ANY_WEATHER, CYCLE, MeterPoint, Odometry, Run, SECTION, SEED, calibration, drive, kernel, line};
+use super::drive::{ANY_WEATHER, CYCLE, SECTION, SEED, calibration, drive, kernel, line};
+use super::results::{MeterPoint, Odometry, Run};
 use crate::channel::{Noise, Stage};
 use crate::position_meter::LevelMeter;
 use crate::position_run::reading;

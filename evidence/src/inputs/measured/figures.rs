@@ -1,7 +1,7 @@
 //! The figures that the case shows, from what was measured.
 
 use super::bench::{Bench, Detection, METER_FROM_DB, Run};
-use super::id;
+use super::target::id;
 use crate::case::Figure;
 use crate::inputs::models::thousands;
 

@@ -1,7 +1,7 @@
 //! Faults on a simulated line: that no single one leads to harm, and that known pairs do, which a page plays.
 
-use super::Target;
 use super::figures::{aimed, figure};
+use super::target::Target;
 use crate::case::{Figure, Film};
 use atc_simulation::cut_sets::{Page, Row, Seen, Single, see};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! What the shortened operate time buys on a simulated line: measured here, read, and what would make it worthless.
 
-use super::Target;
 use super::figures::{aimed, figure};
+use super::target::Target;
 use crate::case::Figure;
 use atc_simulation::charts;
 use atc_simulation::headline::{Extent, Headline, Row, measure as measured};

@@ -10,8 +10,8 @@ use super::xml::{Xml, references};
 use crate::at::At;
 use crate::form::{Position, Station};
 use crate::graph::Graph;
-use crate::import::Report;
 use crate::import::network::{Area, Cut, Divided, Network};
+use crate::import::report::Report;
 use crate::names::Names;
 
 /// Where things of the file are in the layout.

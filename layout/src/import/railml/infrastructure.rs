@@ -8,8 +8,8 @@ use super::limits::Limits;
 use super::places::{Measures, Places, apart, chainage, length, measures, share_of, track_lengths};
 use super::xml::{Xml, child, children, duration, number, references};
 use crate::form::Position;
-use crate::import::Report;
 use crate::import::network::{Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
+use crate::import::report::Report;
 use crate::problem::Problem;
 use crate::rule::Rule;
 

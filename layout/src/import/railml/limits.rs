@@ -8,8 +8,8 @@ use super::places::{Places, apart};
 use super::xml::{Xml, child, children, number};
 use crate::form::Position;
 use crate::graph::Way;
-use crate::import::Report;
 use crate::import::network::Divided;
+use crate::import::report::Report;
 
 /// What the file says of speeds, in km/h, rounded down.
 #[derive(Debug, Default)]

@@ -9,7 +9,7 @@ use super::infrastructure::Switched;
 use super::xml::{Xml, children, is_set, reference};
 use crate::at::At;
 use crate::form::Station;
-use crate::import::Report;
+use crate::import::report::Report;
 
 /// Children of a switchIL by which a switch depends on another one.
 const DEPENDS: [&str; 2] = ["hasPositionRestriction", "relatedMovableElement"];

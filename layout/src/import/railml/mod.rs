@@ -12,7 +12,7 @@ mod xml;
 use std::collections::BTreeSet;
 
 use super::complete::{complete, steepest};
-use super::{Imported, Report};
+use super::report::{Imported, Report};
 use crate::at::At;
 use crate::derive;
 use crate::description::Description;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::xml::Xml;
-use crate::import::Report;
+use crate::import::report::Report;
 
 /// What is read of an element.
 struct Read {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::{Document, Node};
 
 use crate::at::At;
-use crate::import::Report;
+use crate::import::report::Report;
 
 /// A railML tree with its ids.
 pub struct Xml<'a> {

@@ -3,7 +3,7 @@
 use super::{Beyond, Purpose, Single};
 use crate::block::device::Counting;
 use crate::block::fault::Faults;
-use crate::check::Claim;
+use crate::subject::Claim;
 use atc_kernel::block::Status;
 
 impl<D: Counting> Single<D> {

@@ -3,7 +3,7 @@
 use super::{Beyond, Single};
 use crate::block::device::Counting;
 use crate::block::fault::Faults;
-use crate::spin::Twin;
+use crate::twin::Twin;
 
 const PROMELA: &str = include_str!("../../../promela/block.pml");
 

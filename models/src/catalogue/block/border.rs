@@ -1,6 +1,6 @@
 //! The models of the border between two blocks.
 
-use super::{
+use super::shared::{
     BORDER, BORDER_FAULTS, BORDER_NO_FAULT, BORDER_ONE_FAULT, FAULTS, NO_FAULT, NOT_HEARD_BY_ONE, ONE_FAULT, USUAL,
     about,
 };

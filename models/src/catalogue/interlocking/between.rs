@@ -1,6 +1,7 @@
 //! Two stations, the line between them, and a train from either end.
 
-use super::{ALL, Conditions, about, without};
+use super::shared::{ALL, without};
+use crate::catalogue::about::{Conditions, about};
 use crate::check::Entry;
 use crate::interlocking::between::{Between, Faults, Lives, Purpose, Times};
 use crate::interlocking::neighbours::View;

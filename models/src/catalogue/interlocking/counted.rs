@@ -1,7 +1,8 @@
 //! Block counting in front of the interlocking.
 
-use super::{ALL, Conditions, ROUTES, about, dispatch, sets, turn};
+use super::shared::{ALL, ROUTES, dispatch, sets, turn};
 use crate::block::fault::Faults;
+use crate::catalogue::about::{Conditions, about, joined};
 use crate::check::Entry;
 use crate::interlocking::Purpose;
 use crate::interlocking::counted::{Counted, Joint};
@@ -23,7 +24,7 @@ const COUNTING: [&str; 7] = [
     "line-end-asks",
 ];
 
-const BOTH: [&str; ALL.len() + COUNTING.len()] = crate::catalogue::joined(ALL, COUNTING);
+const BOTH: [&str; ALL.len() + COUNTING.len()] = joined(ALL, COUNTING);
 
 const SOUND: Conditions = (&BOTH, &[]);
 const NOT_ASKED: Conditions = (BOTH.split_last().expect("some").1, &["line-end-asks"]);

@@ -1,7 +1,8 @@
 //! A counted line between two stations, and trains that follow each other over it.
 
-use super::{ALL, Conditions, about};
+use super::shared::ALL;
 use crate::block::fault::Kind;
+use crate::catalogue::about::{Conditions, about, all_but, joined};
 use crate::check::Entry;
 use crate::interlocking::between::Lives;
 use crate::interlocking::counted_between::{Around, CountedBetween, Failure, Faults, Purpose, Wiring, cut_sets};
@@ -20,11 +21,11 @@ const COUNTING: [&str; 10] = [
     "line-end-asks",
 ];
 
-const BOTH: [&str; ALL.len() + COUNTING.len()] = crate::catalogue::joined(ALL, COUNTING);
+const BOTH: [&str; ALL.len() + COUNTING.len()] = joined(ALL, COUNTING);
 
 /// All but the one at `place`.
 const fn without(place: usize) -> [&'static str; BOTH.len() - 1] {
-    crate::catalogue::all_but(BOTH, place)
+    all_but(BOTH, place)
 }
 
 /// What one faulty component breaches.

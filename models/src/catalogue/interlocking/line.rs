@@ -1,6 +1,7 @@
 //! The line between two stations.
 
-use super::{Conditions, SOUND, about, without};
+use super::shared::{SOUND, without};
+use crate::catalogue::about::{Conditions, about};
 use crate::check::Entry;
 use crate::interlocking::neighbours::{Neighbour, Pair, Purpose, View};
 

@@ -1,8 +1,11 @@
 //! The junction, the crossing and the terminus, with every condition kept.
 
-use super::{BRANCH, IN_AND_OUT, MAIN, OVER, ROUTES, SOUND, UNDER, about, dispatch, turn, turns, yard};
-use super::{Environment, Purpose, Sight};
+use super::shared::{BRANCH, IN_AND_OUT, MAIN, OVER, ROUTES, SOUND, UNDER, dispatch, turn, turns, yard};
+use crate::catalogue::about::about;
 use crate::check::Entry;
+use crate::interlocking::Purpose;
+use crate::interlocking::Sight;
+use crate::interlocking::environment::Environment;
 use crate::interlocking::environment::{Drives, Obey};
 use crate::interlocking::stations::{crossing, junction, rest, siding, terminus};
 use crate::interlocking::yard::RESTRICTED;

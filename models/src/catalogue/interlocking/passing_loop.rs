@@ -1,10 +1,13 @@
 //! The passing loop, with every condition kept.
 
-use super::{
-    DOWN, PASSING, POINTS, ROUTES, SOUND, UP, about, dispatch, drives, following, meeting, sets, stay, turns, yard,
+use super::shared::{
+    DOWN, PASSING, POINTS, ROUTES, SOUND, UP, dispatch, drives, following, meeting, sets, stay, turns, yard,
 };
-use super::{Environment, Purpose, Sight};
+use crate::catalogue::about::about;
 use crate::check::Entry;
+use crate::interlocking::Purpose;
+use crate::interlocking::Sight;
+use crate::interlocking::environment::Environment;
 use crate::interlocking::environment::{Detection, Drives, Obey, Start};
 use crate::interlocking::ground::Heading;
 use crate::interlocking::stations::{Overlaps, loop_route, passing, passing_loop};

@@ -1,9 +1,13 @@
 //! What happens where a condition is not kept: each of these models finds the accident.
 
 use super::others::{crossing_trains, joining};
-use super::{Conditions, POINTS, ROUTES, about, dispatch, drives, following, meeting, sets, stay, turn, without, yard};
-use super::{Environment, Purpose};
+use super::shared::{
+    DOWN, PASSING, POINTS, ROUTES, UP, dispatch, drives, following, meeting, sets, stay, turn, without, yard,
+};
+use crate::catalogue::about::{Conditions, about};
 use crate::check::Entry;
+use crate::interlocking::Purpose;
+use crate::interlocking::environment::Environment;
 use crate::interlocking::environment::{Detection, Drives, Obey};
 use crate::interlocking::ground::{Heading, Station};
 use crate::interlocking::stations::{Overlaps, circuits, crossing, junction, loop_route, passing, passing_loop};
@@ -203,8 +207,8 @@ fn outside() -> Vec<Entry> {
     };
     let one_way = Environment {
         before: vec![turn(0, Travel::Toward), turn(1, Travel::Toward)],
-        requests: dispatch(&super::PASSING),
-        ..Environment::usual(vec![super::UP, super::DOWN])
+        requests: dispatch(&PASSING),
+        ..Environment::usual(vec![UP, DOWN])
     };
     vec![
         flicker(

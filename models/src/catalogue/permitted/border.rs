@@ -1,6 +1,7 @@
 //! The models of what happens at the border of two sections.
 
-use super::{DISTANCE, NO_FIX, NO_LIMITS, NO_MARGIN, SOUND, WORST, about, other, ride};
+use super::shared::{DISTANCE, NO_FIX, NO_LIMITS, NO_MARGIN, SOUND, WORST, other, ride};
+use crate::catalogue::about::about;
 use crate::check::Entry;
 use crate::permitted::device::FixOfAnyCycle;
 use crate::permitted::layout::Layout;

@@ -1,6 +1,7 @@
 //! The models of transmitters that repeat themselves, and of the counter's range.
 
-use super::{AGE, Conditions, LOOPS, NO_POINT_LIFE, SOUND, about, ride};
+use super::shared::{AGE, LOOPS, NO_POINT_LIFE, SOUND, ride};
+use crate::catalogue::about::{Conditions, about};
 use crate::check::Entry;
 use crate::permitted::layout::Layout;
 use crate::permitted::ride::{Changes, Delivery, Environment, Motion, Small, Transmitter};

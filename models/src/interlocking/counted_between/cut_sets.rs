@@ -4,8 +4,8 @@
 //! search visits them again: after the first of two faults the other one alone is left, whichever was the first.
 
 use super::{CountedBetween, Cycle, Failure, Faults, State, wrong};
-use crate::check::{Limits, Subject};
 use crate::outcome::CutSet;
+use crate::subject::{Limits, Subject};
 use ahash::AHashSet;
 use std::time::Instant;
 

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk, around, cycles};
+use super::source::{Source, Walk, around, cycles};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "block-count", small, large, wrong, begin, most: (80, 1200) };

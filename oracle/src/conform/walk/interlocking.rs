@@ -6,12 +6,11 @@ use std::collections::VecDeque;
 use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
+use super::source::{Source, Walk};
 use super::station::{Segment, Station};
 use super::varied::varied;
-use super::{Source, Walk, rows, wrong_plans};
+use super::{rows, wrong_plans};
 use crate::conform::random::Random;
-use atc_protocol::machine::Machine as _;
-use atc_protocol::machine::interlocking::{Config, Interlocked};
 
 pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
 
@@ -89,12 +88,6 @@ fn small() -> Vec<Value> {
 
 /// How many stations have other values than the layouts.
 const VARIED: u64 = 40;
-
-/// Whether the kernel takes the station.
-pub(super) fn is_taken(config: &Value) -> bool {
-    let config = serde_json::from_value::<Config>(config.clone());
-    config.is_ok_and(|config| Interlocked::open(&config).is_ok())
-}
 
 fn large() -> Vec<Value> {
     [PASSING_LOOP, JUNCTION, TERMINUS, STATION_30].map(layout).to_vec()

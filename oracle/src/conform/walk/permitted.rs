@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk, around, cycles, parts, tenths};
+use super::source::{Source, Walk, around, cycles, parts, tenths};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "permitted-speed", small, large, wrong, begin, most: (60, 2500) };

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk, parts};
+use super::source::{Source, Walk, parts};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "train-position", small, large, wrong, begin, most: (30, 120) };

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk, tenths};
+use super::source::{Source, Walk, tenths};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "speed-supervision", small, large, wrong, begin, most: (40, 200) };

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk};
+use super::source::{Source, Walk};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source =

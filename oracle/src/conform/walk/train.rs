@@ -4,7 +4,8 @@
 
 use serde_json::{Value, json};
 
-use super::{Source, Walk, around, cycles, parts, permitted, tenths};
+use super::permitted;
+use super::source::{Source, Walk, around, cycles, parts, tenths};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "train", small, large, wrong, begin, most: (60, 400) };

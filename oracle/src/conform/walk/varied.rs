@@ -3,8 +3,9 @@
 
 use serde_json::{Value, json};
 
-use super::interlocking::is_taken;
 use crate::conform::random::Random;
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked};
 
 /// The least of them counts as many cycles as the rules ask for.
 fn times(plan: &mut Value, random: &mut Random) {
@@ -143,4 +144,10 @@ pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
         })
     };
     (0..count).filter_map(one).collect()
+}
+
+/// Whether the kernel takes the station.
+fn is_taken(config: &Value) -> bool {
+    let config = serde_json::from_value::<Config>(config.clone());
+    config.is_ok_and(|config| Interlocked::open(&config).is_ok())
 }

@@ -5,7 +5,7 @@
 use serde_json::{Value, json};
 
 use super::halts::{large, small, wrong};
-use super::{Source, Walk, cycles};
+use super::source::{Source, Walk, cycles};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200) };

@@ -1,10 +1,10 @@
 //! One trap under one engine: what the engine says, held against what is known.
 
 use super::{Trap, native};
-use crate::campaign::in_parallel;
 use crate::cbmc::{Answer, Question, Silence, Solver, ask_both};
 use crate::compile::{Compiled, compile_one, write, write_c};
 use crate::loops::one_way_back;
+use crate::pool::in_parallel;
 use crate::regions::apart;
 use crate::tools::Tools;
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::marker::PhantomData;
 
+use atc_line::decimal::OrNull;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -272,22 +273,6 @@ impl PartialEq for Refused {
     }
 }
 
-/// For the schema only: a value or null, not to be left out.
-struct OrNull<T>(core::marker::PhantomData<T>);
-
+// For the schema only: not to be left out.
 type AnswerOrNull = OrNull<Answer>;
 type HeadingOrNull = OrNull<Heading>;
-
-impl<T: JsonSchema> JsonSchema for OrNull<T> {
-    fn schema_name() -> Cow<'static, str> {
-        format!("{}OrNull", T::schema_name()).into()
-    }
-
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({ "anyOf": [generator.subschema_for::<T>(), { "type": "null" }] })
-    }
-}

@@ -21,7 +21,7 @@ pub use config::{Config, Found, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
 pub use words::{Heading, Phase, Reason, Side, Travel};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::decimal::shorten;
 
 /// The state of the kernel's machine, with room for every station.

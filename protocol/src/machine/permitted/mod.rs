@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
 
-use super::Machine;
+use super::contract::Machine;
 use crate::decimal::{Metres, OrNull};
 use crate::kmh::{Kmh, KmhOrNull};
 use crate::names::{self, Named};

@@ -13,10 +13,11 @@ use atc_kernel::train::{self, Antennas, Train};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::contract::Machine;
 use super::interlocking::Heading;
 use super::permitted::{Basis, LineKind};
 use super::supervision::Brake;
-use super::{Machine, position, telegram};
+use super::{position, telegram};
 use crate::decimal::{Decibels, Hertz, Metres, OrNull};
 use crate::kmh::{Kmh, KmhOrNull};
 use crate::telegrams::Telegram;

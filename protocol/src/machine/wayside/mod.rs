@@ -15,7 +15,7 @@ use atc_kernel::interlocking::{CircuitSet, SegmentSet};
 use atc_kernel::telegram::{self, Frame, decode};
 use atc_kernel::wayside as kernel;
 
-use super::Machine;
+use super::contract::Machine;
 use super::interlocking::{self, Interlocked};
 use crate::decimal::Hertz;
 use device::{Device, Done, Read, device};

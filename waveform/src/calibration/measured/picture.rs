@@ -1,6 +1,7 @@
 //! The picture of a fit: the measurements with the table around them, and what the lines leave.
 
-use super::{Fit, Measurement};
+use super::fit::Fit;
+use super::pass::Measurement;
 use crate::plot::{Axis, COLOURS, Chart, Legend, PlotError, Scale, Series, Style, draw};
 use crate::rail::Metres;
 

@@ -1,7 +1,8 @@
 //! On which side an interval is wrong where the rails are not those that were measured: the kernel itself, on the table
 //! that was fitted, with errors that are the measurements' own residuals.
 
-use super::Fit;
+use super::fit::Fit;
+use crate::calibration::millibels;
 use crate::rail::Metres;
 use atc_kernel::position::{Correction, Measured, Millibels, Moved, Position, step};
 use rand::{Rng, SeedableRng};
@@ -104,7 +105,7 @@ fn changed(fit: &Fit, distance: Metres, change: f64) -> Option<f64> {
 
 /// Two levels with this difference, the lower one at the floor.
 fn levels(floor: Millibels, difference: f64) -> Option<Measured> {
-    let difference = super::millibels((difference * 100.0).round())?.0;
+    let difference = millibels((difference * 100.0).round())?.0;
     let (first, second) = if difference >= 0 {
         (floor.0.checked_add(difference)?, floor.0)
     } else {

@@ -1,7 +1,9 @@
 //! Lines through measurements that were made up: what is fitted, what is refused, and that the curves are around the
 //! truth.
 
-use super::*;
+use super::{Fit, FitError, Measurement, Wanted, sides};
+use crate::rail::{Decibels, Metres};
+use atc_kernel::position::{Millibels, Spacing};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

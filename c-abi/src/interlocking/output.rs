@@ -1,0 +1,83 @@
+//! What the machine puts out, in C's forms.
+
+use atc_kernel::interlocking::{CircuitSet, Commands, Heading, Memory, Movement, Phase, Refusal};
+
+use super::forms::{
+    ATC_ANSWER_ACCEPTED, ATC_ANSWER_ALREADY_HELD, ATC_ANSWER_BLOCKED, ATC_ANSWER_CONFLICT, ATC_ANSWER_DIRECTION,
+    ATC_ANSWER_NONE, ATC_ANSWER_NOT_HELD, ATC_ANSWER_OCCUPIED, ATC_ANSWER_OVERLAP_HELD, ATC_ANSWER_PATH_HELD,
+    ATC_ANSWER_POINT_LOCKED, ATC_ANSWER_POINT_UNDER_TRAIN, ATC_ANSWER_STARTING, ATC_ANSWER_UNKNOWN, ATC_ANSWER_UNSWEPT,
+    ATC_ANSWER_WAITING, ATC_HEADING_LEFT, ATC_HEADING_NONE, ATC_HEADING_RIGHT, ATC_PHASE_FAILED, ATC_PHASE_IDLE,
+    ATC_PHASE_IN_USE, ATC_PHASE_PROVISIONAL, ATC_PHASE_RELEASING, ATC_PHASE_SET, atc_interlocking_output, atc_movement,
+};
+
+const fn heading(heading: Option<Heading>) -> u8 {
+    match heading {
+        None => ATC_HEADING_NONE,
+        Some(Heading::Left) => ATC_HEADING_LEFT,
+        Some(Heading::Right) => ATC_HEADING_RIGHT,
+    }
+}
+
+pub(super) const fn phase(phase: Phase) -> u8 {
+    match phase {
+        Phase::Idle => ATC_PHASE_IDLE,
+        Phase::Provisional => ATC_PHASE_PROVISIONAL,
+        Phase::Failed => ATC_PHASE_FAILED,
+        Phase::Set => ATC_PHASE_SET,
+        Phase::InUse => ATC_PHASE_IN_USE,
+        Phase::Releasing => ATC_PHASE_RELEASING,
+    }
+}
+
+const fn answer(answer: Option<Result<(), Refusal>>) -> u32 {
+    match answer {
+        None => ATC_ANSWER_NONE,
+        Some(Ok(())) => ATC_ANSWER_ACCEPTED,
+        Some(Err(refusal)) => match refusal {
+            Refusal::Unknown => ATC_ANSWER_UNKNOWN,
+            Refusal::Starting => ATC_ANSWER_STARTING,
+            Refusal::AlreadyHeld => ATC_ANSWER_ALREADY_HELD,
+            Refusal::NotHeld => ATC_ANSWER_NOT_HELD,
+            Refusal::Conflict => ATC_ANSWER_CONFLICT,
+            Refusal::PathHeld => ATC_ANSWER_PATH_HELD,
+            Refusal::OverlapHeld => ATC_ANSWER_OVERLAP_HELD,
+            Refusal::PointLocked => ATC_ANSWER_POINT_LOCKED,
+            Refusal::Occupied => ATC_ANSWER_OCCUPIED,
+            Refusal::Unswept => ATC_ANSWER_UNSWEPT,
+            Refusal::Blocked => ATC_ANSWER_BLOCKED,
+            Refusal::PointUnderTrain => ATC_ANSWER_POINT_UNDER_TRAIN,
+            Refusal::Direction => ATC_ANSWER_DIRECTION,
+            Refusal::Waiting => ATC_ANSWER_WAITING,
+        },
+    }
+}
+
+/// Nothing is sent.
+pub(super) const SILENT: atc_movement =
+    atc_movement { hold: 0, sent: 0, stop: 0, heading: ATC_HEADING_NONE, speed_code: 0 };
+
+fn telegram(movement: Option<Movement>) -> atc_movement {
+    movement.map_or(SILENT, |movement| atc_movement {
+        hold: movement.hold.bits(),
+        sent: 1,
+        stop: movement.stop.number(),
+        heading: heading(movement.heading),
+        speed_code: movement.speed.0,
+    })
+}
+
+pub(crate) fn output(memory: &Memory<64, 8>, commands: &Commands<64>) -> atc_interlocking_output {
+    let said = &commands.interlocking;
+    let occupied = said.table.read(memory.cycle).map_or(CircuitSet::ALL, |contents| contents.occupied);
+    atc_interlocking_output {
+        proceed: said.proceed.bits(),
+        confirmed: said.confirmed.bits(),
+        occupied: occupied.bits(),
+        drive_normal: said.drives.normal.bits(),
+        drive_reverse: said.drives.reverse.bits(),
+        answer: answer(said.answer),
+        permits: said.permits.bits(),
+        phases: memory.interlocking.routes.map(|route| phase(route.phase)),
+        telegrams: commands.telegrams.map(telegram),
+    }
+}
