@@ -52,9 +52,14 @@ pub type Detections = [Detection; MAX_BLOCKS];
 pub const SILENT: Detections =
     [Detection { low_check: false, high_check: false, present: SectionSet::EMPTY, reset: None }; MAX_BLOCKS];
 
+/// The counted lines that end at a station.
+fn ending(line: &Line, station: usize) -> impl Iterator<Item = &Counted> {
+    line.counted.iter().filter(move |counted| [0, 1].contains(&station.wrapping_sub(line.links[counted.link].west)))
+}
+
 /// The counted line of a station's device: it can have one.
 pub fn at(line: &Line, station: usize) -> Option<&Counted> {
-    line.counted.iter().find(|counted| [0, 1].contains(&station.wrapping_sub(line.links[counted.link].west)))
+    ending(line, station).next()
 }
 
 /// The counted line that a file names.
@@ -98,8 +103,7 @@ pub fn of(line: &Line, file: &CountedFile) -> Result<Counted, String> {
 /// What is wrong.
 pub fn check(line: &Line) -> Result<(), String> {
     for station in 0..line.stations.len() {
-        let adjoins = |counted: &&Counted| [0, 1].contains(&station.wrapping_sub(line.links[counted.link].west));
-        if line.counted.iter().filter(adjoins).count() > 1 {
+        if ending(line, station).count() > 1 {
             return Err(format!("{}: two [[counted]] lines; a device counts one", line.stations[station].name));
         }
         if at(line, station).is_some() {
@@ -191,21 +195,20 @@ pub fn read(world: &World<'_>, station: usize, agree: [bool; MAX_BLOCKS], since:
     let Some(counted) = at(world.line, station) else { return read };
     let heads = counted.heads(world);
     let length = f64::from(world.line.cycle_ms);
-    let failing = |kind: Kind, what: usize, of: usize| {
-        world.faults(kind, length).any(|fault: &Fault| fault.which % of.max(1) == what)
+    let missed = |train| world.faults(Kind::MissedHead, length).any(|fault| fault.which % world.trains.len() == train);
+    let phantom = |circuit| {
+        world.faults(Kind::PhantomHead, length).any(|fault| section_at(world.line, fault.which) == Some(circuit))
     };
-    let missed = |train: usize| failing(Kind::MissedHead, train, world.trains.len());
-    let blocks = counted.blocks.len();
-    let sections: usize = counted.blocks.iter().map(Vec::len).sum();
-    let mut before = 0;
     for (block, (from, to)) in counted.borders(world.line).into_iter().enumerate() {
         let within =
             |at: f64, (low, high): (f64, f64)| heads.iter().any(|(_, head)| (low..high).contains(&(head - at)));
+        let of = |fault: &&Fault| block_at(world.line, fault.which).is_some_and(|it| it == &counted.blocks[block]);
+        let failing = |kind| world.faults(kind, length).find(of);
         let here = &mut read[block];
-        here.low_check = within(from, CHECK_IN_M) && !failing(Kind::CheckInLost, block, blocks)
-            || failing(Kind::CheckInStuckOn, block, blocks);
-        here.high_check = within(to, CHECK_OUT_M) && !failing(Kind::CheckOutLost, block, blocks)
-            || failing(Kind::SpuriousCheckOut, block, blocks);
+        here.low_check =
+            within(from, CHECK_IN_M) && failing(Kind::CheckInLost).is_none() || failing(Kind::CheckInStuckOn).is_some();
+        here.high_check = within(to, CHECK_OUT_M) && failing(Kind::CheckOutLost).is_none()
+            || failing(Kind::SpuriousCheckOut).is_some();
         let mut begins = from;
         for (section, circuit) in (0_u8..).zip(&counted.blocks[block]) {
             let ends = begins + world.line.track.circuits[*circuit].length_m;
@@ -214,18 +217,16 @@ pub fn read(world: &World<'_>, station: usize, agree: [bool; MAX_BLOCKS], since:
             let high =
                 if usize::from(section) + 1 == counted.blocks[block].len() { ends + CHECK_OUT_M.0 } else { ends };
             let heard = heads.iter().any(|(train, head)| (low..high).contains(head) && !missed(*train));
-            if heard || failing(Kind::PhantomHead, before, sections) {
+            if heard || phantom(*circuit) {
                 here.present = here.present.or(SectionSet::from_bits(1 << section));
             }
-            before += 1;
             begins = ends;
         }
         since[block] = if agree[block] { None } else { since[block].or(Some(world.now_ms)) };
         let on_a_border = [from, to].into_iter().any(|border| within(border, (CHECK_IN_M.0, CHECK_OUT_M.1)));
         if since[block].is_some_and(|since| world.now_ms - since >= STAFF_MS) && !on_a_border {
             let inside = heads.iter().filter(|(_, head)| (from..to).contains(head)).count();
-            let wrong = world.faults(Kind::WrongReset, length).find(|fault| fault.which % blocks == block);
-            let told = wrong.map_or(inside, |fault| usize::try_from(fault.much).unwrap_or(inside));
+            let told = failing(Kind::WrongReset).map_or(inside, |fault| usize::try_from(fault.much).unwrap_or(inside));
             here.reset = Some(TrainCount(u8::try_from(told).unwrap_or(u8::MAX)));
             since[block] = Some(world.now_ms);
         }
@@ -238,16 +239,25 @@ pub fn is_counted(line: &Line, circuit: usize) -> bool {
     line.counted.iter().any(|counted| counted.blocks.iter().any(|block| block.contains(&circuit)))
 }
 
-/// The name of a counted section, counted on over all of them.
-pub fn section(line: &Line, which: usize) -> String {
-    let all: Vec<usize> = line.counted.iter().flat_map(|counted| counted.blocks.iter().flatten().copied()).collect();
-    all.get(which % all.len().max(1)).map_or_else(String::new, |circuit| line.track.circuits[*circuit].name.clone())
+/// The circuit of a counted section, counted on over all of them.
+fn section_at(line: &Line, which: usize) -> Option<usize> {
+    let all = || line.counted.iter().flat_map(|counted| counted.blocks.iter().flatten().copied());
+    all().nth(which % all().count().max(1))
 }
 
-/// What a block of a counted line is called: by its first and last section.
+/// A block, counted on over all of them.
+fn block_at(line: &Line, which: usize) -> Option<&Vec<usize>> {
+    let all = || line.counted.iter().flat_map(|counted| &counted.blocks);
+    all().nth(which % all().count().max(1))
+}
+
+/// What that section is called.
+pub fn section(line: &Line, which: usize) -> String {
+    section_at(line, which).map_or_else(String::new, |circuit| line.track.circuits[circuit].name.clone())
+}
+
+/// What that block is called: by its first and last section.
 pub fn block(line: &Line, which: usize) -> String {
-    let blocks: Vec<&Vec<usize>> = line.counted.iter().flat_map(|counted| &counted.blocks).collect();
     let name = |circuit: Option<&usize>| circuit.map_or("", |circuit| line.track.circuits[*circuit].name.as_str());
-    let block = blocks.get(which % blocks.len().max(1));
-    block.map_or_else(String::new, |block| format!("{} to {}", name(block.first()), name(block.last())))
+    block_at(line, which).map_or_else(String::new, |block| format!("{} to {}", name(block.first()), name(block.last())))
 }
