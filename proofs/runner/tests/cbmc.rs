@@ -148,7 +148,7 @@ fn every_harness_that_is_smaller_for_a_wrong_kernel_has_a_control() {
         let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
         // The paths of the ATC are as long for a wrong kernel.
         let head = text.lines().take_while(|line| !line.starts_with("harness!"));
-        let imports = head.filter(|line| !line.starts_with("use super::atc::")).collect::<Vec<_>>().join(" ");
+        let imports = head.filter(|line| !line.starts_with("use super::line::")).collect::<Vec<_>>().join(" ");
         let own = text.contains("const PATH: usize = if cfg!(kani)");
         let sized = !own && ["PLACES", "{PATH, ", " PATH, ", "super::PATH"].iter().any(|word| imports.contains(word));
         let smaller = text.contains("cfg!(small)")
