@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 /// The longest life of a telegram in a model.
 pub const LONGEST_LIFE: u8 = 4;
 
-type Small = Layout<1, 1, 0, 1>;
+type Small = Layout<2, 1, 0, 1>;
 
 /// What a neighbour does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,24 +146,39 @@ pub struct Cycle {
 impl Pair {
     fn layout(&self) -> Small {
         let mut plan = Plan::EMPTY;
-        // The way in: a line that leads nowhere is not turned towards the station.
-        plan.routes = [Route {
-            heading: Heading::Left,
-            entry: circuits(1),
-            approach: circuits(1),
+        let over = Route {
             path: [Element { circuits: circuits(1 << 1), positions: Positions::NONE }],
             length: 1,
-            beyond: circuits(1 << 2),
-            from: SegmentSet::nth(0),
             drive: Ticks(1),
             release: Ticks(1),
             stay: Ticks(1),
             speed: SpeedCode(1),
             overlap_speed: SpeedCode(1),
             ..Route::NONE
-        }];
-        plan.segments = [Segment { circuits: [circuits(1)], length: 1, ..Segment::NONE }];
-        plan.lengths[..2].fill(Metres(100));
+        };
+        // The way in, and the way out: both stations send trains.
+        plan.routes = [
+            Route {
+                heading: Heading::Left,
+                entry: circuits(1),
+                approach: circuits(1),
+                beyond: circuits(1 << 2),
+                from: SegmentSet::nth(0),
+                ..over
+            },
+            Route {
+                heading: Heading::Right,
+                entry: circuits(1 << 2),
+                approach: circuits(1 << 2),
+                beyond: circuits(1),
+                to: SegmentSet::nth(0),
+                ..over
+            },
+        ];
+        let throat = circuits(1 << 1);
+        plan.segments =
+            [Segment { circuits: [circuits(1)], length: 1, throat, outward: Heading::Right, ..Segment::NONE }];
+        plan.lengths[..3].fill(Metres(100));
         plan.braking[..2].copy_from_slice(&[Metres(0), Metres(100)]);
         plan.clear = 1;
         plan.turn = Ticks(self.turn);
@@ -181,7 +196,7 @@ impl Pair {
         }
     }
 
-    fn kernel(layout: &Small, directions: Directions<1>) -> Kernel<1, 1> {
+    fn kernel(layout: &Small, directions: Directions<1>) -> Kernel<2, 1> {
         let mut state = layout.initial();
         state.track = Track::from_parts([1; MAX_CIRCUITS]);
         state.works.blocked = CircuitSet::EMPTY;
@@ -197,7 +212,7 @@ impl Pair {
     }
 
     /// The state after it.
-    fn begin(&self, layout: &Small) -> Kernel<1, 1> {
+    fn begin(&self, layout: &Small) -> Kernel<2, 1> {
         layout.cycle(layout.initial(), self.unblocking(None)).0
     }
 
