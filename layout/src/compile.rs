@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use atc_kernel::interlocking::{
-    Broken, CircuitSet, Element, Layout, MAX_CIRCUITS, Place, Plan, PointSet, Positions, Route, RouteSet, Segment,
-    SegmentSet,
+    Broken, CircuitSet, Element, Large, Layout, Place, Plan, PointSet, Positions, Route, RouteSet, Segment, SegmentSet,
+    Size, Small,
 };
 
 use crate::check;
@@ -16,9 +16,10 @@ use crate::witness;
 
 /// A layout for the kernel, with the names of its numbers.
 #[derive(Clone, Debug)]
-pub struct Compiled<const R: usize = 64, const P: usize = 16, const N: usize = 32, const S: usize = 8> {
+pub struct Compiled<const R: usize = 64, const P: usize = 16, const N: usize = 32, const S: usize = 8, Z: Size = Small>
+{
     /// The plan. It breaks no rule.
-    pub plan: Box<Plan<R, P, N, S>>,
+    pub plan: Box<Plan<R, P, N, S, Z>>,
     /// What the numbers stand for.
     pub names: Names,
     /// What the file left out and how it was filled in.
@@ -59,10 +60,10 @@ impl Names {
 
 impl Names {
     /// What a plan with these names breaks, and where, in a sentence.
-    pub fn broken<const R: usize, const P: usize, const N: usize, const S: usize>(
+    pub fn broken<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
         &self,
         broken: Broken,
-        plan: &Plan<R, P, N, S>,
+        plan: &Plan<R, P, N, S, Z>,
     ) -> String {
         let of =
             |list: &[String], number: u8| list.get(usize::from(number)).cloned().unwrap_or_else(|| number.to_string());
@@ -91,31 +92,55 @@ impl Names {
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Compiled<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Compiled<R, P, N, S, Z> {
     /// The layout for the kernel.
     ///
     /// # Panics
     /// Never: the plan was checked when this was made.
-    pub fn layout(&self) -> Box<Layout<R, P, N, S>> {
+    pub fn layout(&self) -> Box<Layout<R, P, N, S, Z>> {
         Box::new(Layout::new(*self.plan).expect("the plan was checked when it was compiled"))
     }
+}
+
+/// A layout that breaks no rule, of whichever size.
+#[derive(Clone, Debug)]
+pub struct Sound {
+    /// What the numbers of its plan stand for.
+    pub names: Names,
+    /// The layout with everything that a plan has no place for.
+    pub model: Model,
+}
+
+/// Holds a model against every rule, as a station of the size that it needs.
+///
+/// # Errors
+/// As [`compile`].
+pub fn sound(source: &Source, station: &form::Station, model: Model) -> Result<Sound, Errors> {
+    if model.extent().is_large() {
+        let Compiled { names, model, .. } = compile::<256, 32, 128, 32, Large>(source, station, model)?;
+        return Ok(Sound { names, model });
+    }
+    let Compiled { names, model, .. } = compile::<64, 16, 32, 8, Small>(source, station, model)?;
+    Ok(Sound { names, model })
 }
 
 /// Numbers a model that breaks no rule of its own, and checks the plan.
 ///
 /// # Errors
 /// What does not fit, and every rule that the plan breaks.
-pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
+pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
     source: &Source,
     station: &form::Station,
     model: Model,
-) -> Result<Compiled<R, P, N, S>, Errors> {
+) -> Result<Compiled<R, P, N, S, Z>, Errors> {
     let mut problems = Vec::new();
-    room::<R, P, N, S>(&model, &mut problems);
+    room::<R, P, N, S, Z>(&model, &mut problems);
     if !problems.is_empty() {
         return Err(Errors::new(source, problems));
     }
-    let plan = Box::new(plan::<R, P, N, S>(&model));
+    // On the heap from the beginning: that of a large station has half a megabyte.
+    let mut plan = Box::new(Plan::EMPTY);
+    fill(&mut plan, &model);
     let names = Names::of(station, &model);
     plan.check(&mut |broken| problems.push(of_plan(broken, &plan, &names, &model)));
     check::lines(station, &model, &mut problems);
@@ -128,7 +153,10 @@ pub fn compile<const R: usize, const P: usize, const N: usize, const S: usize>(
     Ok(Compiled { plan, names, derived: model.notes.clone(), model })
 }
 
-fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model, problems: &mut Vec<Problem>) {
+fn room<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    model: &Model,
+    problems: &mut Vec<Problem>,
+) {
     if model.routes.is_empty() {
         let what = "the layout has no route: nothing can be set";
         let right =
@@ -136,10 +164,10 @@ fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
         problems.push(Problem::new(Rule::NoRoute, &(0..0), what, right));
     }
     let counts = [
-        ("track circuits", model.circuits.len(), MAX_CIRCUITS),
-        ("points", model.points.len(), N.min(32)),
-        ("routes", model.routes.len(), R.min(64)),
-        ("segments", model.segments.len(), S.min(8)),
+        ("track circuits", model.circuits.len(), CircuitSet::<Z>::MOST),
+        ("points", model.points.len(), N),
+        ("routes", model.routes.len(), R),
+        ("segments", model.segments.len(), S),
     ];
     for (kind, count, room) in counts {
         if count > room {
@@ -159,32 +187,30 @@ fn room<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
     }
 }
 
-fn set<T>(numbers: impl IntoIterator<Item = usize>, empty: T, or: impl Fn(T, usize) -> T) -> T {
-    numbers.into_iter().fold(empty, or)
+fn circuits<Z: Size>(numbers: impl IntoIterator<Item = usize>) -> CircuitSet<Z> {
+    numbers.into_iter().fold(CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)))
 }
 
-fn circuits(numbers: impl IntoIterator<Item = usize>) -> CircuitSet {
-    set(numbers, CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)))
+fn routes<Z: Size>(numbers: impl IntoIterator<Item = usize>) -> RouteSet<Z> {
+    numbers.into_iter().fold(RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number)))
 }
 
-fn routes(numbers: impl IntoIterator<Item = usize>) -> RouteSet {
-    set(numbers, RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number)))
-}
-
-fn positions(given: &BTreeMap<usize, Position>) -> Positions {
+fn positions<Z: Size>(given: &BTreeMap<usize, Position>) -> Positions<Z> {
     let of = |wanted: Position| {
         let numbers = given.iter().filter(|(_, position)| **position == wanted).map(|(point, _)| *point);
-        set(numbers, PointSet::EMPTY, |all, number| all.or(PointSet::nth(number)))
+        numbers.fold(PointSet::EMPTY, |all, number| all.or(PointSet::nth(number)))
     };
     Positions { normal: of(Position::Normal), reverse: of(Position::Reverse) }
 }
 
-fn segment_set(segment: Option<usize>) -> SegmentSet {
+fn segment_set<Z: Size>(segment: Option<usize>) -> SegmentSet<Z> {
     segment.map_or(SegmentSet::EMPTY, SegmentSet::nth)
 }
 
-fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &Model) -> Plan<R, P, N, S> {
-    let mut plan = Plan::EMPTY;
+fn fill<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    plan: &mut Plan<R, P, N, S, Z>,
+    model: &Model,
+) {
     for (place, route) in plan.routes.iter_mut().zip(&model.routes) {
         *place = Route { cab_signalled: model.values.cab_signalled, ..route_of(route) };
     }
@@ -215,10 +241,9 @@ fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(model: &
     plan.loss = model.values.loss;
     plan.residual = model.values.residual;
     plan.standstill = model.values.standstill;
-    plan
 }
 
-fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
+fn route_of<const P: usize, Z: Size>(route: &model::Route) -> Route<P, Z> {
     let mut made = Route {
         heading: route.heading,
         entry: CircuitSet::nth(route.entry),
@@ -247,9 +272,9 @@ fn route_of<const P: usize>(route: &model::Route) -> Route<P> {
 }
 
 /// A broken rule of the plan in the words of the file.
-fn of_plan<const R: usize, const P: usize, const N: usize, const S: usize>(
+fn of_plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
     broken: Broken,
-    plan: &Plan<R, P, N, S>,
+    plan: &Plan<R, P, N, S, Z>,
     names: &Names,
     model: &Model,
 ) -> Problem {

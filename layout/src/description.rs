@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::compile::{Compiled, compile};
+use crate::compile::{Compiled, Sound, compile, sound};
 use crate::form::Station;
 use crate::graph::POINTS_IN_A_CIRCUIT;
 use crate::model::{Model, Values};
@@ -13,7 +13,7 @@ use crate::rule::Rule;
 use crate::{check, derive};
 
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::code_stops_within;
+use atc_kernel::interlocking::{Size, code_stops_within};
 
 /// The rules that names and tracks must keep before anything can be said of routes.
 const TRACKS: [Rule; 4] = [Rule::NameTwice, Rule::NoSuchName, Rule::Joint, Rule::OpenJoint];
@@ -104,7 +104,15 @@ impl Description {
         if problems.is_empty() { Ok(model) } else { Err(Errors::new(&self.source, problems)) }
     }
 
-    /// The layout for the kernel, at its greatest size.
+    /// The layout, held against every rule as a station of the size that it needs.
+    ///
+    /// # Errors
+    /// Every broken rule, or what there is no room for in a large station.
+    pub fn check(&self) -> Result<Sound, Errors> {
+        sound(&self.source, &self.station, self.model()?)
+    }
+
+    /// The layout for the kernel, as a small station.
     ///
     /// # Errors
     /// Every broken rule, or what there is no room for.
@@ -112,13 +120,13 @@ impl Description {
         self.compile_to()
     }
 
-    /// The layout for a kernel with room for `R` routes of up to `P` circuits, `N` points and `S` segments.
+    /// The layout for a kernel with room for `R` routes of up to `P` circuits, `N` points and `S` segments, of size `Z`.
     ///
     /// # Errors
     /// As [`Description::compile`].
-    pub fn compile_to<const R: usize, const P: usize, const N: usize, const S: usize>(
+    pub fn compile_to<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
         &self,
-    ) -> Result<Compiled<R, P, N, S>, Errors> {
+    ) -> Result<Compiled<R, P, N, S, Z>, Errors> {
         compile(&self.source, &self.station, self.model()?)
     }
 }

@@ -35,7 +35,7 @@ mod values;
 pub mod witness;
 
 pub use at::At;
-pub use compile::{Compiled, Names};
+pub use compile::{Compiled, Names, Sound};
 pub use description::{Description, read};
 pub use problem::{Errors, LineColumn, Problem, Source};
 pub use rule::Rule;

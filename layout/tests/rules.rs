@@ -1,6 +1,6 @@
 //! Each rule of a layout file is broken by a file that breaks nothing else, and the message says where.
 
-use atc_kernel::interlocking::{Heading, Rule as Kernel};
+use atc_kernel::interlocking::{Heading, Rule as Kernel, Small};
 use atc_layout::{Description, Errors, Rule};
 use std::time::{Duration, Instant};
 
@@ -761,7 +761,7 @@ fn beyond_apart() {
 
 #[test]
 fn too_many() {
-    let text = Description::from_toml("station.toml", LOOP).unwrap().compile_to::<8, 1, 4, 2>().unwrap_err();
+    let text = Description::from_toml("station.toml", LOOP).unwrap().compile_to::<8, 1, 4, 2, Small>().unwrap_err();
     assert!(text.problems.iter().all(|problem| problem.rule == Rule::TooMany), "{text}");
     assert!(text.to_string().contains("route W-1 has 2 circuits, and there is room for 1"), "{text}");
 }

@@ -2,6 +2,7 @@
 
 mod support;
 
+use atc_kernel::interlocking::{CircuitSet, Large, PointSet, Small};
 use std::path::{Path, PathBuf};
 
 use atc_layout::import::{only, railml, read_any};
@@ -37,11 +38,12 @@ fn thirty() -> Description {
     description(made)
 }
 
-const SAMPLES: [(&str, Version); 4] = [
+const SAMPLES: [(&str, Version); 5] = [
     ("passing-loop", Version::V31),
     ("junction", Version::V32),
     ("terminus", Version::V31),
     ("station-30", Version::V32),
+    ("station-100", Version::V32),
 ];
 
 #[test]
@@ -51,18 +53,30 @@ fn the_station_with_thirty_routes_is_made_by_rule() {
 }
 
 #[test]
+fn the_station_with_a_hundred_routes_is_made_by_rule() {
+    let mut made = station(25, East::AllThrough);
+    "Station with 100 routes".clone_into(&mut made.name);
+    let head = "# A single line, 25 tracks, a hundred routes: a large station. Made by layout/tests/samples.rs.\n\n";
+    pinned("layouts/station-100.toml", &format!("{head}{}", description(made).to_toml()));
+}
+
+#[test]
 fn every_sample_breaks_no_rule() {
     let mut seen = 0;
     for entry in std::fs::read_dir(folder("layouts")).unwrap() {
         let path = entry.unwrap().path();
         let imported = read_any(&path).unwrap_or_else(|errors| panic!("{errors}"));
-        let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
-        compiled.layout();
-        assert_eq!(compiled.plan.routes.iter().filter(|route| route.exists()).count(), compiled.names.routes.len());
-        assert!(!compiled.names.routes.is_empty(), "{}", path.display());
+        let sound = imported.description.check().unwrap_or_else(|errors| panic!("{errors}"));
+        assert!(!sound.names.routes.is_empty(), "{}", path.display());
+        if !sound.model.extent().is_large() {
+            let compiled = imported.description.compile().unwrap_or_else(|errors| panic!("{errors}"));
+            compiled.layout();
+            let routes = compiled.plan.routes.iter().filter(|route| route.exists()).count();
+            assert_eq!(routes, compiled.names.routes.len());
+        }
         seen += 1;
     }
-    assert_eq!(seen, 8, "four samples in two forms");
+    assert_eq!(seen, 10, "five samples in two forms");
 }
 
 #[test]
@@ -133,7 +147,32 @@ fn a_layout_survives_being_written() {
         let native = read(folder(&format!("layouts/{name}.toml"))).unwrap();
         let again = Description::from_toml(name, &native.to_toml()).unwrap_or_else(|errors| panic!("{errors}"));
         assert_eq!(native.station, again.station);
-        assert_eq!(native.compile().unwrap().plan, again.compile().unwrap().plan);
+        let plan = |it: &Description| it.compile_to::<128, 32, 64, 8, Large>().unwrap().plan;
+        assert!(plan(&native) == plan(&again), "{name}");
+    }
+}
+
+#[test]
+fn a_plan_of_a_large_station_is_that_of_a_small_one() {
+    let small = thirty().compile().unwrap().plan;
+    let large = thirty().compile_to::<64, 16, 32, 8, Large>().unwrap().plan;
+    assert_eq!((&small.braking, small.clear, small.turn), (&large.braking, large.clear, large.turn));
+    assert!(small.lengths.iter().eq(large.lengths.iter().take(64)));
+    let circuits = |set: CircuitSet, wide: CircuitSet<Large>| assert_eq!([set.bits(), 0, 0, 0], wide.words());
+    let points = |set: PointSet, wide: PointSet<Large>| assert_eq!([set.bits(), 0, 0, 0], wide.words());
+    for (one, other) in small.routes.iter().zip(&large.routes) {
+        assert_eq!((one.length, one.heading, one.speed), (other.length, other.heading, other.speed));
+        circuits(one.entry, other.entry);
+        circuits(one.approach, other.approach);
+        circuits(one.beyond, other.beyond);
+        assert_eq!([one.conflicts.bits(), 0, 0, 0], other.conflicts.words());
+        assert_eq!([one.continuing.bits(), 0, 0, 0], other.continuing.words());
+        assert_eq!([one.to.bits(), 0, 0, 0], other.to.words());
+        for (element, wide) in one.path.iter().zip(&other.path).chain([(&one.overlap, &other.overlap)]) {
+            circuits(element.circuits, wide.circuits);
+            points(element.positions.normal, wide.positions.normal);
+            points(element.positions.reverse, wide.positions.reverse);
+        }
     }
 }
 
@@ -145,12 +184,14 @@ fn a_station_of_the_greatest_size_fits() {
 }
 
 #[test]
-fn seventy_seven_routes_are_checked_and_then_refused_or_cut() {
+fn seventy_seven_routes_are_a_large_station_or_cut() {
     let text = written(&seventy_seven(), Version::V31);
     let imported = railml("77", &text).unwrap();
     assert_eq!(imported.description.model().unwrap_or_else(|errors| panic!("{errors}")).routes.len(), 77);
     let errors = imported.description.compile().unwrap_err();
     assert!(errors.breaks(Rule::TooMany), "{errors}");
+    let sound = imported.description.check().unwrap_or_else(|errors| panic!("as a large station: {errors}"));
+    assert_eq!(sound.names.routes.len(), 77);
     assert!(errors.to_string().contains("77 routes, and there is room for 64"), "{errors}");
     let wanted: Vec<String> = ["W-1", "1-W", "E-1", "1-E"].map(str::to_owned).to_vec();
     let part = only(&imported.description, &wanted).unwrap();
@@ -162,14 +203,14 @@ fn seventy_seven_routes_are_checked_and_then_refused_or_cut() {
 #[test]
 fn a_small_layout_is_the_same_file() {
     let native = read(folder("layouts/passing-loop.toml")).unwrap();
-    let small = native.compile_to::<8, 8, 4, 2>().unwrap_or_else(|errors| panic!("{errors}"));
+    let small = native.compile_to::<8, 8, 4, 2, Small>().unwrap_or_else(|errors| panic!("{errors}"));
     let full = native.compile().unwrap();
     assert_eq!(small.plan.lengths, full.plan.lengths);
     assert_eq!(
         small.plan.routes.map(|route| (route.entry, route.approach, route.conflicts, route.beyond)).as_slice(),
         &full.plan.routes.map(|route| (route.entry, route.approach, route.conflicts, route.beyond))[..8]
     );
-    assert!(native.compile_to::<7, 8, 4, 2>().unwrap_err().breaks(Rule::TooMany));
+    assert!(native.compile_to::<7, 8, 4, 2, Small>().unwrap_err().breaks(Rule::TooMany));
 }
 
 #[test]

@@ -40,7 +40,7 @@ impl Station {
         if let Some(name) = &given.name {
             description.station.name.clone_from(name);
         }
-        let problems = description.compile().err().map(|errors| errors.problems).unwrap_or_default();
+        let problems = description.check().err().map(|errors| errors.problems).unwrap_or_default();
         let model = if problems.is_empty() { description.model().ok() } else { None };
         Ok(Self { description, model, problems, code_speeds })
     }

@@ -77,7 +77,7 @@ impl Device for Wrong {
             }
             Self::NoFilter => {
                 let clear = |circuit: u8| !input.occupied.has(CircuitId::new(circuit).expect("a circuit"));
-                let counts = std::array::from_fn(|circuit| {
+                let counts = atc_kernel::interlocking::PerCircuit::from_fn(|circuit| {
                     let circuit = u8::try_from(circuit).expect("a circuit");
                     if clear(circuit) { plan.clear } else { 0 }
                 });

@@ -183,7 +183,7 @@ struct Told {
 
 impl Checked {
     fn of(layout: &LayoutFile, description: &Description, report: Report) -> Self {
-        let problems = description.compile().err().map(|errors| errors.problems).unwrap_or_default();
+        let problems = description.check().err().map(|errors| errors.problems).unwrap_or_default();
         let told = |problem: Problem| Told {
             rule: problem.rule.name(),
             line: problem.place.map(|place| place.line),
@@ -254,8 +254,8 @@ fn nothing(layout: &LayoutFile, report: &Report) -> Errors {
 
 fn check(layout: &LayoutFile, derived: bool) -> Result<String, Errors> {
     let Imported { description, report } = open(layout)?;
-    let compiled = description.compile()?;
-    let names = &compiled.names;
+    let sound = description.check()?;
+    let names = &sound.names;
     let mut text = format!(
         "{}: no broken rule; {} routes, {} points, {} circuits, {} segments\n",
         layout.file.display(),
@@ -272,7 +272,7 @@ fn check(layout: &LayoutFile, derived: bool) -> Result<String, Errors> {
         }
     }
     if derived {
-        for note in &compiled.derived {
+        for note in &sound.model.notes {
             let _ = writeln!(text, "{}: {}", note.about, note.text);
         }
     }
@@ -291,7 +291,7 @@ fn border(one: &Path, other: &Path) -> Result<String, Errors> {
 
 /// The rules that an imported layout still breaks: a remark, for the import itself was done.
 fn broken_rules(description: &Description) -> String {
-    match description.compile() {
+    match description.check() {
         Ok(_) => "the layout breaks no rule\n".to_owned(),
         Err(errors) => format!("the layout breaks {} rules:\n{errors}\n", errors.problems.len()),
     }

@@ -86,7 +86,7 @@ fn look(world: &World<'_>) -> Frame {
         proceed: station.reply.proceed,
         drives: station.reply.drives,
         permits: station.reply.permits,
-        telegrams: station.telegrams.to_vec(),
+        telegrams: station.telegrams.iter().copied().collect(),
     });
     Frame {
         reported: world.reported.clone(),

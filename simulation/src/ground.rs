@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Heading, Input, Layout, MAX_CIRCUITS, Memory, Movement, Orders, Phase, PointSet, Positions,
+    CircuitSet, Combined, Heading, Input, Layout, Memory, Movement, Orders, PerCircuit, Phase, PointSet, Positions,
     Refusal, Request, RouteSet, SegmentSet,
 };
 use atc_kernel::wayside::{Equipment, Framed, Message as Said, Session, Transmission, Wayside, WaysideError};
@@ -28,9 +28,9 @@ pub struct Reply {
     /// What became of the request.
     pub answer: Option<Result<(), Refusal>>,
     /// The telegram of each circuit.
-    pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+    pub telegrams: PerCircuit<Option<Movement>>,
     /// The frames and codes of each circuit; none without a whole device.
-    pub transmissions: [Option<Transmission>; MAX_CIRCUITS],
+    pub transmissions: PerCircuit<Option<Transmission>>,
     /// What is told to the neighbour at each segment; none without a whole device.
     pub messages: [Option<Said>; MAX_SEGMENTS],
     /// The circuits that count as occupied because of the counted line alone.
@@ -46,8 +46,8 @@ impl Reply {
         drives: Positions::NONE,
         permits: SegmentSet::EMPTY,
         answer: None,
-        telegrams: [None; MAX_CIRCUITS],
-        transmissions: [None; MAX_CIRCUITS],
+        telegrams: PerCircuit::NONE,
+        transmissions: PerCircuit::NONE,
         messages: [None; MAX_SEGMENTS],
         counted: CircuitSet::EMPTY,
         agree: [false; MAX_BLOCKS],
@@ -282,9 +282,9 @@ struct Message {
 pub struct Station {
     device: Box<dyn Device>,
     /// What is sent in the circuits now.
-    pub telegrams: [Option<Movement>; MAX_CIRCUITS],
+    pub telegrams: PerCircuit<Option<Movement>>,
     /// What the transmitters send now.
-    pub air: [Option<Transmission>; MAX_CIRCUITS],
+    pub air: PerCircuit<Option<Transmission>>,
     /// The transmitters that have taken the frames of the last cycle.
     taken: CircuitSet,
     /// What the device said last.
@@ -301,8 +301,8 @@ impl Station {
     pub fn new(device: Box<dyn Device>, segments: usize) -> Self {
         Self {
             device,
-            telegrams: [None; MAX_CIRCUITS],
-            air: [None; MAX_CIRCUITS],
+            telegrams: PerCircuit::NONE,
+            air: PerCircuit::NONE,
             taken: CircuitSet::EMPTY,
             reply: Reply::SAFE,
             consents: vec![Consent::default(); segments],

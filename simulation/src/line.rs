@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use atc_kernel::aspect::AspectId;
-use atc_kernel::interlocking::{Heading, Layout, MAX_CIRCUITS, MAX_CODES};
+use atc_kernel::interlocking::{Heading, Layout, MAX_CODES, PerCircuit};
 use atc_kernel::telegram::{Gradient, SectionId};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Facing, Fixed, Join, Session, SignalPlan};
@@ -406,7 +406,7 @@ impl Line {
             let section = u16::try_from(section).map_err(|_| "more circuits than section numbers".to_owned())?;
             Ok::<_, String>(Facing { section: SectionId(section), gradient: Gradient(0), curve })
         };
-        let mut circuits = [None; MAX_CIRCUITS];
+        let mut circuits = PerCircuit::NONE;
         for (place, circuit) in circuits.iter_mut().zip(&self.track.sites[station].circuits) {
             *place = Some(Fixed { left: facing(2 * circuit + 1)?, right: facing(2 * circuit)? });
         }

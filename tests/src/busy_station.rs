@@ -1,13 +1,17 @@
-//! A station of the greatest size with trains under way, for the benchmarks: four tracks of 14 circuits between eight stretches of
-//! plain line, 64 routes of up to 4 circuits with overlaps, 32 points.
+//! Stations of the greatest size with trains under way, for the benchmarks. A track has 14 circuits between two stretches of plain
+//! line, 16 routes of up to 4 circuits with overlaps and 8 points; a small station has four tracks, a large one 16.
 
 use atc_kernel::interlocking::{
-    CircuitSet, Input, Movement, Orders, Position, Request, RouteId, SegmentId, SegmentSet, State, Station, Travel,
+    CircuitSet, Input, LargeStation, Layout, Movement, Orders, Position, Request, RouteId, SegmentId, SegmentSet, Size,
+    State, Station, Travel,
 };
 
 use crate::sketch::{self, Line, Sketch, Way};
 
-const ROWS: usize = 4;
+/// The tracks of a small station.
+pub const SMALL: usize = 4;
+/// The tracks of a large one.
+pub const LARGE: usize = 16;
 const INNER: usize = 14;
 /// How many cycles a train takes for a circuit.
 const STRIDE: usize = 4;
@@ -61,19 +65,32 @@ fn way(row: usize, entry: usize, rightward: bool) -> Way {
     }
 }
 
-/// The station.
+/// The small station.
 ///
 /// # Panics
 /// If the plan breaks a rule.
 pub fn station() -> Box<Station> {
+    Box::new(Station::new(sketch(SMALL).plan()).expect("the plan keeps the rules"))
+}
+
+/// The large station.
+///
+/// # Panics
+/// If the plan breaks a rule.
+pub fn large() -> Box<LargeStation> {
+    Box::new(LargeStation::new(sketch(LARGE).plan()).expect("the plan keeps the rules"))
+}
+
+/// The station with so many tracks.
+pub fn sketch(rows: usize) -> Sketch {
     let mut sketch = Sketch {
-        lengths: vec![200; 64],
+        lengths: vec![200; 16 * rows],
         braking: vec![0, 20, 60, 150, 250, 400, 600, 900],
         clear: 2,
         turn: 50,
         ..Sketch::default()
     };
-    for row in 0..ROWS {
+    for row in 0..rows {
         for place in (1..=INNER).filter(|place| point_in(row, *place).is_some()) {
             sketch.points.push(vec![circuit(row, place)]);
         }
@@ -89,26 +106,26 @@ pub fn station() -> Box<Station> {
         let follows = |other: &usize| sketch.routes[*other].entry == last && sketch.routes[*other].leftward == leftward;
         sketch.routes[one].continuing = (0..sketch.routes.len()).filter(follows).collect();
     }
-    Box::new(Station::new(sketch.apart().plan()).expect("the plan keeps the rules"))
+    sketch.apart()
 }
 
 /// The inputs that put the station in service: everything clear and unblocked, trains come from the left.
 ///
 /// # Panics
-/// Never: there are eight segments.
-pub fn service() -> Vec<Input> {
-    let quiet = quiet();
+/// Never: there are at most 32 segments.
+pub fn service<Z: Size>(rows: usize) -> Vec<Input<Z>> {
+    let quiet = quiet(rows);
     let orders = Orders { unblock: CircuitSet::ALL, lift: CircuitSet::ALL, ..Orders::default() };
     let mut inputs = vec![Input { orders, ..quiet }; 60];
-    for (segment, travel) in (0..8).zip([Travel::Toward, Travel::Away].into_iter().cycle()) {
-        let segment = SegmentId::new(segment).expect("a segment");
+    for (segment, travel) in (0..2 * rows).zip([Travel::Toward, Travel::Away].into_iter().cycle()) {
+        let segment = u8::try_from(segment).ok().and_then(SegmentId::new).expect("a segment");
         inputs.push(Input { request: Some(Request::Turn(segment, travel)), ..quiet });
     }
     inputs
 }
 
-fn quiet() -> Input {
-    let normal = (0..32).map(|point| (point, Position::Normal)).collect::<Vec<_>>();
+fn quiet<Z: Size>(rows: usize) -> Input<Z> {
+    let normal = (0..8 * rows).map(|point| (point, Position::Normal)).collect::<Vec<_>>();
     Input {
         occupied: CircuitSet::EMPTY,
         detected: sketch::positions(&normal),
@@ -121,11 +138,11 @@ fn quiet() -> Input {
 /// A period of traffic: a train in each row from left to right, with the routes that it needs asked for as it comes to them.
 ///
 /// # Panics
-/// Never: there are 64 routes.
-pub fn traffic() -> Vec<Input> {
+/// Never: there are at most 256 routes.
+pub fn traffic<Z: Size>(rows: usize) -> Vec<Input<Z>> {
     let cycle = |now: usize| {
-        let mut input = quiet();
-        for row in 0..ROWS {
+        let mut input = quiet(rows);
+        for row in 0..rows {
             let along = (now + PERIOD - row * 7) % PERIOD;
             let place = along / STRIDE;
             if place < INNER + 2 {
@@ -146,18 +163,21 @@ pub fn traffic() -> Vec<Input> {
 }
 
 /// A cycle with a train in every circuit.
-pub fn full() -> Vec<Input> {
-    vec![Input { occupied: CircuitSet::ALL, ..quiet() }]
+pub fn full<Z: Size>(rows: usize) -> Vec<Input<Z>> {
+    vec![Input { occupied: CircuitSet::ALL, ..quiet(rows) }]
 }
 
 /// Steps the station in service with these inputs over and over, `count` cycles with their telegrams; the last telegram of circuit 0,
 /// and how many routes were set.
-pub fn run(inputs: &[Input], count: u64) -> (Movement, u64) {
-    let station = station();
+pub fn run<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    station: &Layout<R, P, N, S, Z>,
+    inputs: &[Input<Z>],
+    count: u64,
+) -> (Movement<Z>, u64) {
     let mut state = State::INITIAL;
     let (mut last, mut set) = (Movement::stop_in(atc_kernel::interlocking::CircuitId::ZERO), 0);
     let steps = inputs.iter().cycle().take(usize::try_from(count).unwrap_or(usize::MAX));
-    for input in service().iter().chain(steps) {
+    for input in service(R / 16).iter().chain(steps) {
         let (next, output) = station.cycle(state, *input);
         state = next;
         last = station.telegrams(&output.table, state.epoch)[0].unwrap_or(last);
@@ -168,14 +188,16 @@ pub fn run(inputs: &[Input], count: u64) -> (Movement, u64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{PERIOD, full, run, traffic};
+    use super::{LARGE, PERIOD, SMALL, full, large, run, station, traffic};
 
     /// Every route that is asked for is set, in every period: the trains run.
     #[test]
     fn the_trains_run() {
         let period = PERIOD as u64;
-        assert_eq!(run(&traffic(), period).1, 16);
-        assert_eq!(run(&traffic(), 3 * period).1, 48);
-        assert_eq!(run(&full(), 10).1, 0);
+        let station = station();
+        assert_eq!(run(&station, &traffic(SMALL), period).1, 16);
+        assert_eq!(run(&station, &traffic(SMALL), 3 * period).1, 48);
+        assert_eq!(run(&station, &full(SMALL), 10).1, 0);
+        assert_eq!(run(&large(), &traffic(LARGE), period).1, 64);
     }
 }

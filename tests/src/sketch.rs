@@ -3,8 +3,8 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Heading, MAX_CIRCUITS, MAX_CODES, Plan, Point, PointId, Position, Positions, Route, RouteSet,
-    Segment, SegmentSet, SpeedCode,
+    CircuitSet, Element, Heading, MAX_CODES, Plan, Point, PointId, Position, Positions, Route, RouteSet, Segment,
+    SegmentSet, Size, SpeedCode,
 };
 use atc_kernel::time::Ticks;
 
@@ -100,7 +100,7 @@ impl Way {
 }
 
 /// The set of these circuits.
-pub fn circuits(numbers: &[usize]) -> CircuitSet {
+pub fn circuits<Z: Size>(numbers: &[usize]) -> CircuitSet<Z> {
     numbers.iter().fold(CircuitSet::EMPTY, |set, number| set.or(CircuitSet::nth(*number)))
 }
 
@@ -113,16 +113,16 @@ pub fn segments(numbers: &[usize]) -> SegmentSet {
 ///
 /// # Panics
 /// If there cannot be a point of such a number.
-pub fn positions(needs: &[Need]) -> Positions {
+pub fn positions<Z: Size>(needs: &[Need]) -> Positions<Z> {
     let id = |point: usize| u8::try_from(point).ok().and_then(PointId::new).expect("a point's number");
     needs.iter().fold(Positions::NONE, |all, (point, position)| all.or(Positions::of(id(*point), *position)))
 }
 
-fn routes(numbers: &[usize]) -> RouteSet {
+fn routes<Z: Size>(numbers: &[usize]) -> RouteSet<Z> {
     numbers.iter().fold(RouteSet::EMPTY, |set, number| set.or(RouteSet::nth(*number)))
 }
 
-fn place(circuits_of: &[usize], needs: &[Need]) -> Element {
+fn place<Z: Size>(circuits_of: &[usize], needs: &[Need]) -> Element<Z> {
     Element { circuits: circuits(circuits_of), positions: positions(needs) }
 }
 
@@ -146,9 +146,9 @@ impl Sketch {
     ///
     /// # Panics
     /// If there is no room for it.
-    pub fn plan<const R: usize, const P: usize, const N: usize, const S: usize>(&self) -> Plan<R, P, N, S> {
+    pub fn plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(&self) -> Plan<R, P, N, S, Z> {
         let mut plan = Plan::EMPTY;
-        assert!(self.lengths.len() <= MAX_CIRCUITS && self.braking.len() <= MAX_CODES);
+        assert!(self.lengths.len() <= CircuitSet::<Z>::MOST && self.braking.len() <= MAX_CODES);
         for (length, metres) in plan.lengths.iter_mut().zip(&self.lengths) {
             *length = Metres(*metres);
         }
@@ -168,7 +168,7 @@ impl Sketch {
     }
 }
 
-fn segment<const P: usize>(line: &Line) -> Segment<P> {
+fn segment<const P: usize, Z: Size>(line: &Line) -> Segment<P, Z> {
     let mut segment = Segment::NONE;
     for (place, circuit) in line.circuits.iter().enumerate() {
         segment.circuits[place] = CircuitSet::nth(*circuit);
@@ -182,8 +182,8 @@ const fn heading(leftward: bool) -> Heading {
     if leftward { Heading::Left } else { Heading::Right }
 }
 
-fn route<const P: usize>(way: &Way) -> Route<P> {
-    let mut path = Route::<P>::NONE.path;
+fn route<const P: usize, Z: Size>(way: &Way) -> Route<P, Z> {
+    let mut path = Route::<P, Z>::NONE.path;
     for (number, (circuit, needs)) in way.path.iter().enumerate() {
         path[number] = place(&[*circuit], needs);
     }

@@ -6,7 +6,8 @@ use atc_kernel::Machine as _;
 use atc_kernel::duplex::{Duplex, output};
 use atc_kernel::interlocking::{
     CircuitId, CircuitSet, Combined, Contents, Epoch, Grant, Input, Layout, MAX_CIRCUITS, MAX_CODES, Memory, Movement,
-    Orders, Positions, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, State, Table, Travel,
+    Orders, PerCircuit, PointId, Positions, Request, RouteId, SegmentId, SegmentSet, Small, SpeedCode, SpeedLimits,
+    State, Table, Travel,
 };
 use atc_kernel::time::Ticks;
 use atc_tests::sketch::{self, Line, Need, Sketch, Way};
@@ -72,7 +73,7 @@ fn in_service(layout: &Layout<2, 2, 1, 2>) -> (State<2, 2>, Table<2>) {
     now
 }
 
-fn open(telegrams: &[Option<Movement>; MAX_CIRCUITS]) -> BTreeSet<u8> {
+fn open(telegrams: &PerCircuit<Option<Movement>>) -> BTreeSet<u8> {
     telegrams
         .iter()
         .zip(0..)
@@ -81,10 +82,10 @@ fn open(telegrams: &[Option<Movement>; MAX_CIRCUITS]) -> BTreeSet<u8> {
         .collect()
 }
 
-fn all_stop(telegrams: &[Option<Movement>; MAX_CIRCUITS]) -> bool {
+fn all_stop(telegrams: &PerCircuit<Option<Movement>>) -> bool {
     let mut stop = true;
     for (number, movement) in telegrams.iter().enumerate() {
-        stop &= *movement == Some(Movement::stop_in(CircuitSet::nth(number).first().expect("a circuit")));
+        stop &= *movement == Some(Movement::stop_in(CircuitSet::<Small>::nth(number).first().expect("a circuit")));
     }
     stop
 }
@@ -286,7 +287,7 @@ fn a_wrong_bit_in_one_channel_stops_every_train() {
                 let (next, agreed) = channels.step(&device, quiet(&[1]));
                 let said = output::<Combined<2, 2, 1, 2>>(agreed);
                 assert_eq!(said, Combined::<2, 2, 1, 2>::SAFE, "{state:?}");
-                assert_eq!(said.telegrams, [None; MAX_CIRCUITS]);
+                assert_eq!(said.telegrams, PerCircuit::NONE);
                 channels = next;
             }
             assert!(channels.is_tripped());
@@ -300,14 +301,16 @@ fn each_of_64_numbers_has_a_set_of_its_own() {
     for number in 0..64_u8 {
         let circuit = CircuitId::new(number).unwrap();
         assert_eq!(circuit.number(), number);
-        assert_eq!(circuit.alone().bits(), 1 << number);
-        assert_eq!(CircuitSet::nth(usize::from(number)), circuit.alone());
-        assert_eq!(circuit.alone().first(), Some(circuit));
-        assert!(circuit.alone().is_one());
+        let alone: CircuitSet = circuit.alone();
+        assert_eq!(alone.bits(), 1 << number);
+        assert_eq!(CircuitSet::nth(usize::from(number)), alone);
+        assert_eq!(alone.first(), Some(circuit));
+        assert!(alone.is_one());
         for other in 0..64_u8 {
             let other = CircuitId::new(other).unwrap();
-            assert_eq!(circuit.alone().has(other), circuit == other);
+            assert_eq!(alone.has(other), circuit == other);
         }
     }
-    assert_eq!(CircuitId::new(64), None);
+    assert_eq!(PointId::new(128), None);
+    assert!(CircuitId::new(64).unwrap().alone::<Small>().is_empty(), "a small station has no such circuit");
 }

@@ -9,8 +9,8 @@ use atc_kernel::block::{
 use atc_kernel::code::{Code, CodeFrequencies, CodeTable, Millihertz};
 use atc_kernel::duplex::Duplex;
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Heading, Layout, MAX_CIRCUITS, Memory, Orders, Plan,
-    Position, Positions, Refusal, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, Travel,
+    self as kernel, CircuitId, CircuitSet, Combined, Epoch, Heading, Layout, MAX_CIRCUITS, Memory, Orders, PerCircuit,
+    Plan, Position, Positions, Refusal, Request, RouteId, SegmentId, SegmentSet, SpeedCode, SpeedLimits, Travel,
 };
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::{Counter, Gradient, Main, Route, SectionId, Sub, Telegram, decode};
@@ -77,7 +77,7 @@ fn aspects() -> AspectTable {
 fn signals() -> SignalPlan {
     let curve = aspects().aspect(KmhTenths(750)).expect("a rank");
     let facing = |section, gradient| Facing { section: SectionId(section), gradient: Gradient(gradient), curve };
-    let mut circuits = [None; MAX_CIRCUITS];
+    let mut circuits = PerCircuit::NONE;
     for (number, circuit) in (0_u16..6).zip(&mut circuits) {
         *circuit = Some(Fixed { left: facing(101 + 2 * number, -3), right: facing(200 + 2 * number, 5) });
     }
@@ -307,7 +307,7 @@ impl<'a> Glue<'a> {
             answer: if turns { Some(Err(Refusal::Direction)) } else { commands.interlocking.answer },
             messages: told,
             line: Some(report),
-            transmissions,
+            transmissions: transmissions.into(),
         }
     }
 
@@ -436,7 +436,7 @@ fn two_channels_put_out_nothing_on_which_they_differ() {
         faulty.a.state = state;
         let (after, agreed) = faulty.step(&device, quiet());
         assert!(agreed.is_none() && after.is_tripped(), "a difference passed");
-        assert_eq!(atc_kernel::duplex::output::<Device<'_>>(agreed).transmissions, [None; MAX_CIRCUITS]);
+        assert_eq!(atc_kernel::duplex::output::<Device<'_>>(agreed).transmissions, PerCircuit::NONE);
     }
 }
 

@@ -260,7 +260,7 @@ pub(super) fn take_memory(from: &mut Reader<'_>) -> Option<Memory<64, 8>> {
     for count in &mut stood {
         *count = from.u8()?;
     }
-    let points = Settling::from_parts(stood, take_positions(from)?);
+    let points = Settling::from_parts(stood.into(), take_positions(from)?);
     let mut held = [RouteState::IDLE; 64];
     for route in &mut held {
         *route = take_held(from)?;
@@ -272,7 +272,7 @@ pub(super) fn take_memory(from: &mut Reader<'_>) -> Option<Memory<64, 8>> {
     }
     let works = Works { blocked: circuits(from)?, confirmed: circuits(from)?, restrictions: take_limits(from)? };
     let interlocking = State {
-        track: Track::from_parts(clear_for),
+        track: Track::from_parts(clear_for.into()),
         started,
         unswept,
         points,

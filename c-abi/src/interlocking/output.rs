@@ -78,6 +78,6 @@ pub(crate) fn output(memory: &Memory<64, 8>, commands: &Commands<64>) -> atc_int
         answer: answer(said.answer),
         permits: said.permits.bits(),
         phases: memory.interlocking.routes.map(|route| phase(route.phase)),
-        telegrams: commands.telegrams.map(telegram),
+        telegrams: core::array::from_fn(|circuit| telegram(commands.telegrams[circuit])),
     }
 }

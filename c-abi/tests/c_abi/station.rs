@@ -84,13 +84,14 @@ fn place(arrays: &Arrays) -> (atc_status, atc_place) {
 #[test]
 fn interlockings() {
     let mut unsafe_plans = 0;
-    let (cases, rejected, steps) = walked(Interlocked::NAME, 140, |expected, refused| {
+    let (cases, rejected, steps) = walked(<Interlocked>::NAME, 140, |expected, refused| {
         if refused {
             // A layout that cannot be compiled has no arrays.
             return 0;
         }
         let config: Config = body(&expected.case.config);
-        let mut oracle = Interlocked::open(&config).expect("the oracle has walked on it");
+        // A large station has none here either.
+        let Ok(mut oracle) = Interlocked::open(&config) else { return 0 };
         let layout: &Station = oracle.layout();
         let arrays = Arrays::of(layout.plan(), oracle.names());
         let started = start(&arrays);

@@ -70,8 +70,8 @@ fn finding(source: &str, problem: atc_layout::Problem) -> Finding {
 /// Holds a layout against every rule; `source` is the file's name and `sha256` its hash.
 pub fn check(source: &str, sha256: &str, imported: &Imported) -> Checked {
     let Imported { description, .. } = imported;
-    let compiled = description.compile();
-    let problems = match &compiled {
+    let sound = description.check();
+    let problems = match &sound {
         Ok(_) => Vec::new(),
         Err(errors) => errors.problems.clone(),
     };

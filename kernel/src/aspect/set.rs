@@ -3,7 +3,7 @@
 use super::MAX_ASPECTS;
 
 /// One aspect: its rank by permitted speed, 0 the lowest, at most 15.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AspectId(u8);
 
 impl AspectId {

@@ -4,6 +4,7 @@ use super::code::SpeedCode;
 use super::layout::Layout;
 use super::set::{CircuitId, CircuitSet, SegmentSet};
 use super::signal::Grant;
+use super::size::{Size, Small};
 use super::table::Contents;
 use crate::distance::Metres;
 use crate::heading::Heading;
@@ -13,7 +14,7 @@ pub const MAX_LINKS: usize = 4;
 
 /// What the telegram of one circuit tells the train there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Movement {
+pub struct Movement<Z: Size = Small> {
     /// The last circuit that the train may enter; its own if it must stay there.
     pub stop: CircuitId,
     /// The direction of travel in which it may leave its circuit; none if it must stay there. A train that faces the other way must stop.
@@ -21,10 +22,10 @@ pub struct Movement {
     /// The highest speed code.
     pub speed: SpeedCode,
     /// The circuits that the train may enter. Their transmitters are held on for it.
-    pub hold: CircuitSet,
+    pub hold: CircuitSet<Z>,
 }
 
-impl Movement {
+impl<Z: Size> Movement<Z> {
     /// The telegram that stops a train in `circuit`.
     pub const fn stop_in(circuit: CircuitId) -> Self {
         Self { stop: circuit, heading: None, speed: SpeedCode::STOP, hold: CircuitSet::EMPTY }
@@ -48,16 +49,16 @@ impl Movement {
 /// `to` are those to which the route leads that ends in `here`. `Grant::NONE` if that is nothing, or if two trains could think that it is
 /// meant for them.
 #[inline]
-pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: &Contents<R>,
-    (here, to): (CircuitSet, SegmentSet),
-) -> (Grant, SegmentSet) {
+pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: &Contents<R, Z>,
+    (here, to): (CircuitSet<Z>, SegmentSet<Z>),
+) -> (Grant<Z>, SegmentSet<Z>) {
     //= spec/interlocking.md#atc-2-one-train
     //# Where more than one grant begins at a circuit, none of them MUST be used.
     let mut found = 0_u8;
     let mut link = (Grant::NONE, SegmentSet::EMPTY);
-    let mut take = |grant: Grant, leads: SegmentSet| {
+    let mut take = |grant: Grant<Z>, leads: SegmentSet<Z>| {
         if grant.train == here && !here.is_empty() {
             found = found.saturating_add(1);
             link = (grant, leads);
@@ -77,10 +78,10 @@ pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The circuits where a grant may begin. A train anywhere else is told to stop, without a look at every grant.
 #[inline]
-pub fn begins<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: &Contents<R>,
-) -> CircuitSet {
+pub fn begins<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: &Contents<R, Z>,
+) -> CircuitSet<Z> {
     let mut begins = CircuitSet::EMPTY;
     for grant in &contents.grants {
         begins = begins.or(grant.train);
@@ -94,12 +95,12 @@ pub fn begins<const R: usize, const P: usize, const N: usize, const S: usize>(
 /// What a train in `here` may run over in segment `number`: the free circuits ahead of it, in the segment's direction. From the throat that
 /// is a train which a route to the segment has brought there.
 #[inline]
-fn on_line<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: &Contents<R>,
+fn on_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: &Contents<R, Z>,
     number: usize,
-    (here, to): (CircuitSet, SegmentSet),
-) -> Grant {
+    (here, to): (CircuitSet<Z>, SegmentSet<Z>),
+) -> Grant<Z> {
     //= spec/interlocking.md#atc-3-plain-line
     //# On plain line a train MUST be granted only the free and unblocked circuits ahead of it in the direction that the segment has, up to the next that is not.
     let segment = &layout.plan().segments[number];
@@ -145,7 +146,7 @@ fn on_line<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The grant with one circuit more, if it is open as far as that.
 #[inline]
-fn extend(grant: Grant, circuit: CircuitSet, closed: CircuitSet, open: &mut bool) -> Grant {
+fn extend<Z: Size>(grant: Grant<Z>, circuit: CircuitSet<Z>, closed: CircuitSet<Z>, open: &mut bool) -> Grant<Z> {
     if *open && !circuit.meets(closed) {
         return Grant { circuits: grant.circuits.or(circuit), last: circuit, ..grant };
     }
@@ -156,11 +157,11 @@ fn extend(grant: Grant, circuit: CircuitSet, closed: CircuitSet, open: &mut bool
 
 /// The telegram of one circuit.
 #[inline]
-pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: &Contents<R>,
+pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: &Contents<R, Z>,
     circuit: CircuitId,
-) -> Movement {
+) -> Movement<Z> {
     //= spec/interlocking.md#atc-7-stop-telegram
     //# The telegram of a circuit MUST be a stop telegram unless a train occupies it and a circuit ahead is granted to that train.
     let mut here = circuit.alone();
@@ -199,12 +200,12 @@ pub fn movement<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The telegram of one circuit from what was read of the table, if it could be read; `begins` is what [`begins()`] says of it.
 #[inline]
-pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: Option<&Contents<R>>,
-    begins: CircuitSet,
+pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: Option<&Contents<R, Z>>,
+    begins: CircuitSet<Z>,
     circuit: CircuitId,
-) -> Movement {
+) -> Movement<Z> {
     //= spec/interlocking.md#atc-6-unreadable-table
     //# A table that cannot be read MUST make every telegram a stop telegram.
     match contents {
@@ -215,10 +216,10 @@ pub fn telegram<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The circuits in which this device sends nothing, because the neighbour's device speaks there; `contents` is what was read of the table.
 #[inline]
-pub fn silent<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    contents: Option<&Contents<R>>,
-) -> CircuitSet {
+pub fn silent<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    contents: Option<&Contents<R, Z>>,
+) -> CircuitSet<Z> {
     //= spec/interlocking.md#atc-12-border
     //# In a circuit of plain line that the neighbour's device sees too, a device MUST send telegrams only while the direction is towards its own station.
     let toward = match contents {
@@ -235,9 +236,9 @@ pub fn silent<const R: usize, const P: usize, const N: usize, const S: usize>(
 
 /// The highest code from which a train stops within the lengths of `circuits`.
 #[inline]
-fn stopping_within<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    circuits: CircuitSet,
+fn stopping_within<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    circuits: CircuitSet<Z>,
 ) -> SpeedCode {
     let plan = layout.plan();
     let mut distance = 0_u32;

@@ -1,7 +1,8 @@
 //! The rules of a layout: those that the theorems need, and those that engineering asks for besides.
 
 use super::layout::{Element, Plan, Route};
-use super::set::{CircuitSet, PointSet, Positions, RouteSet, SegmentSet};
+use super::set::{CircuitSet, PointSet, Positions, RouteSet, SegmentSet, short};
+use super::size::Size;
 use crate::distance::Metres;
 
 /// A rule that a plan breaks, and where. Routes, places of a path, points and segments are numbered from 0.
@@ -103,7 +104,7 @@ fn require(report: &mut impl FnMut(Broken), kept: bool, rule: Rule, place: Place
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Plan<R, P, N, S, Z> {
     /// Every rule that is broken, with its place.
     pub fn check(&self, report: &mut impl FnMut(Broken)) {
         self.check_needed(report);
@@ -122,7 +123,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
             require(report, rises, Rule::BrakingFalls, Place::Plan);
             before = *distance;
         }
-        for (number, route) in (0_u8..).zip(&self.routes) {
+        for (number, route) in self.routes.iter().enumerate() {
+            let number = short(number);
             self.check_route(number, route, report);
         }
         for (number, segment) in (0_u8..).zip(&self.segments) {
@@ -145,7 +147,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
 
     /// The rules of one route that theorems rest on.
     #[inline]
-    fn check_route(&self, number: u8, route: &Route<P>, report: &mut impl FnMut(Broken)) {
+    fn check_route(&self, number: u8, route: &Route<P, Z>, report: &mut impl FnMut(Broken)) {
         let place = Place::Route(number);
         require(report, usize::from(route.length) <= P, Rule::PathTooLong, place);
         if !route.exists() {
@@ -173,7 +175,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         require(report, self.positioned(&route.overlap), Rule::PointNotPositioned, Place::Overlap(number));
         let myself = RouteSet::nth(usize::from(number));
         let last = route.last();
-        for (number_of_other, other) in (0_u8..).zip(&self.routes) {
+        for (number_of_other, other) in self.routes.iter().enumerate() {
+            let number_of_other = short(number_of_other);
             let pair = Place::Routes(number, number_of_other);
             let it = RouteSet::nth(usize::from(number_of_other));
             let both = !route.conflicts.meets(it) || other.conflicts.meets(myself);
@@ -187,7 +190,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
 
     /// Whether every point with a detector among the circuits of `element` is positioned by it.
     #[inline]
-    fn positioned(&self, element: &Element) -> bool {
+    fn positioned(&self, element: &Element<Z>) -> bool {
         let mut all = true;
         for (number, point) in self.points.iter().enumerate() {
             let meets = point.detectors.meets(element.circuits);
@@ -198,7 +201,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
 
     /// The circuits of all paths and overlaps.
     #[inline]
-    fn all_paths(&self) -> CircuitSet {
+    fn all_paths(&self) -> CircuitSet<Z> {
         let mut all = CircuitSet::EMPTY;
         for route in &self.routes {
             all = all.or(route.held_from(0).circuits).or(route.overlap.circuits.only_if(route.exists()));
@@ -221,7 +224,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
             there.1 = there.1.or(SegmentSet::nth(number).only_if(segment.length > 0));
         }
         let mut used = CircuitSet::EMPTY;
-        for (number, route) in (0_u8..).zip(&self.routes) {
+        for (number, route) in self.routes.iter().enumerate() {
+            let number = short(number);
             if route.exists() {
                 self.check_engineering_of(number, route, there, report);
                 used = used.or(route.held_from(0).circuits);
@@ -235,7 +239,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         for (number, point) in (0_u8..).zip(&self.points) {
             require(report, !point.detectors.meets(line), Rule::PointInSegment, Place::Point(number));
         }
-        for (number, length) in (0_u8..).zip(&self.lengths) {
+        for (number, length) in self.lengths.iter().enumerate() {
+            let number = short(number);
             let unused = !used.meets(CircuitSet::nth(usize::from(number)));
             require(report, unused || *length > Metres(0), Rule::NoLength, Place::Circuit(number));
         }
@@ -244,8 +249,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
     fn check_engineering_of(
         &self,
         number: u8,
-        route: &Route<P>,
-        there: (RouteSet, SegmentSet),
+        route: &Route<P, Z>,
+        there: (RouteSet<Z>, SegmentSet<Z>),
         report: &mut impl FnMut(Broken),
     ) {
         let place = Place::Route(number);
@@ -262,7 +267,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         let named = route.conflicts.or(route.continuing);
         let segments = route.from.or(route.to);
         require(report, there.0.contains(named) && there.1.contains(segments), Rule::NotThere, place);
-        let single = |set: SegmentSet| set.is_empty() || set.is_one();
+        let single = |set: SegmentSet<Z>| set.is_empty() || set.is_one();
         require(report, single(route.from) && single(route.to), Rule::ManySegments, place);
         self.check_points_of(path.positions.or(route.overlap.positions), place, report);
         for (number_of_segment, segment) in self.segments.iter().enumerate() {
@@ -273,7 +278,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
             let inward = !route.from.meets(it) || route.heading == segment.outward.opposite();
             require(report, outward && inward, Rule::TurnsBack, place);
         }
-        for (number_of_other, other) in (0_u8..).zip(&self.routes) {
+        for (number_of_other, other) in self.routes.iter().enumerate() {
+            let number_of_other = short(number_of_other);
             let follows = route.continuing.meets(RouteSet::nth(usize::from(number_of_other)));
             let goes_on = !follows || route.heading == other.heading;
             require(report, goes_on, Rule::TurnsBack, Place::Routes(number, number_of_other));
@@ -285,7 +291,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
         require(report, in_table, Rule::CodeOutOfTable, place);
     }
 
-    fn check_points_of(&self, positions: Positions, place: Place, report: &mut impl FnMut(Broken)) {
+    fn check_points_of(&self, positions: Positions<Z>, place: Place, report: &mut impl FnMut(Broken)) {
         let mut detected = PointSet::EMPTY;
         let mut there = PointSet::EMPTY;
         for (number, point) in self.points.iter().enumerate() {

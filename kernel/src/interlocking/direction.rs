@@ -3,6 +3,7 @@
 use super::layout::Layout;
 use super::route::RouteState;
 use super::set::{CircuitSet, SegmentSet};
+use super::size::{Size, Small};
 use crate::time::Ticks;
 
 /// The direction of travel in a segment.
@@ -16,18 +17,18 @@ pub enum Travel {
 
 /// What is remembered of the segments. A segment that is in neither set has no direction: nobody sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Directions<const S: usize> {
+pub struct Directions<const S: usize, Z: Size = Small> {
     /// The segments where this station permits the neighbour to send.
-    pub toward: SegmentSet,
+    pub toward: SegmentSet<Z>,
     /// The segments where this station sends.
-    pub away: SegmentSet,
+    pub away: SegmentSet<Z>,
     /// The segments whose last direction was towards this station: a train that is in them was sent by the neighbour.
-    pub came: SegmentSet,
+    pub came: SegmentSet<Z>,
     /// For how many cycles this station has not permitted the neighbour to send, up to the layout's turn time.
     pub withdrawn: [Ticks; S],
 }
 
-impl<const S: usize> Directions<S> {
+impl<const S: usize, Z: Size> Directions<S, Z> {
     /// No segment has a direction, and nobody knows what the neighbour was told.
     pub const INITIAL: Self =
         Self { toward: SegmentSet::EMPTY, away: SegmentSet::EMPTY, came: SegmentSet::EMPTY, withdrawn: [Ticks(0); S] };
@@ -47,18 +48,18 @@ impl<const S: usize> Directions<S> {
 
 /// The directions that held routes need.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Needs {
+pub struct Needs<Z: Size = Small> {
     /// Trains come in.
-    pub toward: SegmentSet,
+    pub toward: SegmentSet<Z>,
     /// Trains go out.
-    pub away: SegmentSet,
+    pub away: SegmentSet<Z>,
 }
 
-impl Needs {
+impl<Z: Size> Needs<Z> {
     /// What the routes need in these states.
     #[inline]
     pub fn of<const R: usize, const P: usize, const N: usize, const S: usize>(
-        layout: &Layout<R, P, N, S>,
+        layout: &Layout<R, P, N, S, Z>,
         routes: &[RouteState; R],
     ) -> Self {
         //= spec/interlocking.md#ilk-17-need
@@ -74,7 +75,7 @@ impl Needs {
     /// These, and those of routes out to `segments`.
     #[inline]
     #[must_use]
-    pub(super) fn and_out_to(self, segments: SegmentSet) -> Self {
+    pub(super) fn and_out_to(self, segments: SegmentSet<Z>) -> Self {
         Self { away: self.away.or(segments), ..self }
     }
 }
@@ -97,12 +98,12 @@ pub(super) enum Turned {
 /// One cycle of all segments: time passes, and at most one command is carried out. `consent` are the segments where the neighbour
 /// permits this station to send.
 #[inline]
-pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    mut directions: Directions<S>,
-    command: Option<(SegmentSet, Travel)>,
-    (occupied, closed, needs, consent): (CircuitSet, SegmentSet, Needs, SegmentSet),
-) -> (Directions<S>, Option<Turned>) {
+pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    mut directions: Directions<S, Z>,
+    command: Option<(SegmentSet<Z>, Travel)>,
+    (occupied, closed, needs, consent): (CircuitSet<Z>, SegmentSet<Z>, Needs<Z>, SegmentSet<Z>),
+) -> (Directions<S, Z>, Option<Turned>) {
     let mut answer = None;
     let (mut entered, mut left) = (SegmentSet::EMPTY, directions.away);
     for route in &layout.plan().routes {
@@ -158,10 +159,10 @@ pub(super) fn turn<const R: usize, const P: usize, const N: usize, const S: usiz
 
 /// The segments with a blocked circuit.
 #[inline]
-pub(super) fn closed<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    blocked: CircuitSet,
-) -> SegmentSet {
+pub(super) fn closed<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    blocked: CircuitSet<Z>,
+) -> SegmentSet<Z> {
     let mut closed = SegmentSet::EMPTY;
     for (number, segment) in layout.plan().segments.iter().enumerate() {
         closed = closed.or(SegmentSet::nth(number).only_if(segment.all().meets(blocked)));
@@ -172,11 +173,11 @@ pub(super) fn closed<const R: usize, const P: usize, const N: usize, const S: us
 /// The circuits of segments where a train may be on its way: before this cycle the neighbour was permitted to send, or was less than the turn
 /// time ago (`waited`); a route out is held; or a train is in the segment or its throat. What is blocked gets no permission in this cycle.
 #[inline]
-pub(super) fn open_line<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+pub(super) fn open_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
     waited: &[Ticks; S],
-    (occupied, needs): (CircuitSet, Needs),
-) -> CircuitSet {
+    (occupied, needs): (CircuitSet<Z>, Needs<Z>),
+) -> CircuitSet<Z> {
     let mut open = CircuitSet::EMPTY;
     for (number, segment) in layout.plan().segments.iter().enumerate() {
         let it = SegmentSet::nth(number);

@@ -2,51 +2,52 @@
 
 use super::code::{MAX_CODES, SpeedCode};
 use super::limits::SpeedLimits;
-use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
+use super::set::{CircuitSet, PerCircuit, PointSet, Positions, RouteSet, SegmentSet};
+use super::size::{Large, Size, Small};
 use crate::distance::Metres;
 use crate::heading::Heading;
 use crate::time::Ticks;
 
-/// The most track circuits of a station.
+/// The most track circuits of a small station.
 pub const MAX_CIRCUITS: usize = 64;
 
-/// The most points of a station.
+/// The most points of a small station.
 pub const MAX_POINTS: usize = 32;
 
 /// One place of a route's path, or its overlap: what is held there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Element {
+pub struct Element<Z: Size = Small> {
     /// The track circuit. An overlap may have several circuits, or none.
-    pub circuits: CircuitSet,
+    pub circuits: CircuitSet<Z>,
     /// The points that must stand so, flank points included.
-    pub positions: Positions,
+    pub positions: Positions<Z>,
 }
 
 /// A route: from the signal at the exit of `entry` over `path` to the end of its last circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Route<const P: usize> {
+pub struct Route<const P: usize, Z: Size = Small> {
     /// The direction of travel.
     pub heading: Heading,
     /// The circuit in rear of the route's signal, where its train waits.
-    pub entry: CircuitSet,
+    pub entry: CircuitSet<Z>,
     /// The circuits on which a train may be that counts on the signal: `entry` among them.
-    pub approach: CircuitSet,
+    pub approach: CircuitSet<Z>,
     /// The path in order of travel; what is beyond `length` is not looked at.
-    pub path: [Element; P],
+    pub path: [Element<Z>; P],
     /// How many places the path has, 1 to `P`; 0 means that there is no route of this number.
     pub length: u8,
     /// What is kept free beyond the end, in case the train does not stop in time.
-    pub overlap: Element,
+    pub overlap: Element<Z>,
     /// The circuits that adjoin the end of the route: the train is there once it has left the path.
-    pub beyond: CircuitSet,
+    pub beyond: CircuitSet<Z>,
     /// The routes that go on where this one ends; their path may run over this route's overlap.
-    pub continuing: RouteSet,
+    pub continuing: RouteSet<Z>,
     /// Routes that must not be held together with this one, whatever their circuits and points.
-    pub conflicts: RouteSet,
+    pub conflicts: RouteSet<Z>,
     /// The segment that the route's train comes from, or none.
-    pub from: SegmentSet,
+    pub from: SegmentSet<Z>,
     /// The segment that the route's train goes out to, or none.
-    pub to: SegmentSet,
+    pub to: SegmentSet<Z>,
     /// How long the points may take to arrive.
     pub drive: Ticks,
     /// How long a withdrawn route stays locked where a train may be coming.
@@ -61,7 +62,7 @@ pub struct Route<const P: usize> {
     pub cab_signalled: bool,
 }
 
-impl<const P: usize> Route<P> {
+impl<const P: usize, Z: Size> Route<P, Z> {
     /// No route: what fills the places of a layout that are not used.
     pub const NONE: Self = Self {
         heading: Heading::Right,
@@ -90,7 +91,7 @@ impl<const P: usize> Route<P> {
 
     /// What the places from `first` on hold, without the overlap.
     #[inline]
-    pub fn held_from(&self, first: u8) -> Element {
+    pub fn held_from(&self, first: u8) -> Element<Z> {
         let mut held = Element::default();
         for (place, element) in (0_u8..).zip(&self.path) {
             if place >= first && place < self.length {
@@ -103,44 +104,46 @@ impl<const P: usize> Route<P> {
 
     /// The circuit at `place` of the path; none where there is no such place.
     #[inline]
-    pub fn circuit_at(&self, place: u8) -> CircuitSet {
+    pub fn circuit_at(&self, place: u8) -> CircuitSet<Z> {
         let mut circuit = CircuitSet::EMPTY;
         for (number, element) in (0_u8..).zip(&self.path) {
-            circuit = circuit.or(element.circuits.only_if(number == place && number < self.length));
+            if number == place && number < self.length {
+                circuit = element.circuits;
+            }
         }
         circuit
     }
 
     /// The last circuit of the path.
     #[inline]
-    pub fn last(&self) -> CircuitSet {
+    pub fn last(&self) -> CircuitSet<Z> {
         self.circuit_at(self.length.wrapping_sub(1))
     }
 }
 
 /// A point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Point {
+pub struct Point<Z: Size = Small> {
     /// The circuits whose occupation says that a train may stand on the point or foul it.
-    pub detectors: CircuitSet,
+    pub detectors: CircuitSet<Z>,
 }
 
 /// A stretch of plain line to a neighbouring station, as far as this device sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Segment<const P: usize> {
+pub struct Segment<const P: usize, Z: Size = Small> {
     /// Its circuits, the one next to the station first; what is beyond `length` is not looked at.
-    pub circuits: [CircuitSet; P],
+    pub circuits: [CircuitSet<Z>; P],
     /// How many circuits it has, 1 to `P`; 0 means that there is no segment of this number.
     pub length: u8,
     /// The last circuit of every route that goes out to the segment; none if no route does.
-    pub throat: CircuitSet,
+    pub throat: CircuitSet<Z>,
     /// The direction of travel away from the station.
     pub outward: Heading,
     /// How many of its circuits, the outermost ones, the neighbour's device sees too.
     pub shared: u8,
 }
 
-impl<const P: usize> Segment<P> {
+impl<const P: usize, Z: Size> Segment<P, Z> {
     /// No segment: what fills the places of a layout that are not used.
     pub const NONE: Self = Self {
         circuits: [CircuitSet::EMPTY; P],
@@ -152,17 +155,19 @@ impl<const P: usize> Segment<P> {
 
     /// All its circuits.
     #[inline]
-    pub fn all(&self) -> CircuitSet {
+    pub fn all(&self) -> CircuitSet<Z> {
         let mut all = CircuitSet::EMPTY;
         for (place, circuit) in (0_u8..).zip(&self.circuits) {
-            all = all.or(circuit.only_if(place < self.length));
+            if place < self.length {
+                all = all.or(*circuit);
+            }
         }
         all
     }
 
     /// The circuits that the neighbour's device sees too.
     #[inline]
-    pub fn shared_circuits(&self) -> CircuitSet {
+    pub fn shared_circuits(&self) -> CircuitSet<Z> {
         let own = self.length.saturating_sub(self.shared);
         let mut shared = CircuitSet::EMPTY;
         for (place, circuit) in (0_u8..).zip(&self.circuits) {
@@ -173,19 +178,21 @@ impl<const P: usize> Segment<P> {
 
     /// The occupied circuits of the segment, and its throat, that follow a circuit of `train` without a gap, on either side.
     #[inline]
-    pub fn joined_to(&self, train: CircuitSet, occupied: CircuitSet) -> CircuitSet {
+    pub fn joined_to(&self, train: CircuitSet<Z>, occupied: CircuitSet<Z>) -> CircuitSet<Z> {
         let mut joined = train;
         let mut before = self.throat;
         for (place, circuit) in (0_u8..).zip(&self.circuits) {
-            let follows = place < self.length && before.meets(joined);
-            joined = joined.or(circuit.and(occupied).only_if(follows));
-            before = *circuit;
+            if place < self.length {
+                joined = joined.or(circuit.and(occupied).only_if(before.meets(joined)));
+                before = *circuit;
+            }
         }
         for back in 1..=P {
             let place = P - back;
-            let outer = self.circuits[place].only_if(place < usize::from(self.length));
-            let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
-            joined = joined.or(inner.and(occupied).only_if(outer.meets(joined)));
+            if place < usize::from(self.length) {
+                let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
+                joined = joined.or(inner.and(occupied).only_if(self.circuits[place].meets(joined)));
+            }
         }
         joined
     }
@@ -193,17 +200,17 @@ impl<const P: usize> Segment<P> {
 
 /// A layout as a plan gives it: up to `R` routes of up to `P` circuits each, `N` points, `S` segments. Not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> {
+pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size = Small> {
     /// The routes.
-    pub routes: [Route<P>; R],
+    pub routes: [Route<P, Z>; R],
     /// The points.
-    pub points: [Point; N],
+    pub points: [Point<Z>; N],
     /// The segments of plain line.
-    pub segments: [Segment<P>; S],
+    pub segments: [Segment<P, Z>; S],
     /// The length of each circuit.
-    pub lengths: [Metres; MAX_CIRCUITS],
+    pub lengths: PerCircuit<Metres, Z>,
     /// The line speed of each circuit.
-    pub line: SpeedLimits,
+    pub line: SpeedLimits<Z>,
     /// How far a train runs from the speed of each code when a lower one goes out: while its telegram ages, and braking. The longest length where
     /// there is no such code.
     pub braking: [Metres; MAX_CODES],
@@ -223,13 +230,13 @@ pub struct Plan<const R: usize, const P: usize, const N: usize, const S: usize> 
     pub standstill: Ticks,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Plan<R, P, N, S, Z> {
     /// A plan with nothing in it, to be filled.
     pub const EMPTY: Self = Self {
         routes: [Route::NONE; R],
         points: [Point { detectors: CircuitSet::EMPTY }; N],
         segments: [Segment::NONE; S],
-        lengths: [Metres(0); MAX_CIRCUITS],
+        lengths: PerCircuit::NONE,
         line: SpeedLimits::NONE,
         braking: [Metres(u16::MAX); MAX_CODES],
         clear: 0,
@@ -245,19 +252,23 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Plan<R, P, 
 /// A layout that has been checked. The only way to one is [`Layout::new`], or, for proofs and for the models of bad layouts,
 /// [`Layout::with_what_proofs_need`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout<const R: usize, const P: usize, const N: usize, const S: usize> {
-    plan: Plan<R, P, N, S>,
+pub struct Layout<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size = Small> {
+    plan: Plan<R, P, N, S, Z>,
 }
 
-/// A station of the greatest size: 64 routes of up to 16 circuits, 32 points, 8 segments of plain line, 64 circuits.
+/// A small station: up to 64 circuits, 64 routes of up to 16 circuits, 32 points and 8 segments of plain line.
 pub type Station = Layout<64, 16, 32, 8>;
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P, N, S> {
+/// A large station: up to 256 circuits, 256 routes of up to 32 circuits, 128 points and 32 segments
+/// of plain line.
+pub type LargeStation = Layout<256, 32, 128, 32, Large>;
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Layout<R, P, N, S, Z> {
     /// A layout that keeps every rule.
     ///
     /// # Errors
     /// The first rule that is broken, and where; [`Plan::check`] tells all of them.
-    pub fn new(plan: Plan<R, P, N, S>) -> Result<Self, super::Broken> {
+    pub fn new(plan: Plan<R, P, N, S, Z>) -> Result<Self, super::Broken> {
         // The very function that the proofs use: what they assume of a layout holds of every one that is made here.
         let layout = Self::with_what_proofs_need(plan)?;
         let mut first = None;
@@ -270,7 +281,11 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     ///
     /// # Errors
     /// The first rule that is broken, and where.
-    pub fn with_what_proofs_need(plan: Plan<R, P, N, S>) -> Result<Self, super::Broken> {
+    pub fn with_what_proofs_need(plan: Plan<R, P, N, S, Z>) -> Result<Self, super::Broken> {
+        const {
+            let room = R <= RouteSet::<Z>::MOST && N <= PointSet::<Z>::MOST && S <= SegmentSet::<Z>::MOST;
+            assert!(room && P < 256, "a station of this size has no room for so much");
+        }
         let mut first = None;
         plan.check_needed(&mut |broken| first = first.or(Some(broken)));
         match first {
@@ -280,7 +295,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     }
 
     /// The plan.
-    pub const fn plan(&self) -> &Plan<R, P, N, S> {
+    pub const fn plan(&self) -> &Plan<R, P, N, S, Z> {
         &self.plan
     }
 }

@@ -22,6 +22,7 @@ mod room;
 mod route;
 mod set;
 mod signal;
+mod size;
 mod standing;
 mod state;
 mod table;
@@ -35,16 +36,19 @@ pub use check::{Broken, Place, Rule};
 pub use code::{MAX_CODES, SpeedCode};
 pub use combined::{Combined, Commands, Memory};
 pub use direction::{Directions, Needs, Travel};
-pub use layout::{Element, Layout, MAX_CIRCUITS, MAX_POINTS, Plan, Point, Route, Segment, Station};
+pub use layout::{Element, LargeStation, Layout, MAX_CIRCUITS, MAX_POINTS, Plan, Point, Route, Segment, Station};
 pub use limits::SpeedLimits;
 pub use point::Settling;
 pub use request::{Refusal, Request, Sight, refuse_again, refuse_point, refuse_route};
 pub use room::{code_stops_within, needed_room};
 pub use route::{Phase, Rear, RouteState};
+pub(crate) use set::short;
 pub use set::{
-    CircuitId, CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet,
+    CircuitId, CircuitSet, PerCircuit, PerPoint, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId,
+    SegmentSet,
 };
 pub use signal::{Grant, View, grant, ready, shows_proceed};
+pub use size::{Bits, Large, Size, Small, Value, Values};
 pub use standing::Standing;
 pub use state::State;
 pub use table::{Contents, Epoch, Table};
@@ -59,46 +63,46 @@ use point::Demand;
 
 /// What the device reads in one logic cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Input {
+pub struct Input<Z: Size = Small> {
     /// The circuits that are reported occupied.
-    pub occupied: CircuitSet,
+    pub occupied: CircuitSet<Z>,
     /// The positions in which points are detected; a point that is in both is in neither.
-    pub detected: Positions,
+    pub detected: Positions<Z>,
     /// One request, or none.
     pub request: Option<Request>,
     /// What staff command.
-    pub orders: Orders,
+    pub orders: Orders<Z>,
     /// The segments where the neighbour permits this station to send trains, by a telegram that is no older than its life.
-    pub consent: SegmentSet,
+    pub consent: SegmentSet<Z>,
 }
 
 /// What the interlocking commands in one logic cycle. With the telegrams it is [`Commands`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Output<const R: usize> {
+pub struct Output<const R: usize, Z: Size = Small> {
     /// The routes whose signals show proceed; all others show stop.
-    pub proceed: RouteSet,
+    pub proceed: RouteSet<Z>,
     /// The points that are driven, and whereto.
-    pub drives: Positions,
+    pub drives: Positions<Z>,
     /// The segments where this station permits the neighbour to send trains.
-    pub permits: SegmentSet,
+    pub permits: SegmentSet<Z>,
     /// The blocked circuits that staff may rely on.
-    pub confirmed: CircuitSet,
+    pub confirmed: CircuitSet<Z>,
     /// What became of the request.
     pub answer: Option<Result<(), Refusal>>,
     /// The shared table, from which the ATC makes the telegrams.
-    pub table: Table<R>,
+    pub table: Table<R, Z>,
 }
 
 /// Positions as detection delivers them, without points that are in both.
 #[inline]
-const fn plausible(detected: Positions) -> Positions {
+fn plausible<Z: Size>(detected: Positions<Z>) -> Positions<Z> {
     detected.without(detected.normal.and(detected.reverse))
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Layout<R, P, N, S, Z> {
     /// One logic cycle: receive, track, check, points, reservation, signals, shared table.
     #[must_use]
-    pub fn cycle(&self, mut state: State<R, S>, input: Input) -> (State<R, S>, Output<R>) {
+    pub fn cycle(&self, mut state: State<R, S, Z>, input: Input<Z>) -> (State<R, S, Z>, Output<R, Z>) {
         let (track, occupied) = state.track.step(self.plan().clear, input.occupied);
         state.track = track;
         self.interlock(state, Input { occupied, ..input })
@@ -107,7 +111,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     /// The cycle after the tracking: `input.occupied` are the circuits that count as occupied.
     #[inline]
     #[must_use]
-    pub fn interlock(&self, mut state: State<R, S>, input: Input) -> (State<R, S>, Output<R>) {
+    pub fn interlock(&self, mut state: State<R, S, Z>, input: Input<Z>) -> (State<R, S, Z>, Output<R, Z>) {
         let plan = self.plan();
         let (occupied, detected) = (input.occupied, plausible(input.detected));
         let starting = state.is_starting(self);
@@ -156,12 +160,13 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
         //# A block on an unswept circuit MUST NOT be confirmed.
         let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits);
         // Their strokes may begin, or go on.
-        circuits = circuits.or(point::detectors(self, PointSet::ALL.without(firm.points())));
+        let mut moving = PointSet::ALL.without(firm.points());
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
-            let needed = point::detectors(self, held.positions(route).points());
-            circuits = circuits.or(held.circuits(route)).or(needed);
+            moving = moving.or(held.positions(route).points());
+            circuits = circuits.or(held.circuits(route));
         }
+        circuits = circuits.or(point::detectors(self, moving));
         if !starting {
             state.works = state.works.confirm(circuits, occupied);
         }
@@ -184,10 +189,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     #[inline]
     fn carry_out(
         &self,
-        state: &mut State<R, S>,
-        input: Input,
-        sight: Sight,
-    ) -> (Positions, Option<Result<(), Refusal>>) {
+        state: &mut State<R, S, Z>,
+        input: Input<Z>,
+        sight: Sight<Z>,
+    ) -> (Positions<Z>, Option<Result<(), Refusal>>) {
         //= spec/interlocking.md#ilk-4-all-or-nothing
         //# A request that is refused MUST NOT be remembered, and changes nothing but that a segment that is to be turned away is no longer permitted to the neighbour.
         let mut alone = Positions::NONE;
@@ -244,21 +249,21 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Layout<R, P
     /// of this cycle, or damaged. `None`: this device sends nothing there; the neighbour's is the one that speaks.
     /// [`Combined`] has the number of the cycle, and its output has these telegrams: a device is that machine.
     #[must_use]
-    pub fn telegrams(&self, table: &Table<R>, epoch: Epoch) -> [Option<Movement>; MAX_CIRCUITS] {
+    pub fn telegrams(&self, table: &Table<R, Z>, epoch: Epoch) -> PerCircuit<Option<Movement<Z>>, Z> {
         let contents = table.read(epoch);
         let silent = silent(self, contents.as_ref());
         let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(self, contents));
-        core::array::from_fn(|number| {
-            let circuit = CircuitSet::nth(number).first().unwrap_or(CircuitId::ZERO);
+        PerCircuit::from_fn(|number| {
+            let circuit = CircuitSet::<Z>::nth(number).first().unwrap_or(CircuitId::ZERO);
             (!silent.has(circuit)).then(|| telegram(self, contents.as_ref(), begins, circuit))
         })
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Machine for Layout<R, P, N, S> {
-    type State = State<R, S>;
-    type Input = Input;
-    type Output = Output<R>;
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Machine for Layout<R, P, N, S, Z> {
+    type State = State<R, S, Z>;
+    type Input = Input<Z>;
+    type Output = Output<R, Z>;
 
     const SAFE: Self::Output = Output {
         proceed: RouteSet::EMPTY,

@@ -1,15 +1,16 @@
 //! Points: which stand under a train, which are locked, and which are driven.
 
-use super::layout::{Layout, MAX_POINTS, Route};
+use super::layout::{Layout, Route};
 use super::route::{Phase, RouteState};
-use super::set::{CircuitSet, PointSet, Positions};
+use super::set::{CircuitSet, PerPoint, PointSet, Positions};
+use super::size::{Size, Small};
 
 /// The points with a detector circuit in `circuits`.
 #[inline]
-pub(super) fn meeting<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    circuits: CircuitSet,
-) -> PointSet {
+pub(super) fn meeting<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    circuits: CircuitSet<Z>,
+) -> PointSet<Z> {
     let mut points = PointSet::EMPTY;
     for (number, point) in layout.plan().points.iter().enumerate() {
         points = points.or(PointSet::nth(number).only_if(point.detectors.meets(circuits)));
@@ -19,10 +20,10 @@ pub(super) fn meeting<const R: usize, const P: usize, const N: usize, const S: u
 
 /// The detector circuits of `points`.
 #[inline]
-pub(super) fn detectors<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    points: PointSet,
-) -> CircuitSet {
+pub(super) fn detectors<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    points: PointSet<Z>,
+) -> CircuitSet<Z> {
     let mut circuits = CircuitSet::EMPTY;
     for (number, point) in layout.plan().points.iter().enumerate() {
         circuits = circuits.or(point.detectors.only_if(points.meets(PointSet::nth(number))));
@@ -32,30 +33,30 @@ pub(super) fn detectors<const R: usize, const P: usize, const N: usize, const S:
 
 /// For how many cycles in a row each point has been detected in one position and not been driven, up to the layout's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Settling {
-    pub(super) stood: [u8; MAX_POINTS],
-    pub(super) last: Positions,
+pub struct Settling<Z: Size = Small> {
+    pub(super) stood: PerPoint<u8, Z>,
+    pub(super) last: Positions<Z>,
 }
 
-impl Settling {
+impl<Z: Size> Settling<Z> {
     /// No point has stood yet.
-    pub const INITIAL: Self = Self { stood: [0; MAX_POINTS], last: Positions::NONE };
+    pub const INITIAL: Self = Self { stood: PerPoint::NONE, last: Positions::NONE };
 
     /// A state for proofs and models; not every value is valid. `last` are the positions of the cycle before.
-    pub const fn from_parts(stood: [u8; MAX_POINTS], last: Positions) -> Self {
+    pub const fn from_parts(stood: PerPoint<u8, Z>, last: Positions<Z>) -> Self {
         Self { stood, last }
     }
 
     /// For how many cycles each point has stood, and where the points were detected last.
-    pub const fn parts(&self) -> ([u8; MAX_POINTS], Positions) {
+    pub const fn parts(&self) -> (PerPoint<u8, Z>, Positions<Z>) {
         (self.stood, self.last)
     }
 
     /// Whether no count is over `settle`, the layout's number.
     pub fn is_valid(&self, settle: u8) -> bool {
         let mut valid = true;
-        for count in self.stood {
-            valid &= count <= settle;
+        for count in &self.stood {
+            valid &= *count <= settle;
         }
         valid
     }
@@ -67,9 +68,9 @@ impl Settling {
         mut self,
         points: usize,
         settle: u8,
-        detected: Positions,
-        drives: Positions,
-    ) -> (Self, Positions) {
+        detected: Positions<Z>,
+        drives: Positions<Z>,
+    ) -> (Self, Positions<Z>) {
         //= spec/interlocking.md#ilk-23-settling
         //# A point MUST count as detected only while it is not driven and has been detected in one position for the layout's number of cycles in a row since it was driven last, by a route or by hand.
         let undriven = detected.without(drives.points());
@@ -91,18 +92,18 @@ impl Settling {
 
 /// What routes want of the points, and what they forbid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Demand {
+pub(super) struct Demand<Z: Size = Small> {
     /// Provisional routes and individual commands want these positions.
-    pub wanted: Positions,
+    pub wanted: Positions<Z>,
     /// What must not move: routes past provisional lock points, what the start has left unswept keeps some, and blocks are on others.
-    pub locked: PointSet,
+    pub locked: PointSet<Z>,
 }
 
-impl Demand {
+impl<Z: Size> Demand<Z> {
     /// With what one route demands.
     #[inline]
     #[must_use]
-    pub(super) fn with<const P: usize>(self, route: &Route<P>, state: RouteState) -> Self {
+    pub(super) fn with<const P: usize>(self, route: &Route<P, Z>, state: RouteState) -> Self {
         let positions = state.positions(route);
         Self {
             wanted: self.wanted.or(positions.only_if(state.phase == Phase::Provisional)),
@@ -112,7 +113,7 @@ impl Demand {
 
     /// The points to drive, and whereto: `detected` are the positions that are detected, `under` the points under a train.
     #[inline]
-    pub(super) fn drives(self, detected: Positions, under: PointSet) -> Positions {
+    pub(super) fn drives(self, detected: Positions<Z>, under: PointSet<Z>) -> Positions<Z> {
         //= spec/interlocking.md#ilk-8-detector-locking
         //# A point MUST be driven only while a provisional route or an individual command wants it elsewhere than it is detected, no detector circuit of it is occupied or blocked, and no route past provisional locks it.
         self.wanted.missing_in(detected).without(under.or(self.locked))

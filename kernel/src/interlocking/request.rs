@@ -3,6 +3,7 @@
 use super::layout::{Layout, Route};
 use super::route::RouteState;
 use super::set::{CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet};
+use super::size::{Size, Small};
 use super::unswept::{Unswept, Ways};
 use super::{Travel, point};
 
@@ -55,32 +56,32 @@ pub enum Refusal {
 
 /// What the conflict check looks at besides the routes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sight {
+pub struct Sight<Z: Size = Small> {
     /// The circuits that count as occupied.
-    pub occupied: CircuitSet,
+    pub occupied: CircuitSet<Z>,
     /// The circuits that are blocked.
-    pub blocked: CircuitSet,
+    pub blocked: CircuitSet<Z>,
     /// The segments with a blocked circuit.
-    pub closed: SegmentSet,
+    pub closed: SegmentSet<Z>,
     /// The positions that are detected.
-    pub detected: Positions,
+    pub detected: Positions<Z>,
     /// The points under a train.
-    pub under: PointSet,
+    pub under: PointSet<Z>,
     /// The segments towards this station, and those away from it.
-    pub directions: (SegmentSet, SegmentSet),
+    pub directions: (SegmentSet<Z>, SegmentSet<Z>),
     /// What was unswept in the cycle before.
-    pub from_before: Unswept,
+    pub from_before: Unswept<Z>,
     /// What trains from before the start still need.
-    pub ways: Ways,
+    pub ways: Ways<Z>,
 }
 
 /// Why the route of number `asked` cannot be reserved; `None` if it can.
 #[inline]
-pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
     routes: &[RouteState; R],
     asked: usize,
-    sight: Sight,
+    sight: Sight<Z>,
 ) -> Option<Refusal> {
     //= spec/interlocking.md#ilk-1-request
     //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
@@ -125,17 +126,21 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
 
 /// Why a route that was withdrawn with a train in it cannot be in use again; `None` if it can.
 #[inline]
-pub fn refuse_again<const P: usize>(route: &Route<P>, state: RouteState, sight: Sight) -> Option<Refusal> {
+pub fn refuse_again<const P: usize, Z: Size>(
+    route: &Route<P, Z>,
+    state: RouteState,
+    sight: Sight<Z>,
+) -> Option<Refusal> {
     let blocked = state.path(route).circuits.meets(sight.blocked) || route.to.meets(sight.closed);
     blocked.then_some(Refusal::Blocked)
 }
 
 /// Why `route` cannot be reserved while `other` holds what it holds. The numbers are those of the two.
 #[inline]
-fn against<const P: usize>(
-    route: &Route<P>,
-    (asked, number): (RouteSet, RouteSet),
-    other: &Route<P>,
+fn against<const P: usize, Z: Size>(
+    route: &Route<P, Z>,
+    (asked, number): (RouteSet<Z>, RouteSet<Z>),
+    other: &Route<P, Z>,
     state: RouteState,
 ) -> Option<Refusal> {
     let (path, overlap) = (route.held_from(0), route.overlap);
@@ -159,11 +164,11 @@ fn against<const P: usize>(
 
 /// Why a point cannot be driven on its own; `None` if it can.
 #[inline]
-pub fn refuse_point<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+pub fn refuse_point<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
     routes: &[RouteState; R],
     asked: PointId,
-    sight: Sight,
+    sight: Sight<Z>,
 ) -> Option<Refusal> {
     //= spec/interlocking.md#ilk-3-individual-point
     //# An individual point command MUST be refused if a route holds the point or a detector circuit of it, or such a circuit is occupied or blocked.

@@ -2,6 +2,7 @@
 
 use super::layout::{Element, Route};
 use super::set::{CircuitSet, Positions};
+use super::size::Size;
 use crate::time::Ticks;
 
 /// The phase of a route. Anything but idle holds circuits and points.
@@ -82,13 +83,13 @@ impl RouteState {
 
     /// What the route holds of its path: nothing if it is idle.
     #[inline]
-    pub fn path<const P: usize>(&self, route: &Route<P>) -> Element {
+    pub fn path<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Element<Z> {
         if self.is_held() { route.held_from(self.tail) } else { Element::default() }
     }
 
     /// What the route holds beyond its path.
     #[inline]
-    pub fn overlap<const P: usize>(&self, route: &Route<P>) -> Element {
+    pub fn overlap<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Element<Z> {
         Element {
             circuits: route.overlap.circuits.only_if(self.overlap),
             positions: route.overlap.positions.only_if(self.overlap),
@@ -97,18 +98,18 @@ impl RouteState {
 
     /// The circuits that the route holds, overlap included.
     #[inline]
-    pub fn circuits<const P: usize>(&self, route: &Route<P>) -> CircuitSet {
+    pub fn circuits<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> CircuitSet<Z> {
         self.path(route).circuits.or(self.overlap(route).circuits)
     }
 
     /// The points that the route holds, flank and overlap included.
     #[inline]
-    pub fn positions<const P: usize>(&self, route: &Route<P>) -> Positions {
+    pub fn positions<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Positions<Z> {
         self.path(route).positions.or(self.overlap(route).positions)
     }
 
     /// Whether this is a state of `route` that the machine can be in.
-    pub fn is_valid<const P: usize>(&self, route: &Route<P>) -> bool {
+    pub fn is_valid<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> bool {
         let untouched = self.tail == 0 && self.head == 0 && self.overlap && self.stood.0 == 0;
         let unproved = untouched && !self.proved && self.rear == Rear::Entry;
         let ordered = self.tail <= self.head && self.head <= route.length && (self.tail < route.length || self.overlap);
@@ -132,7 +133,7 @@ impl RouteState {
     /// One cycle of following the train: `occupied` are the circuits that count as occupied.
     #[inline]
     #[must_use]
-    pub fn follow<const P: usize>(mut self, route: &Route<P>, occupied: CircuitSet) -> Self {
+    pub fn follow<const P: usize, Z: Size>(mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) -> Self {
         if !matches!(self.phase, Phase::Set | Phase::InUse | Phase::Releasing) {
             return self;
         }
@@ -162,7 +163,7 @@ impl RouteState {
 
     /// Where a train may be that may enter while the route is set, if it was at `self.rear` before.
     #[inline]
-    fn counted_on<const P: usize>(&self, route: &Route<P>, occupied: CircuitSet) -> Rear {
+    fn counted_on<const P: usize, Z: Size>(&self, route: &Route<P, Z>, occupied: CircuitSet<Z>) -> Rear {
         //= spec/interlocking.md#ilk-21-rear
         //# While a route is set, its rear MUST be the approach, but the entry where every train is cab-signalled and the approach but the entry, since it was last clear, has not been occupied while the entry was clear.
         let waiting = route.approach.without(route.entry).meets(occupied);
@@ -172,7 +173,7 @@ impl RouteState {
 
     /// The rear of the route is swept behind its last train.
     #[inline]
-    fn sweep<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+    fn sweep<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         if self.phase == Phase::Set {
             self.rear = self.counted_on(route, occupied);
             return;
@@ -190,7 +191,7 @@ impl RouteState {
 
     /// The train's head goes on by one place.
     #[inline]
-    fn enter<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+    fn enter<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-9-entering
         //# A place of a path MUST count as entered only in the order of the path, while it is occupied and the one before it (before the first, the entry circuit) is occupied too.
         let before = if self.head == 0 { route.entry } else { route.circuit_at(self.head - 1) };
@@ -201,7 +202,7 @@ impl RouteState {
 
     /// The train's tail has left a place.
     #[inline]
-    fn leave<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+    fn leave<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-10-release
         //# A place of a path MUST be released behind a train only when the rear of the route is swept, all places before it are released, it was entered, it is clear, and the next place was entered or, after the last one, a circuit beyond is occupied.
         let is_last = self.tail + 1 >= route.length;
@@ -214,7 +215,7 @@ impl RouteState {
 
     /// The train stands at the end of the route, or has left it and the overlap.
     #[inline]
-    fn stand<const P: usize>(&mut self, route: &Route<P>, occupied: CircuitSet) {
+    fn stand<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-14-overlap
         //# An overlap MUST be held until it is clear and the train has left the path, or the rear is swept, every place before the last is released, and the last, entered in order, has been occupied since without a break for the stay time.
         let alone = self.rear == Rear::Swept && self.tail + 1 == route.length;
@@ -234,7 +235,7 @@ impl RouteState {
     /// The route is withdrawn by command. It must be held.
     #[inline]
     #[must_use]
-    pub fn withdraw<const P: usize>(self, route: &Route<P>, occupied: CircuitSet) -> Self {
+    pub fn withdraw<const P: usize, Z: Size>(self, route: &Route<P, Z>, occupied: CircuitSet<Z>) -> Self {
         //= spec/interlocking.md#ilk-12-withdrawal
         //# A withdrawn route MUST be released at once only if nothing is on its path and, once it has been set, on its approach, and no train has used it; otherwise its release time MUST start anew.
         let path_clear = !self.path(route).circuits.meets(occupied);
@@ -262,7 +263,7 @@ impl RouteState {
     /// The reservation after the points have been looked at: `ready` if all is detected, clear and unblocked.
     #[inline]
     #[must_use]
-    pub fn reserve<const P: usize>(self, route: &Route<P>, occupied: CircuitSet, ready: bool) -> Self {
+    pub fn reserve<const P: usize, Z: Size>(self, route: &Route<P, Z>, occupied: CircuitSet<Z>, ready: bool) -> Self {
         if self.phase != Phase::Provisional {
             return self;
         }

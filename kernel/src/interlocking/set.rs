@@ -1,127 +1,287 @@
-//! Numbers of circuits, points, routes and segments, and sets of them.
+//! Numbers of circuits, points, routes and segments, sets of them, and what there is of each.
+
+use super::size::{Bits, Large, Size, Small, Value, Values};
 
 /// A numbered thing of a layout and a set of such things, a bit for each.
 macro_rules! numbered {
-    ($id:ident, $set:ident, $bits:ident, $width:literal, $thing:literal) => {
+    ($id:ident, $set:ident, $bits:ident, $small:ident, $most:literal, $thing:literal) => {
         #[doc = concat!("The number of a ", $thing, ", in the order of the layout.")]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $id(u8);
 
         impl $id {
-            #[doc = concat!("The ", $thing, " number `number`; `None` from ", stringify!($width), " on.")]
+            #[doc = concat!("The ", $thing, " number `number`; `None` from ", $most, " on.")]
             pub const fn new(number: u8) -> Option<Self> {
-                if number < $width { Some(Self(number)) } else { None }
+                if (number as u16) < $most { Some(Self(number)) } else { None }
             }
 
             #[doc = concat!("The first ", $thing, ".")]
             pub const ZERO: Self = Self(0);
 
-            #[doc = concat!("The number, 0 to ", stringify!($width), " − 1.")]
+            #[doc = concat!("The number, 0 to ", $most, " − 1.")]
             pub const fn number(self) -> u8 {
                 self.0
             }
 
-            #[doc = concat!("The set of this ", $thing, " alone.")]
-            pub const fn alone(self) -> $set {
-                $set(1 << (self.0 & ($width - 1)))
+            #[doc = concat!("The set of this ", $thing, " alone; empty if a station of this size has none of its number.")]
+            #[inline]
+            pub fn alone<Z: Size>(self) -> $set<Z> {
+                $set::nth(usize::from(self.0))
             }
         }
 
-        #[doc = concat!("A set of ", $thing, "s: bit `i` stands for ", $thing, " `i`. Up to ", stringify!($width), ".")]
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-        pub struct $set($bits);
+        #[doc = concat!("A set of ", $thing, "s of a station: bit `i` stands for ", $thing, " `i`.")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub struct $set<Z: Size = Small>(Z::$bits);
 
-        impl $set {
-            #[doc = concat!("No ", $thing, ".")]
-            pub const EMPTY: Self = Self(0);
+        impl<Z: Size> Default for $set<Z> {
+            fn default() -> Self {
+                Self::EMPTY
+            }
+        }
 
-            #[doc = concat!("Every ", $thing, " that there can be.")]
-            pub const ALL: Self = Self($bits::MAX);
-
+        impl $set<Small> {
             /// The set with these bits. Every value is a set.
-            pub const fn from_bits(bits: $bits) -> Self {
+            pub const fn from_bits(bits: $small) -> Self {
                 Self(bits)
             }
 
             /// The bits.
-            pub const fn bits(self) -> $bits {
+            pub const fn bits(self) -> $small {
                 self.0
             }
+        }
+
+        impl $set<Large> {
+            /// The set with these bits, the lowest numbers in the first word. Every value is a set.
+            pub const fn from_words(words: [$small; 4]) -> Self {
+                Self(words)
+            }
+
+            /// The bits, the lowest numbers in the first word.
+            pub const fn words(self) -> [$small; 4] {
+                self.0
+            }
+        }
+
+        impl<Z: Size> $set<Z> {
+            #[doc = concat!("No ", $thing, ".")]
+            pub const EMPTY: Self = Self(<Z::$bits as Bits>::NONE);
+
+            #[doc = concat!("Every ", $thing, " that there can be.")]
+            pub const ALL: Self = Self(<Z::$bits as Bits>::ALL);
+
+            #[doc = concat!("How many ", $thing, "s there can be.")]
+            pub const MOST: usize = <Z::$bits as Bits>::WIDTH;
 
             /// Whether there is nothing in the set.
-            pub const fn is_empty(self) -> bool {
-                self.0 == 0
+            #[inline]
+            pub fn is_empty(self) -> bool {
+                self == Self::EMPTY
             }
 
             #[doc = concat!("Whether there is exactly one ", $thing, " in the set.")]
-            pub const fn is_one(self) -> bool {
-                self.0 != 0 && self.0 & (self.0 - 1) == 0
+            #[inline]
+            pub fn is_one(self) -> bool {
+                self.0.is_one()
             }
 
             #[doc = concat!("The set of ", $thing, " `number` alone; empty if there can be none of that number.")]
-            pub const fn nth(number: usize) -> Self {
-                Self(if number < $width { 1 << number } else { 0 })
+            #[inline]
+            pub fn nth(number: usize) -> Self {
+                Self(Z::$bits::nth(number))
             }
 
             /// Whether it is in the set.
-            pub const fn has(self, id: $id) -> bool {
+            #[inline]
+            pub fn has(self, id: $id) -> bool {
                 self.meets(id.alone())
             }
 
             /// Whether the two have something in common.
-            pub const fn meets(self, other: Self) -> bool {
-                self.0 & other.0 != 0
+            #[inline]
+            pub fn meets(self, other: Self) -> bool {
+                !self.and(other).is_empty()
             }
 
             /// Whether all of `other` is in this set.
-            pub const fn contains(self, other: Self) -> bool {
-                other.0 & !self.0 == 0
+            #[inline]
+            pub fn contains(self, other: Self) -> bool {
+                other.without(self).is_empty()
             }
 
             /// What is in one or the other.
+            #[inline]
             #[must_use]
-            pub const fn or(self, other: Self) -> Self {
-                Self(self.0 | other.0)
+            pub fn or(self, other: Self) -> Self {
+                Self(self.0.or(other.0))
             }
 
             /// What is in both.
+            #[inline]
             #[must_use]
-            pub const fn and(self, other: Self) -> Self {
-                Self(self.0 & other.0)
+            pub fn and(self, other: Self) -> Self {
+                Self(self.0.and(other.0))
             }
 
             /// What is here and not in `other`.
+            #[inline]
             #[must_use]
-            pub const fn without(self, other: Self) -> Self {
-                Self(self.0 & !other.0)
+            pub fn without(self, other: Self) -> Self {
+                Self(self.0.without(other.0))
             }
 
             /// This set if `wanted`, else nothing.
+            #[inline]
             #[must_use]
-            pub const fn only_if(self, wanted: bool) -> Self {
-                if wanted { self } else { Self(0) }
+            pub fn only_if(self, wanted: bool) -> Self {
+                if wanted { self } else { Self::EMPTY }
             }
 
             /// The lowest number of the set; `None` if it is empty.
-            pub const fn first(self) -> Option<$id> {
-                $id::new(self.0.trailing_zeros().to_le_bytes()[0])
+            #[inline]
+            pub fn first(self) -> Option<$id> {
+                self.0.first().and_then(|number| $id::new(short(number)))
             }
         }
     };
 }
 
-numbered!(CircuitId, CircuitSet, u64, 64, "track circuit");
-numbered!(PointId, PointSet, u32, 32, "point");
-numbered!(RouteId, RouteSet, u64, 64, "route");
-numbered!(SegmentId, SegmentSet, u8, 8, "segment");
+/// One value for each thing of a layout that is numbered.
+macro_rules! each {
+    ($each:ident, $most:literal, $thing:literal) => {
+        #[doc = concat!("One value for each ", $thing, " that there can be, in the order of their numbers.")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub struct $each<T: Value, Z: Size = Small>(Z::$each<T>);
+
+        impl<T: Value, Z: Size> $each<T, Z> {
+            /// No value for any.
+            pub const NONE: Self = Self(<Z::$each<T> as Values<T>>::NONE);
+
+            /// The same value for each.
+            #[inline]
+            pub fn all(value: T) -> Self {
+                Self::from_fn(|_| value)
+            }
+
+            /// A value for each number.
+            #[inline]
+            pub fn from_fn(value: impl FnMut(usize) -> T) -> Self {
+                Self(Z::$each::from_fn(value))
+            }
+
+            #[doc = concat!("The value of ", $thing, " `number`; `None` if there can be none of that number.")]
+            #[inline]
+            pub fn get(&self, number: usize) -> Option<&T> {
+                self.0.as_ref().get(number)
+            }
+
+            #[doc = concat!("The value of ", $thing, " `number`; `None` if there can be none of that number.")]
+            #[inline]
+            pub fn get_mut(&mut self, number: usize) -> Option<&mut T> {
+                self.0.as_mut().get_mut(number)
+            }
+
+            /// The values.
+            #[inline]
+            pub fn iter(&self) -> core::slice::Iter<'_, T> {
+                self.0.as_ref().iter()
+            }
+
+            /// The values, to be changed.
+            #[inline]
+            pub fn iter_mut(&mut self) -> core::slice::IterMut<'_, T> {
+                self.0.as_mut().iter_mut()
+            }
+        }
+
+        impl<T: Value> From<[T; $most]> for $each<T, Small> {
+            fn from(values: [T; $most]) -> Self {
+                Self(values)
+            }
+        }
+
+        impl<T: Value, Z: Size> IntoIterator for $each<T, Z> {
+            type Item = T;
+            type IntoIter = <Z::$each<T> as IntoIterator>::IntoIter;
+
+            fn into_iter(self) -> Self::IntoIter {
+                self.0.into_iter()
+            }
+        }
+
+        impl<'a, T: Value, Z: Size> IntoIterator for &'a $each<T, Z> {
+            type Item = &'a T;
+            type IntoIter = core::slice::Iter<'a, T>;
+
+            fn into_iter(self) -> Self::IntoIter {
+                self.iter()
+            }
+        }
+
+        impl<'a, T: Value, Z: Size> IntoIterator for &'a mut $each<T, Z> {
+            type Item = &'a mut T;
+            type IntoIter = core::slice::IterMut<'a, T>;
+
+            fn into_iter(self) -> Self::IntoIter {
+                self.iter_mut()
+            }
+        }
+
+        impl<T: Value, I: core::slice::SliceIndex<[T]>, Z: Size> core::ops::Index<I> for $each<T, Z> {
+            type Output = I::Output;
+
+            /// # Panics
+            /// If there can be none of such a number.
+            fn index(&self, numbers: I) -> &I::Output {
+                &self.0.as_ref()[numbers]
+            }
+        }
+
+        impl<T: Value, I: core::slice::SliceIndex<[T]>, Z: Size> core::ops::IndexMut<I> for $each<T, Z> {
+            fn index_mut(&mut self, numbers: I) -> &mut I::Output {
+                &mut self.0.as_mut()[numbers]
+            }
+        }
+    };
+}
+
+numbered!(CircuitId, CircuitSet, Wide, u64, 256, "track circuit");
+numbered!(PointId, PointSet, Middle, u32, 128, "point");
+numbered!(RouteId, RouteSet, Wide, u64, 256, "route");
+numbered!(SegmentId, SegmentSet, Narrow, u8, 32, "segment");
+each!(PerCircuit, 64, "track circuit");
+each!(PerPoint, 32, "point");
+
+/// The number of a thing from its place in a list, of which there are 256 at most.
+#[inline]
+pub(crate) const fn short(place: usize) -> u8 {
+    place.to_le_bytes()[0]
+}
+
+impl<Z: Size> CircuitSet<Z> {
+    /// A check word with these bits in it: each changes exactly one bit of it.
+    #[inline]
+    pub(super) fn fold(self, check: u64) -> u64 {
+        self.0.fold(check)
+    }
+}
+
+impl<Z: Size> SegmentSet<Z> {
+    /// A check word with these bits in it: each changes exactly one bit of it.
+    #[inline]
+    pub(super) fn fold(self, check: u64) -> u64 {
+        self.0.fold(check)
+    }
+}
 
 /// Points, and the position that each is needed in or stands in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Positions {
+pub struct Positions<Z: Size = Small> {
     /// The points in normal position.
-    pub normal: PointSet,
+    pub normal: PointSet<Z>,
     /// The points in reverse position.
-    pub reverse: PointSet,
+    pub reverse: PointSet<Z>,
 }
 
 /// A position of a point.
@@ -133,12 +293,12 @@ pub enum Position {
     Reverse,
 }
 
-impl Positions {
+impl<Z: Size> Positions<Z> {
     /// No point.
     pub const NONE: Self = Self { normal: PointSet::EMPTY, reverse: PointSet::EMPTY };
 
     /// One point in one position.
-    pub const fn of(point: PointId, position: Position) -> Self {
+    pub fn of(point: PointId, position: Position) -> Self {
         match position {
             Position::Normal => Self { normal: point.alone(), reverse: PointSet::EMPTY },
             Position::Reverse => Self { normal: PointSet::EMPTY, reverse: point.alone() },
@@ -146,47 +306,47 @@ impl Positions {
     }
 
     /// The points, whatever their position.
-    pub const fn points(self) -> PointSet {
+    pub fn points(self) -> PointSet<Z> {
         self.normal.or(self.reverse)
     }
 
     /// Those of both.
     #[must_use]
-    pub const fn or(self, other: Self) -> Self {
+    pub fn or(self, other: Self) -> Self {
         Self { normal: self.normal.or(other.normal), reverse: self.reverse.or(other.reverse) }
     }
 
     /// These if `wanted`, else none.
     #[must_use]
-    pub const fn only_if(self, wanted: bool) -> Self {
+    pub fn only_if(self, wanted: bool) -> Self {
         Self { normal: self.normal.only_if(wanted), reverse: self.reverse.only_if(wanted) }
     }
 
     /// These without the points of `points`.
     #[must_use]
-    pub const fn without(self, points: PointSet) -> Self {
+    pub fn without(self, points: PointSet<Z>) -> Self {
         Self { normal: self.normal.without(points), reverse: self.reverse.without(points) }
     }
 
     /// These as far as their points are in `points`.
     #[must_use]
-    pub const fn only_among(self, points: PointSet) -> Self {
+    pub fn only_among(self, points: PointSet<Z>) -> Self {
         Self { normal: self.normal.and(points), reverse: self.reverse.and(points) }
     }
 
     /// Those that are not in the same position in `other`.
     #[must_use]
-    pub const fn missing_in(self, other: Self) -> Self {
+    pub fn missing_in(self, other: Self) -> Self {
         Self { normal: self.normal.without(other.normal), reverse: self.reverse.without(other.reverse) }
     }
 
     /// Whether a point is here in one position and in `other` in the opposite one.
-    pub const fn opposes(self, other: Self) -> bool {
+    pub fn opposes(self, other: Self) -> bool {
         self.normal.meets(other.reverse) || self.reverse.meets(other.normal)
     }
 
     /// Whether there is no point here.
-    pub const fn is_empty(self) -> bool {
+    pub fn is_empty(self) -> bool {
         self.normal.is_empty() && self.reverse.is_empty()
     }
 }

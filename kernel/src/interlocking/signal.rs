@@ -4,31 +4,32 @@ use super::code::SpeedCode;
 use super::layout::{Layout, Route};
 use super::route::{Phase, RouteState};
 use super::set::{CircuitSet, Positions, RouteSet, SegmentSet};
+use super::size::{Size, Small};
 use crate::heading::Heading;
 
 /// What the signals look at, at the end of the interlocking's part of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct View {
+pub struct View<Z: Size = Small> {
     /// The circuits that count as occupied.
-    pub occupied: CircuitSet,
+    pub occupied: CircuitSet<Z>,
     /// The circuits that are blocked.
-    pub blocked: CircuitSet,
+    pub blocked: CircuitSet<Z>,
     /// The segments into which nobody may be sent: one with a blocked circuit, or where the neighbour does not permit it.
-    pub closed: SegmentSet,
+    pub closed: SegmentSet<Z>,
     /// The positions that count as detected: none of a point that is driven, or has not stood since.
-    pub firm: Positions,
+    pub firm: Positions<Z>,
 }
 
 /// The circuits of a route that one train may run over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Grant {
+pub struct Grant<Z: Size = Small> {
     /// The circuit of the train's front, or the one from which the route is entered. None: nothing is granted.
-    pub train: CircuitSet,
+    pub train: CircuitSet<Z>,
     /// The circuits that are granted, in the path's order. None of them, to a train whose front is in the last circuit of a route out: it may
     /// go on to the line that the route leads to, as far as that is free.
-    pub circuits: CircuitSet,
+    pub circuits: CircuitSet<Z>,
     /// The last of them; without any, the train's.
-    pub last: CircuitSet,
+    pub last: CircuitSet<Z>,
     /// Whether the last one is the end of the route.
     pub complete: bool,
     /// The direction of travel that it is for.
@@ -37,7 +38,7 @@ pub struct Grant {
     pub speed: SpeedCode,
 }
 
-impl Grant {
+impl<Z: Size> Grant<Z> {
     /// Nothing is granted.
     pub const NONE: Self = Self {
         train: CircuitSet::EMPTY,
@@ -51,7 +52,7 @@ impl Grant {
 
 /// Whether the signal of a route shows proceed.
 #[inline]
-pub fn shows_proceed<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> bool {
+pub fn shows_proceed<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     //= spec/interlocking.md#ilk-7-aspect
     //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear and unblocked, and no circuit of a segment that it leads to is blocked.
     state.phase == Phase::Set && ready(route, state, view)
@@ -59,7 +60,7 @@ pub fn shows_proceed<const P: usize>(route: &Route<P>, state: RouteState, view: 
 
 /// Whether all that the route holds is detected, clear and unblocked.
 #[inline]
-pub fn ready<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> bool {
+pub fn ready<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     let circuits = state.circuits(route);
     !circuits.meets(view.occupied.or(view.blocked))
         && !route.to.meets(view.closed)
@@ -68,7 +69,7 @@ pub fn ready<const P: usize>(route: &Route<P>, state: RouteState, view: View) ->
 
 /// What a route grants.
 #[inline]
-pub fn grant<const P: usize>(route: &Route<P>, state: RouteState, view: View) -> Grant {
+pub fn grant<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> Grant<Z> {
     //= spec/interlocking.md#atc-1-grant
     //# A route MUST grant its path to the train at its entry circuit while its signal shows proceed, and after that the sound circuits beyond the last occupied one to the train there, if it has entered that one in order and its points are sound too; and nothing otherwise.
     if !state.is_held() {
@@ -106,11 +107,11 @@ pub fn grant<const P: usize>(route: &Route<P>, state: RouteState, view: View) ->
 
 /// What all routes show and grant.
 #[inline]
-pub(super) fn all<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+pub(super) fn all<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
     routes: &[RouteState; R],
-    view: View,
-) -> (RouteSet, [Grant; R]) {
+    view: View<Z>,
+) -> (RouteSet<Z>, [Grant<Z>; R]) {
     let mut proceed = RouteSet::EMPTY;
     let mut grants = [Grant::NONE; R];
     for (number, (route, state)) in layout.plan().routes.iter().zip(routes).enumerate() {

@@ -4,21 +4,22 @@ use super::layout::Layout;
 use super::limits::SpeedLimits;
 use super::route::RouteState;
 use super::set::CircuitSet;
+use super::size::{Size, Small};
 
 /// What is known of where trains stand, and of the limits under them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Standing<const R: usize> {
+pub struct Standing<const R: usize, Z: Size = Small> {
     /// For each held route the occupied circuits of its path, of its entry while no place is released, and of its held overlap while its last
     /// circuit is occupied: one train may stand on all of them.
-    pub bodies: [CircuitSet; R],
+    pub bodies: [CircuitSet<Z>; R],
     /// The occupied circuits that are neither plain line nor of the path of a held route: nobody knows which train is there.
-    pub loose: CircuitSet,
+    pub loose: CircuitSet<Z>,
     /// The highest code on each circuit: of the line, of temporary restrictions, of the route that holds it and, where none does, of every
     /// route and overlap over it.
-    pub limits: SpeedLimits,
+    pub limits: SpeedLimits<Z>,
 }
 
-impl<const R: usize> Standing<R> {
+impl<const R: usize, Z: Size> Standing<R, Z> {
     /// Any train may stand anywhere, and trains stop.
     pub const UNKNOWN: Self =
         Self { bodies: [CircuitSet::EMPTY; R], loose: CircuitSet::ALL, limits: SpeedLimits::STOP };
@@ -26,10 +27,10 @@ impl<const R: usize> Standing<R> {
     /// What the routes in these states say of it.
     #[inline]
     pub fn of<const P: usize, const N: usize, const S: usize>(
-        layout: &Layout<R, P, N, S>,
+        layout: &Layout<R, P, N, S, Z>,
         routes: &[RouteState; R],
-        occupied: CircuitSet,
-        restrictions: SpeedLimits,
+        occupied: CircuitSet<Z>,
+        restrictions: SpeedLimits<Z>,
     ) -> Self {
         //= spec/interlocking.md#atc-9-limits
         //# The limit of a circuit MUST NOT be above its line speed, a temporary restriction, the speed of the route that holds it or, where none does, of any route or overlap over it.
@@ -63,23 +64,26 @@ impl<const R: usize> Standing<R> {
     #[inline]
     pub fn train<const P: usize, const N: usize, const S: usize>(
         &self,
-        layout: &Layout<R, P, N, S>,
-        occupied: CircuitSet,
-        front: CircuitSet,
-    ) -> CircuitSet {
+        layout: &Layout<R, P, N, S, Z>,
+        occupied: CircuitSet<Z>,
+        front: CircuitSet<Z>,
+    ) -> CircuitSet<Z> {
         //= spec/interlocking.md#atc-8-train
         //# A train MUST be taken to stand on its front's circuit and, from there on, on every occupied circuit that is of the same held route, its entry included while no place is released and its held overlap while its last circuit is occupied, or follows on plain line; and on every occupied circuit where one of these is neither of a held route nor of plain line.
-        let (mut train, mut longer) = (front, front);
+        let (mut train, mut longer, mut grows) = (front, front, true);
         for _ in 0..=MAX_JOINTS {
-            train = longer;
-            for body in &self.bodies {
-                longer = longer.or(body.only_if(body.meets(longer)));
-            }
-            for segment in &layout.plan().segments {
-                longer = longer.or(segment.joined_to(longer, occupied));
+            if grows {
+                train = longer;
+                for body in &self.bodies {
+                    longer = longer.or(body.only_if(body.meets(longer)));
+                }
+                for segment in &layout.plan().segments {
+                    longer = longer.or(segment.joined_to(longer, occupied));
+                }
+                grows = longer != train;
             }
         }
-        if longer != train || train.meets(self.loose) { occupied.or(train) } else { train }
+        if grows || train.meets(self.loose) { occupied.or(train) } else { train }
     }
 }
 

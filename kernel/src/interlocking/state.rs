@@ -5,6 +5,7 @@ use super::layout::Layout;
 use super::point::Settling;
 use super::route::RouteState;
 use super::set::{CircuitSet, RouteSet};
+use super::size::{Size, Small};
 use super::table::Epoch;
 use super::track::Track;
 use super::unswept::Unswept;
@@ -13,26 +14,26 @@ use crate::time::Ticks;
 
 /// What the device remembers from one logic cycle to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct State<const R: usize, const S: usize> {
+pub struct State<const R: usize, const S: usize, Z: Size = Small> {
     /// The track circuits.
-    pub track: Track,
+    pub track: Track<Z>,
     /// For how long the device has run, up to the layout's time.
     pub started: Ticks,
     /// Where trains from before the start may still be on their way.
-    pub unswept: Unswept,
+    pub unswept: Unswept<Z>,
     /// The points.
-    pub points: Settling,
+    pub points: Settling<Z>,
     /// The routes.
     pub routes: [RouteState; R],
     /// The segments of plain line.
-    pub directions: Directions<S>,
+    pub directions: Directions<S, Z>,
     /// Blocks and restrictions.
-    pub works: Works,
+    pub works: Works<Z>,
     /// The number of the cycle.
     pub epoch: Epoch,
 }
 
-impl<const R: usize, const S: usize> State<R, S> {
+impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
     /// The most restrictive state: all circuits occupied, blocked and restricted to stop; no route held; no segment with a direction.
     pub const INITIAL: Self = Self {
         track: Track::INITIAL,
@@ -46,7 +47,7 @@ impl<const R: usize, const S: usize> State<R, S> {
     };
 
     /// Whether the device can be in this state.
-    pub fn is_valid<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
+    pub fn is_valid<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S, Z>) -> bool {
         let plan = layout.plan();
         let mut valid = self.track.is_valid(plan.clear) && self.works.is_valid() && self.directions.is_valid(plan.turn);
         valid &= self.points.is_valid(plan.settle) && self.started <= plan.start;
@@ -70,7 +71,7 @@ impl<const R: usize, const S: usize> State<R, S> {
     }
 
     /// Whether a train may still count on what was before the device started.
-    pub fn is_starting<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S>) -> bool {
+    pub fn is_starting<const P: usize, const N: usize>(&self, layout: &Layout<R, P, N, S, Z>) -> bool {
         self.started < layout.plan().start
     }
 
@@ -78,7 +79,7 @@ impl<const R: usize, const S: usize> State<R, S> {
     /// no declared conflict.
     pub fn compatible<const P: usize, const N: usize>(
         &self,
-        layout: &Layout<R, P, N, S>,
+        layout: &Layout<R, P, N, S, Z>,
         one: usize,
         other: usize,
     ) -> bool {

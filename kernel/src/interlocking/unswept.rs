@@ -2,36 +2,37 @@
 
 use super::layout::{Element, Layout, Route};
 use super::set::{CircuitSet, PointSet, RouteSet, SegmentSet};
+use super::size::{Size, Small};
 use crate::time::Ticks;
 
 /// The circuits that a train may still run over by a signal that it passed before the start. A set that only shrinks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Unswept {
+pub struct Unswept<Z: Size = Small> {
     /// The circuits.
-    pub circuits: CircuitSet,
+    pub circuits: CircuitSet<Z>,
     /// The routes that ran in the cycle before: such a train may have been in them, and not wholly in the last circuit.
-    pub running: RouteSet,
+    pub running: RouteSet<Z>,
     /// For how many cycles no route has ended to run, up to the longest overlap release time of all routes.
     pub still: Ticks,
 }
 
 /// What trains from before the start still need in one cycle, besides the circuits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ways {
+pub struct Ways<Z: Size = Small> {
     /// The points of their ways, flank points included.
-    pub points: PointSet,
+    pub points: PointSet<Z>,
     /// The segments that they may be on their way out to.
-    pub outward: SegmentSet,
+    pub outward: SegmentSet<Z>,
 }
 
 /// What one route keeps unswept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Kept {
-    held: Element,
+struct Kept<Z: Size = Small> {
+    held: Element<Z>,
     running: bool,
 }
 
-impl Unswept {
+impl<Z: Size> Unswept<Z> {
     /// Whatever was before the start: everything, and every route runs.
     pub const INITIAL: Self = Self { circuits: CircuitSet::ALL, running: RouteSet::ALL, still: Ticks(0) };
 
@@ -43,9 +44,9 @@ impl Unswept {
     #[must_use]
     pub fn sweep<const R: usize, const P: usize, const N: usize, const S: usize>(
         self,
-        layout: &Layout<R, P, N, S>,
-        occupied: CircuitSet,
-    ) -> (Self, Ways) {
+        layout: &Layout<R, P, N, S, Z>,
+        occupied: CircuitSet<Z>,
+    ) -> (Self, Ways<Z>) {
         if self.circuits.is_empty() {
             return (Self::SWEPT, Ways::default());
         }
@@ -75,7 +76,7 @@ impl Unswept {
 
     /// What a route of number `it` keeps.
     #[inline]
-    fn kept_by<const P: usize>(&self, route: &Route<P>, it: RouteSet, occupied: CircuitSet) -> Kept {
+    fn kept_by<const P: usize>(&self, route: &Route<P, Z>, it: RouteSet<Z>, occupied: CircuitSet<Z>) -> Kept<Z> {
         //= spec/interlocking.md#ilk-28-kept
         //# A route that is not cab-signalled MUST keep the places of its path from the first occupied one on, and its overlap, where all of these are unswept, while it runs and for its overlap release time after that.
         let overlap = route.overlap;
@@ -118,9 +119,9 @@ impl Unswept {
     #[inline]
     pub(super) fn is_in_the_way<const R: usize, const P: usize, const N: usize, const S: usize>(
         &self,
-        layout: &Layout<R, P, N, S>,
+        layout: &Layout<R, P, N, S, Z>,
         asked: usize,
-        occupied: CircuitSet,
+        occupied: CircuitSet<Z>,
     ) -> bool {
         let routes = &layout.plan().routes;
         let route = &routes[asked];

@@ -3,47 +3,48 @@
 use super::code::SpeedCode;
 use super::limits::SpeedLimits;
 use super::set::CircuitSet;
+use super::size::{Size, Small};
 
 /// What staff command in one cycle; empty sets where they command nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Orders {
+pub struct Orders<Z: Size = Small> {
     /// Circuits to block.
-    pub block: CircuitSet,
+    pub block: CircuitSet<Z>,
     /// Circuits to unblock; a circuit that is to be blocked as well is blocked.
-    pub unblock: CircuitSet,
+    pub unblock: CircuitSet<Z>,
     /// Circuits to restrict to `speed`, where they are not restricted to less.
-    pub restrict: CircuitSet,
+    pub restrict: CircuitSet<Z>,
     /// The highest speed code on them.
     pub speed: SpeedCode,
     /// Circuits whose restriction is lifted; a circuit that is to be restricted as well has the new restriction only.
-    pub lift: CircuitSet,
+    pub lift: CircuitSet<Z>,
 }
 
 /// What is remembered for each circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Works {
+pub struct Works<Z: Size = Small> {
     /// No route is set over these circuits, and none shows proceed.
-    pub blocked: CircuitSet,
+    pub blocked: CircuitSet<Z>,
     /// The blocked circuits that were found neither held nor occupied since: staff may rely on these.
-    pub confirmed: CircuitSet,
+    pub confirmed: CircuitSet<Z>,
     /// The highest speed code by temporary restriction.
-    pub restrictions: SpeedLimits,
+    pub restrictions: SpeedLimits<Z>,
 }
 
-impl Works {
+impl<Z: Size> Works<Z> {
     /// Every circuit is blocked and restricted to stop.
     pub const INITIAL: Self =
         Self { blocked: CircuitSet::ALL, confirmed: CircuitSet::EMPTY, restrictions: SpeedLimits::STOP };
 
     /// Whether only blocked circuits are confirmed.
-    pub const fn is_valid(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         self.blocked.contains(self.confirmed)
     }
 
     /// The orders of one cycle.
     #[inline]
     #[must_use]
-    pub fn obey(mut self, orders: Orders) -> Self {
+    pub fn obey(mut self, orders: Orders<Z>) -> Self {
         //= spec/interlocking.md#ilk-15-commands-only
         //# Blocks and restrictions MUST be set and cleared by command only, a command to block or to restrict is always carried out, and only one to lift raises a restriction.
         self.blocked = self.blocked.without(orders.unblock).or(orders.block);
@@ -55,7 +56,7 @@ impl Works {
     /// Confirms as protection what is blocked and neither held by a route nor occupied.
     #[inline]
     #[must_use]
-    pub const fn confirm(mut self, held: CircuitSet, occupied: CircuitSet) -> Self {
+    pub fn confirm(mut self, held: CircuitSet<Z>, occupied: CircuitSet<Z>) -> Self {
         //= spec/interlocking.md#ilk-16-protection
         //# A block MUST be confirmed as protection only when its circuit is neither held by a route nor occupied, no held route needs a point in it, every point in it counts as detected, and, on plain line, nobody may be on the way to it: the segment and its throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time.
         self.confirmed = self.confirmed.or(self.blocked.without(held.or(occupied)));

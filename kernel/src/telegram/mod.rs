@@ -93,7 +93,7 @@ pub struct Sub {
 }
 
 /// The length of a section: 1 to 65 535 m.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Length(Metres);
 
 impl Length {

@@ -4,27 +4,27 @@
 
 use crate::block::MAX_SECTIONS;
 use crate::distance::Metres;
-use crate::interlocking::{CircuitSet, Layout, MAX_CIRCUITS, SegmentId, Travel};
+use crate::interlocking::{CircuitSet, Layout, PerCircuit, SegmentId, Size, Small, Travel};
 
 /// The most sections of a block.
 pub(super) const SECTIONS: usize = MAX_SECTIONS as usize;
 
 /// A place along the track.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Place<Z: Size = Small> {
     /// Its circuit; several where tracks join, none where the layout ends.
-    pub circuits: CircuitSet,
+    pub circuits: CircuitSet<Z>,
     /// The length of the shortest of them; 0 if there is none.
     pub length: Metres,
 }
 
-impl Place {
+impl<Z: Size> Place<Z> {
     /// No circuit.
     pub const NONE: Self = Self { circuits: CircuitSet::EMPTY, length: Metres(0) };
 
     /// The place of these circuits.
     #[inline]
-    fn of(circuits: CircuitSet, lengths: &[Metres; MAX_CIRCUITS]) -> Self {
+    fn of(circuits: CircuitSet<Z>, lengths: &PerCircuit<Metres, Z>) -> Self {
         let mut shortest = None;
         for (number, length) in lengths.iter().enumerate() {
             if circuits.meets(CircuitSet::nth(number)) && shortest.is_none_or(|shortest| *length < shortest) {
@@ -37,14 +37,14 @@ impl Place {
 
 /// Where a route begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Way {
+pub struct Way<Z: Size = Small> {
     /// The circuit where its train waits; none if there is no such route.
-    pub entry: CircuitSet,
+    pub entry: CircuitSet<Z>,
     /// The first circuit of its path.
-    pub first: CircuitSet,
+    pub first: CircuitSet<Z>,
 }
 
-impl Way {
+impl<Z: Size> Way<Z> {
     /// No route.
     pub const NONE: Self = Self { entry: CircuitSet::EMPTY, first: CircuitSet::EMPTY };
 }
@@ -52,21 +52,21 @@ impl Way {
 /// A segment with its throat (place 0) and its circuits (from place 1 on), and what adjoins them. `K` is how many places behind the throat are
 /// looked at: fewer only in proofs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Chain<const R: usize, const P: usize, const K: usize = SECTIONS> {
+pub struct Chain<const R: usize, const P: usize, const K: usize = SECTIONS, Z: Size = Small> {
     /// The throat; none if no route goes out.
-    pub throat: Place,
+    pub throat: Place<Z>,
     /// The circuits, the one next to the station first; none beyond the segment's length.
-    pub circuits: [Place; P],
+    pub circuits: [Place<Z>; P],
     /// The places behind the throat on the routes that go out, the nearest first, their entries included.
-    pub behind: [Place; K],
+    pub behind: [Place<Z>; K],
     /// Where each route begins.
-    pub ways: [Way; R],
+    pub ways: [Way<Z>; R],
 }
 
-impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
+impl<const R: usize, const P: usize, const K: usize, Z: Size> Chain<R, P, K, Z> {
     /// The track of this segment; none if there is no such segment.
     #[inline]
-    pub fn of<const N: usize, const S: usize>(layout: &Layout<R, P, N, S>, segment: SegmentId) -> Option<Self> {
+    pub fn of<const N: usize, const S: usize>(layout: &Layout<R, P, N, S, Z>, segment: SegmentId) -> Option<Self> {
         //= spec/wayside.md#way-24-the-track
         //# The joint MUST be checked on the circuits and lengths that the layout has: of the segment and its throat, of as many places
         //# behind the throat on every route out to it, and of the beginning of every route; where tracks join, the shortest counts.
@@ -96,7 +96,7 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
 
     /// What is at a place, numbered from the throat.
     #[inline]
-    pub(super) fn at(&self, place: usize) -> Place {
+    pub(super) fn at(&self, place: usize) -> Place<Z> {
         let mut found = if place == 0 { self.throat } else { Place::NONE };
         for (number, its) in (1_usize..).zip(&self.circuits) {
             if number == place {
@@ -108,7 +108,7 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
 
     /// The place of a circuit.
     #[inline]
-    pub(super) fn place(&self, circuit: CircuitSet) -> Option<usize> {
+    pub(super) fn place(&self, circuit: CircuitSet<Z>) -> Option<usize> {
         let mut found = if self.throat.circuits == circuit { Some(0) } else { None };
         for (number, its) in (1_usize..).zip(&self.circuits) {
             if its.circuits == circuit {
@@ -120,7 +120,7 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
 
     /// The circuits that adjoin the exit, which is the end of the circuit at `exit`.
     #[inline]
-    pub(super) fn beyond(&self, travel: Travel, exit: usize) -> CircuitSet {
+    pub(super) fn beyond(&self, travel: Travel, exit: usize) -> CircuitSet<Z> {
         match travel {
             Travel::Away => self.at(exit.wrapping_add(1)).circuits,
             Travel::Toward => {
@@ -138,7 +138,7 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
     /// The places before the entry, which is the beginning of the circuit at `entry`, the nearest first: of the segment, and behind its
     /// throat of the routes that lead out to it.
     #[inline]
-    pub(super) fn before(&self, travel: Travel, entry: usize) -> [Place; K] {
+    pub(super) fn before(&self, travel: Travel, entry: usize) -> [Place<Z>; K] {
         // In order of travel, each place that is passed on the way to the entry comes in front of those before it.
         let mut before = match travel {
             Travel::Away => self.behind,
@@ -170,11 +170,11 @@ impl<const R: usize, const P: usize, const K: usize> Chain<R, P, K> {
 
 /// The circuits that are so many places behind the throat on the routes out to the segment, their entries included.
 #[inline]
-fn behind_the_throat<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
+fn behind_the_throat<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
     segment: SegmentId,
     back: usize,
-) -> CircuitSet {
+) -> CircuitSet<Z> {
     let mut circuits = CircuitSet::EMPTY;
     for route in &layout.plan().routes {
         let length = usize::from(route.length);

@@ -11,7 +11,10 @@ use crate::block::{
     Beyond, Block, Detection, Direction, Hold, Line, LineInput, LineOutput, LineState, MAX_LINE_SECTIONS,
 };
 use crate::distance::Metres;
-use crate::interlocking::{CircuitId, CircuitSet, Layout, Refusal, Request, SegmentId, SegmentSet, Travel};
+use crate::interlocking::short;
+use crate::interlocking::{
+    CircuitId, CircuitSet, Layout, Refusal, Request, SegmentId, SegmentSet, Size, Small, Travel,
+};
 
 /// A counted line as a plan gives it: its blocks from the low end, and which circuits are on them. Not checked. `K` is the most sections of a
 /// block, and the most places of a hold: smaller only in proofs.
@@ -42,32 +45,33 @@ pub struct Spot {
 
 /// A counted line, checked against the layout. `K` as in [`Join`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counted<const B: usize, const K: usize = SECTIONS> {
+pub struct Counted<const B: usize, const K: usize = SECTIONS, Z: Size = Small> {
     line: Line<B>,
     segment: SegmentId,
     travel: Travel,
     /// The circuit on each section; none beyond the sections of a block.
-    sections: [[CircuitSet; K]; B],
+    sections: [[CircuitSet<Z>; K]; B],
     /// The circuits before the entry, the nearest first; where tracks join, there are several in one place.
-    before: [CircuitSet; K],
+    before: [CircuitSet<Z>; K],
     /// The circuits that adjoin the exit.
-    beyond: CircuitSet,
+    beyond: CircuitSet<Z>,
 }
 
-impl<const B: usize, const K: usize> Counted<B, K> {
+impl<const B: usize, const K: usize, Z: Size> Counted<B, K, Z> {
     /// Checks `join` against `layout`.
     ///
     /// # Errors
     /// The first rule of WAY-11 to WAY-15 and WAY-25 that is broken.
     #[inline]
     pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
-        layout: &Layout<R, P, N, S>,
+        layout: &Layout<R, P, N, S, Z>,
         join: &Join<B, K>,
     ) -> Result<Self, WaysideError> {
         let Some(chain) = Chain::of(layout, join.segment) else { return Err(WaysideError::NoSuchSegment) };
         //= spec/wayside.md#way-15-no-route-against-the-line
         //# The constructor MUST reject a layout with a route that needs the counted segment in the other direction of travel.
-        for (number, route) in (0_u8..).zip(&layout.plan().routes) {
+        for (number, route) in layout.plan().routes.iter().enumerate() {
+            let number = short(number);
             let against = match join.travel {
                 Travel::Toward => route.to,
                 Travel::Away => route.from,
@@ -83,7 +87,8 @@ impl<const B: usize, const K: usize> Counted<B, K> {
         }
         //= spec/wayside.md#way-25-no-train-of-another-line
         //# The constructor MUST reject a layout with a route over a circuit of the counted line, or with one in its overlap, that does not need the counted segment.
-        for (number, route) in (0_u8..).zip(&layout.plan().routes) {
+        for (number, route) in layout.plan().routes.iter().enumerate() {
+            let number = short(number);
             let along = match join.travel {
                 Travel::Toward => route.from,
                 Travel::Away => route.to,
@@ -101,7 +106,10 @@ impl<const B: usize, const K: usize> Counted<B, K> {
     /// # Errors
     /// The first rule of WAY-11 to WAY-14 that is broken.
     #[inline]
-    pub fn on<const R: usize, const P: usize>(chain: &Chain<R, P, K>, join: &Join<B, K>) -> Result<Self, WaysideError> {
+    pub fn on<const R: usize, const P: usize>(
+        chain: &Chain<R, P, K, Z>,
+        join: &Join<B, K>,
+    ) -> Result<Self, WaysideError> {
         let walk = walk(chain, join)?;
         let lengths = walk.lengths.get(..walk.count).unwrap_or(&walk.lengths);
         let line = Line::new(join.blocks, lengths, join.train, join.direction).map_err(WaysideError::Line)?;
@@ -127,8 +135,8 @@ impl<const B: usize, const K: usize> Counted<B, K> {
     pub const fn from_parts(
         line: Line<B>,
         (segment, travel): (SegmentId, Travel),
-        sections: [[CircuitSet; K]; B],
-        (before, beyond): ([CircuitSet; K], CircuitSet),
+        sections: [[CircuitSet<Z>; K]; B],
+        (before, beyond): ([CircuitSet<Z>; K], CircuitSet<Z>),
     ) -> Self {
         Self { line, segment, travel, sections, before, beyond }
     }
@@ -144,17 +152,17 @@ impl<const B: usize, const K: usize> Counted<B, K> {
     }
 
     /// The circuit on each section of each block, from the low end; none beyond the sections of a block.
-    pub const fn sections(&self) -> &[[CircuitSet; K]; B] {
+    pub const fn sections(&self) -> &[[CircuitSet<Z>; K]; B] {
         &self.sections
     }
 
     /// The circuits before the entry that are held for trains whose heads are on the line, the nearest first.
-    pub const fn before(&self) -> &[CircuitSet; K] {
+    pub const fn before(&self) -> &[CircuitSet<Z>; K] {
         &self.before
     }
 
     /// The circuits that adjoin the exit: while one is reported, the last sections are held.
-    pub const fn beyond(&self) -> CircuitSet {
+    pub const fn beyond(&self) -> CircuitSet<Z> {
         self.beyond
     }
 
@@ -170,8 +178,8 @@ impl<const B: usize, const K: usize> Counted<B, K> {
         &self,
         state: LineState<B>,
         blocks: [Detection; B],
-        reported: CircuitSet,
-    ) -> (LineState<B>, LineOutput<B>, CircuitSet) {
+        reported: CircuitSet<Z>,
+    ) -> (LineState<B>, LineOutput<B>, CircuitSet<Z>) {
         //= spec/wayside.md#way-2-the-exit
         //# While a circuit beyond the exit of the counted line is reported occupied, the line's hold MUST be asked of its last sections.
         let hold = if reported.meets(self.beyond) { self.hold() } else { Hold::NONE };
@@ -219,7 +227,7 @@ impl<const B: usize, const K: usize> Counted<B, K> {
     /// Whether the segment has no direction but that of the line.
     #[inline]
     #[must_use]
-    pub fn is_kept(&self, toward: SegmentSet, away: SegmentSet) -> bool {
+    pub fn is_kept(&self, toward: SegmentSet<Z>, away: SegmentSet<Z>) -> bool {
         match self.travel {
             Travel::Toward => !away.has(self.segment),
             Travel::Away => !toward.has(self.segment),
@@ -228,8 +236,8 @@ impl<const B: usize, const K: usize> Counted<B, K> {
 }
 
 /// What is found on the way along the sections, from the low end.
-struct Walk<const B: usize, const K: usize> {
-    sections: [[CircuitSet; K]; B],
+struct Walk<const B: usize, const K: usize, Z: Size> {
+    sections: [[CircuitSet<Z>; K]; B],
     lengths: [Metres; MAX_LINE_SECTIONS],
     count: usize,
     /// The places of the first and the last section in the chain.
@@ -239,10 +247,10 @@ struct Walk<const B: usize, const K: usize> {
 
 /// Finds the circuit of every section.
 #[inline]
-fn walk<const B: usize, const R: usize, const P: usize, const K: usize>(
-    chain: &Chain<R, P, K>,
+fn walk<const B: usize, const R: usize, const P: usize, const K: usize, Z: Size>(
+    chain: &Chain<R, P, K, Z>,
     join: &Join<B, K>,
-) -> Result<Walk<B, K>, WaysideError> {
+) -> Result<Walk<B, K, Z>, WaysideError> {
     let mut walk = Walk {
         sections: [[CircuitSet::EMPTY; K]; B],
         lengths: [Metres(0); MAX_LINE_SECTIONS],
@@ -264,12 +272,12 @@ fn walk<const B: usize, const R: usize, const P: usize, const K: usize>(
     wrong.map_or(Ok(walk), Err)
 }
 
-impl<const B: usize, const K: usize> Walk<B, K> {
+impl<const B: usize, const K: usize, Z: Size> Walk<B, K, Z> {
     /// To the next section.
     #[inline]
     fn go_on<const R: usize, const P: usize>(
         &mut self,
-        chain: &Chain<R, P, K>,
+        chain: &Chain<R, P, K, Z>,
         join: &Join<B, K>,
         spot: Spot,
         circuit: Option<CircuitId>,
@@ -305,7 +313,11 @@ impl<const B: usize, const K: usize> Walk<B, K> {
 
 /// Whether somewhere at the entry the places that are held behind a head are together shorter than the longest train.
 #[inline]
-fn is_short<const B: usize, const K: usize>(before: &[Place; K], walk: &Walk<B, K>, join: &Join<B, K>) -> bool {
+fn is_short<const B: usize, const K: usize, Z: Size>(
+    before: &[Place<Z>; K],
+    walk: &Walk<B, K, Z>,
+    join: &Join<B, K>,
+) -> bool {
     //= spec/wayside.md#way-14-the-hold-at-the-entry
     //# The constructor MUST reject a counted line where k consecutive places, of sections and of the k circuits before the entry, are together shorter than the longest train.
     let hold = join.blocks.first().map_or(Hold::NONE, |block| block.hold());

@@ -25,18 +25,19 @@ pub use speech::{Feed, Saying, Speech, Transmission};
 use crate::Machine;
 use crate::block::{Detection, LineError, LineOutput, LineState};
 use crate::interlocking::{
-    self, CircuitId, CircuitSet, Combined, Commands, Layout, MAX_CIRCUITS, Memory, Orders, Positions, Refusal, Request,
-    RouteSet, SegmentSet, SpeedCode,
+    self, CircuitId, CircuitSet, Combined, Commands, Layout, Memory, Orders, PerCircuit, Positions, Refusal, Request,
+    RouteSet, SegmentSet, Size, Small, SpeedCode,
 };
 use crate::time::Ticks;
+use chain::SECTIONS;
 
 /// What a device has besides its layout. Not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Equipment<const B: usize> {
+pub struct Equipment<const B: usize, Z: Size = Small> {
     /// The counted line: `B` blocks, or none.
     pub counted: Option<Join<B>>,
     /// What the transmitters say of the line.
-    pub signals: SignalPlan,
+    pub signals: SignalPlan<Z>,
     /// For how many cycles the neighbour's permission counts, from the own cycle that its message answers: 1 or more, less than
     /// the layout's turn time, and with its residual running and loss no more than that.
     pub life: Ticks,
@@ -46,10 +47,11 @@ pub struct Equipment<const B: usize> {
 
 /// A device: a layout and its equipment, checked.
 #[derive(Clone, Copy, Debug)]
-pub struct Wayside<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: &'a Layout<R, P, N, S>,
-    counted: Option<Counted<B>>,
-    signals: Signals,
+pub struct Wayside<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size = Small>
+{
+    layout: &'a Layout<R, P, N, S, Z>,
+    counted: Option<Counted<B, SECTIONS, Z>>,
+    signals: Signals<Z>,
     life: Ticks,
     session: Session,
 }
@@ -103,12 +105,14 @@ pub enum WaysideError {
     LifeOutlastsTurn,
 }
 
-impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S: usize> Wayside<'a, B, R, P, N, S> {
+impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>
+    Wayside<'a, B, R, P, N, S, Z>
+{
     /// A device with this equipment.
     ///
     /// # Errors
     /// The first rule that is broken.
-    pub fn new(layout: &'a Layout<R, P, N, S>, equipment: &Equipment<B>) -> Result<Self, WaysideError> {
+    pub fn new(layout: &'a Layout<R, P, N, S, Z>, equipment: &Equipment<B, Z>) -> Result<Self, WaysideError> {
         let plan = layout.plan();
         consent::check_life(equipment.life, plan.turn, plan.residual, plan.loss)?;
         let counted = match &equipment.counted {
@@ -120,17 +124,17 @@ impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S
     }
 
     /// The layout.
-    pub const fn layout(&self) -> &'a Layout<R, P, N, S> {
+    pub const fn layout(&self) -> &'a Layout<R, P, N, S, Z> {
         self.layout
     }
 
     /// The counted line, if there is one.
-    pub const fn counted(&self) -> Option<&Counted<B>> {
+    pub const fn counted(&self) -> Option<&Counted<B, SECTIONS, Z>> {
         self.counted.as_ref()
     }
 
     /// What the transmitters say of the line.
-    pub const fn signals(&self) -> &Signals {
+    pub const fn signals(&self) -> &Signals<Z> {
         &self.signals
     }
 
@@ -143,32 +147,32 @@ impl<'a, const B: usize, const R: usize, const P: usize, const N: usize, const S
 
 /// What the device reads in one logic cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Input<const B: usize, const S: usize> {
+pub struct Input<const B: usize, const S: usize, Z: Size = Small> {
     /// The blocks of the counted line, from its low end.
     pub blocks: [Detection; B],
     /// The circuits that are reported occupied by what they have of their own.
-    pub occupied: CircuitSet,
+    pub occupied: CircuitSet<Z>,
     /// The positions in which points are detected.
-    pub detected: Positions,
+    pub detected: Positions<Z>,
     /// One request, or none.
     pub request: Option<Request>,
     /// What staff command.
-    pub orders: Orders,
+    pub orders: Orders<Z>,
     /// The message of the neighbour at each segment, if one came.
     pub messages: [Option<Message>; S],
     /// The transmitters that have taken the frames of the last cycle.
-    pub framed: Framed,
+    pub framed: Framed<Z>,
 }
 
 /// Everything that leaves the device in one logic cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Output<const B: usize, const S: usize> {
+pub struct Output<const B: usize, const S: usize, Z: Size = Small> {
     /// The routes whose signals show proceed; all others show stop.
-    pub proceed: RouteSet,
+    pub proceed: RouteSet<Z>,
     /// The points that are driven, and whereto.
-    pub drives: Positions,
+    pub drives: Positions<Z>,
     /// The blocked circuits that staff may rely on.
-    pub confirmed: CircuitSet,
+    pub confirmed: CircuitSet<Z>,
     /// What became of the request.
     pub answer: Option<Result<(), Refusal>>,
     /// What is told to the neighbour at each segment; none where there is no segment.
@@ -176,27 +180,27 @@ pub struct Output<const B: usize, const S: usize> {
     /// What the counted line reports to staff; none without one.
     pub line: Option<LineOutput<B>>,
     /// What is sent in each circuit; none is silence.
-    pub transmissions: [Option<Transmission>; MAX_CIRCUITS],
+    pub transmissions: PerCircuit<Option<Transmission>, Z>,
 }
 
 /// What the device remembers from one logic cycle to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct State<const B: usize, const R: usize, const S: usize> {
+pub struct State<const B: usize, const R: usize, const S: usize, Z: Size = Small> {
     /// The counted line.
     pub line: LineState<B>,
     /// Interlocking and ATC.
-    pub device: Memory<R, S>,
+    pub device: Memory<R, S, Z>,
     /// The neighbour at each segment.
     pub consents: [Consent; S],
     /// The numbers of each circuit's next telegrams.
-    pub counters: [Counters; MAX_CIRCUITS],
+    pub counters: PerCircuit<Counters, Z>,
     /// The circuits for which there were frames in the last cycle.
-    pub sent: CircuitSet,
+    pub sent: CircuitSet<Z>,
 }
 
-impl<const B: usize, const R: usize, const S: usize> State<B, R, S> {
+impl<const B: usize, const R: usize, const S: usize, Z: Size> State<B, R, S, Z> {
     /// Whether the device can be in this state: that of each part, and the counted line has no direction but its own.
-    pub fn is_valid<const P: usize, const N: usize>(&self, wayside: &Wayside<'_, B, R, P, N, S>) -> bool {
+    pub fn is_valid<const P: usize, const N: usize>(&self, wayside: &Wayside<'_, B, R, P, N, S, Z>) -> bool {
         let mut valid = self.device.is_valid(wayside.layout);
         for consent in &self.consents {
             valid &= consent.is_valid(wayside.life);
@@ -213,26 +217,28 @@ impl<const B: usize, const R: usize, const S: usize> State<B, R, S> {
 
 /// What [`Wayside::read`] makes of the input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reading<const B: usize> {
+pub struct Reading<const B: usize, Z: Size = Small> {
     /// What the interlocking is told.
-    pub input: interlocking::Input,
+    pub input: interlocking::Input<Z>,
     /// What the counted line reports.
     pub line: Option<LineOutput<B>>,
     /// Why the request is not told to the interlocking; none if it is.
     pub refused: Option<Refusal>,
 }
 
-impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize> Wayside<'_, B, R, P, N, S> {
+impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>
+    Wayside<'_, B, R, P, N, S, Z>
+{
     /// The cycle that begins: the stamp of its messages.
     #[inline]
-    fn now(&self, state: &State<B, R, S>) -> Stamp {
+    fn now(&self, state: &State<B, R, S, Z>) -> Stamp {
         Stamp { session: self.session, cycle: state.device.cycle.next() }
     }
 
     /// The first part of a cycle: everything before interlocking and ATC.
     #[inline]
     #[must_use]
-    pub fn read(&self, mut state: State<B, R, S>, input: Input<B, S>) -> (State<B, R, S>, Reading<B>) {
+    pub fn read(&self, mut state: State<B, R, S, Z>, input: Input<B, S, Z>) -> (State<B, R, S, Z>, Reading<B, Z>) {
         let now = self.now(&state);
         let mut consent = SegmentSet::EMPTY;
         for (number, (known, message)) in state.consents.iter_mut().zip(input.messages).enumerate() {
@@ -267,20 +273,21 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
     #[must_use]
     pub fn send(
         &self,
-        mut state: State<B, R, S>,
-        reading: &Reading<B>,
-        commands: &Commands<R>,
-    ) -> (State<B, R, S>, Output<B, S>) {
+        mut state: State<B, R, S, Z>,
+        reading: &Reading<B, Z>,
+        commands: &Commands<R, Z>,
+    ) -> (State<B, R, S, Z>, Output<B, S, Z>) {
         let Commands { interlocking, telegrams } = commands;
-        let mut transmissions = [None; MAX_CIRCUITS];
+        let mut transmissions = PerCircuit::all(None);
         state.sent = CircuitSet::EMPTY;
         let lengths = &self.layout.plan().lengths;
         let restrictions = state.device.interlocking.works.restrictions;
         let known = telegrams.iter().zip(&state.counters);
-        for (number, (transmission, (movement, counters))) in (0_u8..).zip(transmissions.iter_mut().zip(known)) {
-            let Some(circuit) = CircuitId::new(number) else { continue };
+        for (number, (transmission, (movement, counters))) in transmissions.iter_mut().zip(known).enumerate() {
+            let it = CircuitSet::<Z>::nth(number);
+            let Some(circuit) = it.first() else { continue };
             *transmission = self.signals.sent(lengths, circuit, *movement, restrictions, *counters);
-            state.sent = state.sent.or(circuit.alone().only_if(transmission.is_some()));
+            state.sent = state.sent.or(it.only_if(transmission.is_some()));
         }
         let answer = reading.refused.map(Err).or(interlocking.answer);
         let output = Output {
@@ -298,7 +305,7 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
     /// What is told to the neighbours in the cycle that has run.
     #[inline]
     #[must_use]
-    pub fn messages(&self, state: &State<B, R, S>, permits: SegmentSet) -> [Option<Message>; S] {
+    pub fn messages(&self, state: &State<B, R, S, Z>, permits: SegmentSet<Z>) -> [Option<Message>; S] {
         let sent = Stamp { session: self.session, cycle: state.device.cycle };
         let mut messages = [None; S];
         let known = self.layout.plan().segments.iter().zip(&state.consents);
@@ -311,12 +318,12 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
     }
 }
 
-impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize> Machine
-    for Wayside<'_, B, R, P, N, S>
+impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Machine
+    for Wayside<'_, B, R, P, N, S, Z>
 {
-    type State = State<B, R, S>;
-    type Input = Input<B, S>;
-    type Output = Output<B, S>;
+    type State = State<B, R, S, Z>;
+    type Input = Input<B, S, Z>;
+    type Output = Output<B, S, Z>;
 
     //= spec/wayside.md#way-23-what-is-safe
     //# The safe output MUST be stop at every signal, no drive, no permission, no confirmed block and silence in every circuit.
@@ -327,7 +334,7 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
         answer: None,
         messages: [None; S],
         line: None,
-        transmissions: [None; MAX_CIRCUITS],
+        transmissions: PerCircuit::NONE,
     };
 
     fn initial(&self) -> Self::State {
@@ -335,7 +342,7 @@ impl<const B: usize, const R: usize, const P: usize, const N: usize, const S: us
             line: LineState::INITIAL,
             device: Memory::INITIAL,
             consents: [Consent::none(self.life); S],
-            counters: [Counters::START; MAX_CIRCUITS],
+            counters: PerCircuit::NONE,
             sent: CircuitSet::EMPTY,
         }
     }

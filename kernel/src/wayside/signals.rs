@@ -4,12 +4,12 @@ use super::WaysideError;
 use crate::aspect::{AspectId, AspectTable};
 use crate::code::{Code, CodeTable};
 use crate::distance::Metres;
-use crate::interlocking::{CircuitId, CircuitSet, Heading, Layout, MAX_CIRCUITS, MAX_CODES, SpeedCode};
+use crate::interlocking::{CircuitId, CircuitSet, Heading, Layout, MAX_CODES, PerCircuit, Size, Small, SpeedCode};
 use crate::speed::KmhTenths;
 use crate::telegram::{Gradient, Length, SectionId};
 
 /// What trains of one direction of travel are told of a circuit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Facing {
     /// The number by which they know it: odd for those towards the left, even for those towards the right.
     pub section: SectionId,
@@ -20,7 +20,7 @@ pub struct Facing {
 }
 
 /// What trains are told of a circuit. Its length is the layout's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Fixed {
     /// Those that travel towards the left.
     pub left: Facing,
@@ -49,9 +49,9 @@ pub struct Codes {
 
 /// What is said of the line. Not checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SignalPlan {
+pub struct SignalPlan<Z: Size = Small> {
     /// The circuits to which something is sent.
-    pub circuits: [Option<Fixed>; MAX_CIRCUITS],
+    pub circuits: PerCircuit<Option<Fixed>, Z>,
     /// The speed that each speed code of the layout stands for; none where there is no such code.
     pub speeds: [Option<KmhTenths>; MAX_CODES],
     /// The line's speeds, as trains have them: what the ranks in telegrams mean.
@@ -71,32 +71,36 @@ pub struct Word {
 
 /// What is said of the line, checked against the layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Signals {
-    circuits: [Option<(Fixed, Length)>; MAX_CIRCUITS],
+pub struct Signals<Z: Size = Small> {
+    circuits: PerCircuit<Option<(Fixed, Length)>, Z>,
     words: [Option<Word>; MAX_CODES],
     /// Speed 0.
     stop: Word,
 }
 
-impl Signals {
+impl<Z: Size> Signals<Z> {
     /// Checks `plan` against `layout`.
     ///
     /// # Errors
     /// The first rule of WAY-16 to WAY-19 that is broken.
     #[inline(never)]
     pub fn new<const R: usize, const P: usize, const N: usize, const S: usize>(
-        layout: &Layout<R, P, N, S>,
-        plan: &SignalPlan,
+        layout: &Layout<R, P, N, S, Z>,
+        plan: &SignalPlan<Z>,
     ) -> Result<Self, WaysideError> {
-        let words = words(plan)?;
+        let words = words(&plan.speeds, &plan.aspects, &plan.codes)?;
         check_codes(&words, &layout.plan().braking)?;
         let Some(stop) = words.first().copied().flatten() else { return Err(WaysideError::StopMoves) };
-        Ok(Self { circuits: circuits(used(layout), &layout.plan().lengths, plan)?, words, stop })
+        Ok(Self {
+            circuits: circuits(used(layout), &layout.plan().lengths, &plan.circuits, &plan.aspects)?,
+            words,
+            stop,
+        })
     }
 
     /// Signals as they are given, for proofs: nothing of them is checked.
     pub const fn from_parts(
-        circuits: [Option<(Fixed, Length)>; MAX_CIRCUITS],
+        circuits: PerCircuit<Option<(Fixed, Length)>, Z>,
         words: [Option<Word>; MAX_CODES],
         stop: Word,
     ) -> Self {
@@ -138,14 +142,18 @@ impl Signals {
 /// # Errors
 /// The first rule of WAY-16 that is broken.
 #[inline(never)]
-pub fn words(plan: &SignalPlan) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
-    check_speeds(&plan.speeds)?;
+pub fn words(
+    speeds: &[Option<KmhTenths>; MAX_CODES],
+    aspects: &AspectTable,
+    codes: &CodeTable,
+) -> Result<[Option<Word>; MAX_CODES], WaysideError> {
+    check_speeds(speeds)?;
     // The first error is kept, and the loop goes on: one way through it is what a prover unrolls.
     let mut wrong = None;
     let mut words = [None; MAX_CODES];
-    for (number, (word, speed)) in (0_u8..).zip(words.iter_mut().zip(&plan.speeds)) {
+    for (number, (word, speed)) in (0_u8..).zip(words.iter_mut().zip(speeds)) {
         if let Some(speed) = *speed {
-            let spelt = spell(&plan.aspects, &plan.codes, SpeedCode(number), speed);
+            let spelt = spell(aspects, codes, SpeedCode(number), speed);
             wrong = wrong.or(spelt.err());
             *word = spelt.ok();
         }
@@ -222,21 +230,21 @@ pub fn check_codes(words: &[Option<Word>; MAX_CODES], braking: &[Metres; MAX_COD
     Ok(())
 }
 
-/// The circuits with their `lengths`; `used` are those in which a train may wait for a telegram, or run by one.
+/// The circuits that are `described`, with their `lengths`; `used` are those in which a train may wait for a telegram, or run by one.
 ///
 /// # Errors
 /// The first rule of WAY-18 and WAY-19 that is broken.
 #[inline(never)]
-pub fn circuits(
-    used: CircuitSet,
-    lengths: &[Metres; MAX_CIRCUITS],
-    plan: &SignalPlan,
-) -> Result<[Option<(Fixed, Length)>; MAX_CIRCUITS], WaysideError> {
-    let mut kept = [None; MAX_CIRCUITS];
-    for (number, place) in (0_u8..).zip(&mut kept) {
-        let index = usize::from(number);
-        let circuit = CircuitId::new(number).unwrap_or(CircuitId::ZERO);
-        let Some(fixed) = plan.circuits[index] else {
+pub fn circuits<Z: Size>(
+    used: CircuitSet<Z>,
+    lengths: &PerCircuit<Metres, Z>,
+    described: &PerCircuit<Option<Fixed>, Z>,
+    aspects: &AspectTable,
+) -> Result<PerCircuit<Option<(Fixed, Length)>, Z>, WaysideError> {
+    let mut kept = PerCircuit::all(None);
+    for (index, place) in kept.iter_mut().enumerate() {
+        let circuit = CircuitSet::<Z>::nth(index).first().unwrap_or(CircuitId::ZERO);
+        let Some(fixed) = described[index] else {
             //= spec/wayside.md#way-18-every-circuit
             //# The constructor MUST reject signals that say nothing of a circuit of a path, an entry or a segment, or that are for a circuit without a length, or with a curve limit that is not in the trains' table of speeds.
             if used.has(circuit) {
@@ -247,7 +255,7 @@ pub fn circuits(
         let Some(length) = Length::new(lengths[index]) else {
             return Err(WaysideError::NoLength(circuit));
         };
-        let known = |rank| plan.aspects.speed(rank).is_some();
+        let known = |rank| aspects.speed(rank).is_some();
         if !known(fixed.left.curve) || !known(fixed.right.curve) {
             return Err(WaysideError::UnknownCurve(circuit));
         }
@@ -257,7 +265,7 @@ pub fn circuits(
         if wrong(Heading::Left) || wrong(Heading::Right) {
             return Err(WaysideError::SectionNumberOfOther(circuit));
         }
-        if clashes(&plan.circuits, index, fixed) {
+        if clashes(described, index, fixed) {
             return Err(WaysideError::SectionNumberTwice(circuit));
         }
         *place = Some((fixed, length));
@@ -267,7 +275,7 @@ pub fn circuits(
 
 /// Whether a number of the circuit at `index` stands for a circuit before it, for the same direction of travel.
 #[inline(never)]
-fn clashes(circuits: &[Option<Fixed>; MAX_CIRCUITS], index: usize, fixed: Fixed) -> bool {
+fn clashes<Z: Size>(circuits: &PerCircuit<Option<Fixed>, Z>, index: usize, fixed: Fixed) -> bool {
     let (left, right) = (fixed.left.section, fixed.right.section);
     let mut clash = false;
     for its in circuits.iter().take(index).flatten() {
@@ -279,7 +287,9 @@ fn clashes(circuits: &[Option<Fixed>; MAX_CIRCUITS], index: usize, fixed: Fixed)
 
 /// The circuits in which a train may wait for a telegram, or run by one.
 #[inline(never)]
-fn used<const R: usize, const P: usize, const N: usize, const S: usize>(layout: &Layout<R, P, N, S>) -> CircuitSet {
+fn used<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+) -> CircuitSet<Z> {
     let mut used = CircuitSet::EMPTY;
     for route in &layout.plan().routes {
         used = used.or(route.held_from(0).circuits).or(route.entry.only_if(route.exists()));

@@ -3,7 +3,7 @@
 use super::counters::Counters;
 use super::signals::{Codes, Signals};
 use crate::distance::Metres;
-use crate::interlocking::{CircuitId, CircuitSet, Heading, MAX_CIRCUITS, Movement, SpeedLimits};
+use crate::interlocking::{CircuitId, CircuitSet, Heading, Movement, PerCircuit, Size, Small, SpeedLimits};
 use crate::telegram::{Frame, Main, Route, Sub, Telegram, encode};
 
 /// What is told to trains of one direction of travel.
@@ -60,27 +60,27 @@ impl Transmission {
 
 /// What is sent in a circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Saying {
+pub struct Saying<Z: Size = Small> {
     /// The circuit.
     pub circuit: CircuitId,
     /// What its train is told.
-    pub movement: Movement,
+    pub movement: Movement<Z>,
     /// The temporary restrictions of all circuits.
-    pub restrictions: SpeedLimits,
+    pub restrictions: SpeedLimits<Z>,
     /// The numbers of its telegrams.
     pub counters: Counters,
 }
 
-impl Signals {
+impl<Z: Size> Signals<Z> {
     /// What is sent in a circuit whose train is told `movement`; none where the ATC is silent, and where there is nothing to be said of the circuit.
     #[inline]
     #[must_use]
     pub fn sent(
         &self,
-        lengths: &[Metres; MAX_CIRCUITS],
+        lengths: &PerCircuit<Metres, Z>,
         circuit: CircuitId,
-        movement: Option<Movement>,
-        restrictions: SpeedLimits,
+        movement: Option<Movement<Z>>,
+        restrictions: SpeedLimits<Z>,
         counters: Counters,
     ) -> Option<Transmission> {
         //= spec/wayside.md#way-21-silence
@@ -91,7 +91,7 @@ impl Signals {
     /// What a circuit's transmitter sends; none if there is nothing to be said of the circuit. `lengths` are those of the layout.
     #[inline]
     #[must_use]
-    pub fn transmission(&self, lengths: &[Metres; MAX_CIRCUITS], saying: Saying) -> Option<Transmission> {
+    pub fn transmission(&self, lengths: &PerCircuit<Metres, Z>, saying: Saying<Z>) -> Option<Transmission> {
         Some(Transmission {
             left: self.speech(lengths, saying, Heading::Left)?.feed(),
             right: self.speech(lengths, saying, Heading::Right)?.feed(),
@@ -101,7 +101,7 @@ impl Signals {
     /// What is told to trains of one direction of travel; none if there is nothing to be said of the circuit. `lengths` are those of the layout.
     #[inline]
     #[must_use]
-    pub fn speech(&self, lengths: &[Metres; MAX_CIRCUITS], saying: Saying, heading: Heading) -> Option<Speech> {
+    pub fn speech(&self, lengths: &PerCircuit<Metres, Z>, saying: Saying<Z>, heading: Heading) -> Option<Speech> {
         let (fixed, length) = self.circuit(saying.circuit)?;
         let facing = fixed.facing(heading);
         let Saying { movement, counters, .. } = saying;
@@ -132,7 +132,7 @@ impl Signals {
 
 /// The length of `circuits` together; the longest that a telegram can tell if it is more.
 #[inline]
-fn together(lengths: &[Metres; MAX_CIRCUITS], circuits: CircuitSet) -> Metres {
+fn together<Z: Size>(lengths: &PerCircuit<Metres, Z>, circuits: CircuitSet<Z>) -> Metres {
     let mut sum = Metres(0);
     for (number, length) in lengths.iter().enumerate() {
         if circuits.meets(CircuitSet::nth(number)) {

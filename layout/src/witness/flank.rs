@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::{Route, SegmentSet};
+use atc_kernel::interlocking::{Route, SegmentSet, Size};
 
 use super::routes::Way;
 use super::sides::{Sides, members};
@@ -31,7 +31,7 @@ impl Path<'_> {
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Sides<'_, R, P, N, S, Z> {
     pub(super) fn flanks(&self, ways: &[Option<Way>], found: &mut Vec<Problem>) {
         let signals: BTreeSet<(usize, usize)> = ways
             .iter()
@@ -74,7 +74,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R
     fn has_way_in(&self, joint: usize) -> bool {
         let here = |circuit: usize| self.tracks.at_joint(circuit, joint, true).next().is_some();
         self.plan.segments.iter().enumerate().any(|(number, segment)| {
-            let from = |route: &Route<P>| route.from.meets(SegmentSet::nth(number));
+            let from = |route: &Route<P, Z>| route.from.meets(SegmentSet::nth(number));
             members(segment.all()).any(here) && self.plan.routes.iter().any(from)
         })
     }

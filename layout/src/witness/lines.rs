@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::Heading;
+use atc_kernel::interlocking::{Heading, Size};
 
 use super::sides::{Sides, difference, members};
 use super::tracks::Vehicle;
 use crate::problem::Problem;
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Sides<'_, R, P, N, S, Z> {
     pub(super) fn lines(&self, found: &mut Vec<Problem>) {
         for (given, segment) in self.station.segments.iter().zip(&self.plan.segments) {
             let circuits: Vec<usize> =

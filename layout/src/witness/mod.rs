@@ -22,14 +22,14 @@ mod tracks;
 use crate::form::Station;
 use crate::problem::Problem;
 
-pub use atc_kernel::interlocking::Plan;
+pub use atc_kernel::interlocking::{Plan, Size};
 use sides::Sides;
 use tracks::Tracks;
 
 /// Everything in which `plan` is not what vehicles meet on the tracks of `station`, a file that breaks no other rule.
-pub fn differences<const R: usize, const P: usize, const N: usize, const S: usize>(
+pub fn differences<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
     station: &Station,
-    plan: &Plan<R, P, N, S>,
+    plan: &Plan<R, P, N, S, Z>,
 ) -> Vec<Problem> {
     let sides = Sides { station, tracks: Tracks::of(station), plan };
     let mut found = Vec::new();

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use atc_kernel::interlocking::{CircuitSet, SpeedCode};
+use atc_kernel::interlocking::{CircuitSet, Size, SpeedCode};
 use atc_kernel::time::Ticks;
 
 use super::routes::Way;
@@ -14,7 +14,7 @@ use crate::problem::Problem;
 /// What a fall of a thousandth takes off a brake, in m/s².
 const FALL: f64 = 9.80665e-3;
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Sides<'_, R, P, N, S, Z> {
     /// The speed of a code, in km/h.
     fn kmh(&self, code: SpeedCode) -> u16 {
         let place = usize::from(code.0).checked_sub(1);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::{CircuitSet, Heading, RouteSet, SegmentSet};
+use atc_kernel::interlocking::{CircuitSet, Heading, RouteSet, SegmentSet, Size};
 
 use super::sides::{Sides, members, stand};
 use super::tracks::{Stand, Vehicle};
@@ -19,11 +19,11 @@ pub struct Way {
     pub exit: usize,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Sides<'_, R, P, N, S, Z> {
     /// The circuits of a path, in order of travel; none if a place has not exactly one.
     pub(super) fn path(&self, route: usize) -> Option<Vec<usize>> {
         let route = &self.plan.routes[route];
-        let circuit = |place: &atc_kernel::interlocking::Element| {
+        let circuit = |place: &atc_kernel::interlocking::Element<Z>| {
             let mut all = members(place.circuits);
             all.next().filter(|_| all.next().is_none())
         };

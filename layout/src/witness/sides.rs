@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use atc_kernel::interlocking::{CircuitSet, Plan, PointSet, Positions};
+use atc_kernel::interlocking::{CircuitSet, Plan, PointSet, Positions, Size};
 
 use super::tracks::{Stand, Tracks};
 use crate::form::{Position, Station};
@@ -10,13 +10,13 @@ use crate::problem::Problem;
 use crate::rule::Rule;
 
 /// What is held against each other.
-pub(super) struct Sides<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
+pub(super) struct Sides<'a, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> {
     pub(super) station: &'a Station,
     pub(super) tracks: Tracks,
-    pub(super) plan: &'a Plan<R, P, N, S>,
+    pub(super) plan: &'a Plan<R, P, N, S, Z>,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Sides<'_, R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Sides<'_, R, P, N, S, Z> {
     pub(super) fn differs(&self, route: usize, what: &str) -> Problem {
         let name = &self.station.routes[route].name;
         difference(&name.span, format!("route {name}: {what}"))
@@ -37,12 +37,12 @@ pub(super) fn difference(span: &Range<usize>, what: String) -> Problem {
 }
 
 /// The numbers in a set of circuits.
-pub(super) fn members(set: CircuitSet) -> impl Iterator<Item = usize> {
-    (0..64).filter(move |circuit| set.meets(CircuitSet::nth(*circuit)))
+pub(super) fn members<Z: Size>(set: CircuitSet<Z>) -> impl Iterator<Item = usize> {
+    (0..CircuitSet::<Z>::MOST).filter(move |circuit| set.meets(CircuitSet::nth(*circuit)))
 }
 
 /// Positions as places in the file. A point that is to stand both ways stands neither.
-pub(super) fn stand(positions: Positions) -> Stand {
+pub(super) fn stand<Z: Size>(positions: Positions<Z>) -> Stand {
     let of = |point: usize| match (
         positions.normal.meets(PointSet::nth(point)),
         positions.reverse.meets(PointSet::nth(point)),
@@ -51,5 +51,5 @@ pub(super) fn stand(positions: Positions) -> Stand {
         (false, true) => Some((point, Position::Reverse)),
         _ => None,
     };
-    (0..32).filter_map(of).collect()
+    (0..PointSet::<Z>::MOST).filter_map(of).collect()
 }

@@ -11,7 +11,7 @@ use crate::subject::{Claim, Subject};
 use atc_kernel::Machine;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Heading, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, Request, Route,
+    CircuitSet, Directions, Element, Heading, Input, Layout, Orders, PerCircuit, Plan, Positions, Request, Route,
     Segment, SegmentId, SegmentSet, SpeedCode, State as Kernel, Track, Travel,
 };
 use atc_kernel::time::Ticks;
@@ -198,7 +198,7 @@ impl Pair {
 
     fn kernel(layout: &Small, directions: Directions<1>) -> Kernel<2, 1> {
         let mut state = layout.initial();
-        state.track = Track::from_parts([1; MAX_CIRCUITS]);
+        state.track = Track::from_parts(PerCircuit::all(1));
         state.works.blocked = CircuitSet::EMPTY;
         state.directions = directions;
         state

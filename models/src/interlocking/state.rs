@@ -64,9 +64,9 @@ impl Kept {
 
     /// The machine's state, in a cycle that is not its first.
     pub fn kernel(&self, layout: &Small) -> kernel::State<ROUTES, SEGMENTS> {
-        let mut clear_for = [layout.plan().clear; kernel::MAX_CIRCUITS];
+        let mut clear_for = kernel::PerCircuit::all(layout.plan().clear);
         clear_for[..CIRCUITS].copy_from_slice(&self.clear_for);
-        let mut stood = [0; kernel::MAX_POINTS];
+        let mut stood = kernel::PerPoint::all(0);
         stood[..POINTS].copy_from_slice(&self.stood);
         let restrictions = SpeedLimits::NONE.and_at_most(RESTRICTED, circuits(self.restricted));
         kernel::State {

@@ -57,7 +57,7 @@ fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
             (Tone::Emergency, "failed, refused"),
             (Tone::Code, "what trains are told"),
         ],
-        ..Scene::of(Interlocked::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
+        ..Scene::of(<Interlocked>::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
     let Ok(mut machine) = Interlocked::open(config) else { return scene };

@@ -3,9 +3,9 @@
 use crate::Engine;
 use crate::engine::{any_byte, any_flag, any_u32};
 use atc_kernel::interlocking::{
-    CircuitSet, Directions, Element, Epoch, Heading, Input, Layout, MAX_CIRCUITS, MAX_POINTS, Orders, Phase, Plan,
-    Point, PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment,
-    SegmentId, SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Unswept, Works,
+    CircuitSet, Directions, Element, Epoch, Heading, Input, Layout, MAX_CIRCUITS, Orders, PerPoint, Phase, Plan, Point,
+    PointId, PointSet, Position, Positions, Rear, Request, Route, RouteId, RouteSet, RouteState, Segment, SegmentId,
+    SegmentSet, Settling, SpeedCode, SpeedLimits, State, Track, Travel, Unswept, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -195,7 +195,7 @@ pub(super) fn any_route_state<E: Engine + ?Sized>(e: &mut E) -> RouteState {
 
 /// Any points: the first four have any count, and all were detected anywhere.
 pub(super) fn any_settling<E: Engine + ?Sized>(e: &mut E) -> Settling {
-    let mut stood = [0; MAX_POINTS];
+    let mut stood = PerPoint::all(0);
     for (number, count) in stood.iter_mut().enumerate() {
         if number < POINTS {
             *count = any_byte(e, "a point has stood for (cycles)", 0..=0);

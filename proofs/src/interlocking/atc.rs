@@ -8,8 +8,8 @@ use super::line::{BOUND, Line, PATH, ROUTES, SEGMENTS, UNDER_KANI, any_line, in_
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Route, SegmentSet, SpeedCode,
-    SpeedLimits, Standing, begins, connect, movement, telegram,
+    CircuitId, CircuitSet, Contents, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, PerCircuit, Route, SegmentSet,
+    Small, SpeedCode, SpeedLimits, Standing, begins, connect, movement, telegram,
 };
 
 /// What a route may grant, by places of its path.
@@ -228,7 +228,7 @@ harness! {
         let long = e.word("length of circuits with an even number (m)", 0..=400);
         let short = e.word("length of circuits with an odd number (m)", 0..=400);
         let mut plan = *line.plan();
-        plan.lengths = core::array::from_fn(|place| Metres(if place % 2 == 0 { long } else { short }));
+        plan.lengths = PerCircuit::from_fn(|place| Metres(if place % 2 == 0 { long } else { short }));
         let mut distance = 0;
         let mut braking = [Metres(0); MAX_CODES];
         for braking in &mut braking[1..] {
@@ -309,7 +309,7 @@ harness! {
         contents.standing.limits = limits(far, its, 7);
         let mut plan = *line.plan();
         // One circuit is enough to stop from every code.
-        plan.lengths = [Metres(8); MAX_CIRCUITS];
+        plan.lengths = PerCircuit::all(Metres(8));
         plan.braking = [0, 1, 2, 3, 4, 5, 6, 7].map(Metres);
         let Ok(line) = Layout::with_what_proofs_need(plan) else { return e.assume(false) };
         let train = contents.standing.train(&line, occupied, front.alone());
@@ -417,7 +417,7 @@ harness! {
             *grant = Grant { train, ..*grant };
         }
         let number = e.word("the circuit (number)", 0..=15) & 63;
-        let circuit = CircuitSet::nth(usize::from(number)).first().unwrap_or(CircuitId::ZERO);
+        let circuit = CircuitSet::<Small>::nth(usize::from(number)).first().unwrap_or(CircuitId::ZERO);
         e.claim(Claim::Own as u32, u16::from(circuit.number()) == number);
         let none = begins(&line, &contents).bits() >> number & 1 == 0;
         let found = movement(&line, &contents, circuit);

@@ -4,8 +4,8 @@ use crate::engine::any_u32;
 use crate::interlocking::{LONGEST, any_input};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Directions, Epoch, Heading, Input, Layout, Memory, Plan, Point, Segment, SegmentSet, State,
-    Track, Works,
+    CircuitSet, Combined, Directions, Epoch, Heading, Input, Layout, Memory, PerCircuit, Plan, Point, Segment,
+    SegmentSet, State, Track, Works,
 };
 use atc_kernel::time::Ticks;
 
@@ -43,7 +43,7 @@ harness! {
     }
     {
         let Some(layout) = layout() else { return e.assume(false) };
-        let track = Track::from_parts(core::array::from_fn(|_| e.word("reported clear for (cycles)", 0..=1).to_le_bytes()[0]));
+        let track = Track::from_parts(PerCircuit::from_fn(|_| e.word("reported clear for (cycles)", 0..=1).to_le_bytes()[0]));
         let away = SegmentSet::from_bits(crate::engine::any_byte(e, "away (bits)", 0..=1));
         let before = State {
             track,

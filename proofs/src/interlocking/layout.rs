@@ -3,7 +3,7 @@
 use super::any::{any_circuits, any_plan, bit};
 use crate::engine::any_byte;
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitSet, Layout, MAX_CODES, Plan, Point, RouteSet, SpeedCode};
+use atc_kernel::interlocking::{CircuitSet, Layout, MAX_CODES, PerCircuit, Plan, Point, RouteSet, SpeedCode};
 
 const ROUTES: usize = 2;
 const PATH: usize = 2;
@@ -28,7 +28,7 @@ fn any_whole_plan<E: crate::Engine + ?Sized>(e: &mut E) -> Plan<ROUTES, PATH, PO
         core::array::from_fn(|_| Point { detectors: any_circuits(e, "detectors of a point (bits)", 0x4000..=0x4000) });
     let long = e.word("length of circuits with an even number (m)", 0..=400);
     let short = e.word("length of circuits with an odd number (m)", 1..=400);
-    plan.lengths = core::array::from_fn(|place| Metres(if place % 2 == 0 { long } else { short }));
+    plan.lengths = PerCircuit::from_fn(|place| Metres(if place % 2 == 0 { long } else { short }));
     let mut distance = 0;
     for braking in &mut plan.braking[1..] {
         distance += 50;

@@ -20,6 +20,7 @@ mod point;
 mod room;
 mod route;
 mod scene;
+mod sets;
 mod signal;
 mod start;
 mod table;
@@ -92,6 +93,8 @@ pub const ALL: &[Harness] = &[
     room::t_atc_8::HARNESS,
     room::t_atc_8_brakes::HARNESS,
     layout::t_lay_2::HARNESS,
+    sets::t_lay_3::HARNESS,
+    sets::t_lay_3_check::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,
     train::t_ilk_train_overlap::HARNESS,

@@ -2,7 +2,7 @@
 
 use super::any::{any_cycle, held, kept};
 use crate::engine::any_byte;
-use atc_kernel::interlocking::{Phase, Position, Request};
+use atc_kernel::interlocking::{PerPoint, Phase, Position, Request};
 
 const ROUTES: usize = 2;
 /// Smaller for a wrong kernel: what a small layout rejects, a large one does.
@@ -120,7 +120,7 @@ harness! {
         let has = |bits: u32| bits >> number & 1 == 1;
         // For how many cycles it has been detected where it was last, and not been driven: a ghost.
         let stood = any_byte(e, "the point has stood for (cycles)", 0..=1);
-        let count = |stood: [u8; 32]| if number == 0 { stood[0] } else { stood[1] };
+        let count = |stood: PerPoint<u8>| if number == 0 { stood[0] } else { stood[1] };
         let (counted, last) = before.points.parts();
         e.assume(count(counted) <= stood);
         let (after, output) = layout.interlock(before, input);

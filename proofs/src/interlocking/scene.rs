@@ -146,7 +146,7 @@ impl Train {
     }
 
     /// Whether this is a train that there can be.
-    pub(super) const fn is_one(&self, ground: &Ground) -> bool {
+    pub(super) fn is_one(&self, ground: &Ground) -> bool {
         let ordered = self.tail <= self.front && self.front <= ground.over + 1 && (self.late == 0 || self.front > 0);
         let sliding = !self.slid || self.front >= ground.over && self.tail <= ground.over && !ground.overlap.is_empty();
         let inside = !self.is_live() || self.front <= ENTRY;

@@ -5,8 +5,8 @@ use crate::Engine;
 use crate::engine::{any_byte, any_flag, any_u32};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Combined, Contents, Epoch, Grant, Layout, MAX_CIRCUITS, MAX_CODES, Movement, Plan,
-    SegmentSet, SpeedCode, SpeedLimits, Standing, Table,
+    CircuitId, CircuitSet, Combined, Contents, Epoch, Grant, Layout, MAX_CODES, Movement, PerCircuit, Plan, SegmentSet,
+    SpeedCode, SpeedLimits, Standing, Table,
 };
 use atc_kernel::time::Ticks;
 
@@ -154,7 +154,7 @@ struct Scene {
 }
 
 fn any_scene<E: Engine + ?Sized>(e: &mut E) -> Option<Scene> {
-    let circuit = CircuitId::new(any_byte(e, "a circuit that stands for all (number)", 0..=7));
+    let circuit = CircuitId::new(any_byte(e, "a circuit that stands for all (number)", 0..=7) & 63);
     let layout = Layout::with_what_proofs_need(Plan { clear: 1, turn: Ticks(1), ..Plan::EMPTY });
     let contents = any_contents(e);
     let now = Epoch(any_u32(e, "this cycle (epoch)", 0..=1));
@@ -171,7 +171,7 @@ impl Scene {
 
     /// Whether the circuit's telegram tells a train to stay where it is, and whether it lets one go.
     #[inline]
-    fn told(&self, telegrams: &[Option<Movement>; MAX_CIRCUITS]) -> (bool, bool) {
+    fn told(&self, telegrams: &PerCircuit<Option<Movement>>) -> (bool, bool) {
         let (mut stop, mut open) = (true, false);
         for (place, it) in (0_u8..).zip(telegrams) {
             let (stays, goes) = match it {

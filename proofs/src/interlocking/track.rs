@@ -4,7 +4,7 @@ use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::Machine;
 use atc_kernel::interlocking::{
-    CircuitSet, Input, Layout, MAX_CIRCUITS, Orders, Plan, Positions, SegmentSet, State, Track,
+    CircuitSet, Input, Layout, MAX_CIRCUITS, Orders, PerCircuit, Plan, Positions, SegmentSet, State, Track,
 };
 use atc_kernel::time::Ticks;
 
@@ -63,7 +63,7 @@ harness! {
         let limit = u32::from(clear);
         let count_before = if before < limit { before.to_le_bytes()[0] } else { clear };
         let others = e.word("count of the other circuits (cycles)", 0..=1).to_le_bytes();
-        let counts: [u8; MAX_CIRCUITS] = core::array::from_fn(|place| {
+        let counts = PerCircuit::from_fn(|place| {
             let other = others[place & 1];
             let other = if other < clear { other } else { clear };
             if place == number { count_before } else { other }
@@ -105,7 +105,7 @@ harness! {
     }
     {
         let clear = any_byte(e, "clear (cycles)", 1..=3);
-        let track = Track::from_parts(core::array::from_fn(|_| e.word("reported clear for (cycles)", 0..=1).to_le_bytes()[0]));
+        let track = Track::from_parts(PerCircuit::from_fn(|_| e.word("reported clear for (cycles)", 0..=1).to_le_bytes()[0]));
         let reported = any_reports(e);
         let (after, occupied) = track.step(clear, reported);
         let plan = Plan::<1, 1, 1, 1> { clear, turn: Ticks(1), ..Plan::EMPTY };
@@ -145,7 +145,7 @@ harness! {
         let plan = Plan::<1, 1, 1, 1> { clear, loss, turn: Ticks(1), ..Plan::EMPTY };
         let Ok(layout) = Layout::new(plan) else { return e.assume(false) };
         let before = Crossing::any(e);
-        let counts: [u8; MAX_CIRCUITS] = core::array::from_fn(|place| match place {
+        let counts = PerCircuit::from_fn(|place| match place {
             0 => before.counts.0,
             1 => before.counts.1,
             _ => clear,

@@ -7,7 +7,7 @@ use atc_kernel::aspect::AspectId;
 use atc_kernel::code::Code;
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Heading, MAX_CIRCUITS, MAX_CODES, Movement, SpeedCode, SpeedLimits,
+    CircuitId, CircuitSet, Heading, MAX_CODES, Movement, PerCircuit, SpeedCode, SpeedLimits,
 };
 use atc_kernel::telegram::{Counter, Gradient, Length, SectionId};
 use atc_kernel::wayside::{Codes, Counters, Facing, Fixed, Saying, Signals, Speech, Word};
@@ -18,8 +18,8 @@ pub(super) const CIRCUITS: usize = 4;
 pub(super) const SPEEDS: usize = 3;
 
 /// Any lengths of the circuits.
-pub(super) fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> [Metres; MAX_CIRCUITS] {
-    let mut lengths = [Metres(0); MAX_CIRCUITS];
+pub(super) fn any_lengths<E: Engine + ?Sized>(e: &mut E) -> PerCircuit<Metres> {
+    let mut lengths = PerCircuit::all(Metres(0));
     for length in lengths.iter_mut().take(CIRCUITS) {
         *length = Metres(e.word("length of a circuit (m)", 1..=300));
     }
@@ -76,7 +76,7 @@ impl Said {
 }
 
 /// Any signals as the constructor makes them (`way_signals`, `way_words`): code 0 is there and stops, and a circuit has two numbers.
-pub(super) fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIRCUITS]) -> Option<Said> {
+pub(super) fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &PerCircuit<Metres>) -> Option<Said> {
     let stop = any_word(e, 0)?;
     let mut words = [None; MAX_CODES];
     words[0] = Some(stop);
@@ -88,7 +88,7 @@ pub(super) fn any_said<E: Engine + ?Sized>(e: &mut E, lengths: &[Metres; MAX_CIR
     let length = Length::new(lengths[0]);
     e.assume(length.is_some() && fixed.left.section != fixed.right.section);
     let length = length?;
-    let mut circuits = [None; MAX_CIRCUITS];
+    let mut circuits = PerCircuit::all(None);
     circuits[0] = Some((fixed, length));
     Some(Said { signals: Signals::from_parts(circuits, words, stop), fixed, words, stop })
 }
@@ -107,7 +107,7 @@ pub(super) fn any_movement<E: Engine + ?Sized>(e: &mut E) -> Movement {
 /// What trains of a direction of travel are told in circuit 0.
 pub(super) fn heard<E: Engine + ?Sized>(
     e: &mut E,
-    lengths: &[Metres; MAX_CIRCUITS],
+    lengths: &PerCircuit<Metres>,
     said: &Said,
     movement: Movement,
     heading: Heading,

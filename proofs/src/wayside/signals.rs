@@ -7,23 +7,23 @@ use super::said::{SPEEDS, any_facing, any_lengths, any_word};
 use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES as PLACES, Millihertz};
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitSet, MAX_CIRCUITS, MAX_CODES, SpeedCode};
+use atc_kernel::interlocking::{CircuitSet, MAX_CODES, PerCircuit, SpeedCode};
 use atc_kernel::speed::KmhTenths;
-use atc_kernel::wayside::{Codes, Fixed, SignalPlan, WaysideError, check_codes, check_speeds, circuits, spell, words};
+use atc_kernel::wayside::{Codes, Fixed, WaysideError, check_codes, check_speeds, circuits, spell, words};
 
 const BOUND_WORDS: &str = "2 speed codes of 8, 4 speeds and 3 pairs of codes";
 const BOUND_TABLES: &str = "3 speeds, 2 code frequencies of each carrier";
 const BOUND_SIGNALS: &str = "2 circuits described, 4 used or with a length, 3 speeds";
 
-/// Tables of four speeds, 0, 15, 30 and 45 km/h, the last one without a pair of codes, and signals with nothing else.
-fn fixed_tables() -> Option<SignalPlan> {
+/// Tables of four speeds, 0, 15, 30 and 45 km/h, the last one without a pair of codes.
+fn fixed_tables() -> Option<(AspectTable, CodeTable)> {
     let speeds = [KmhTenths(0), KmhTenths(150), KmhTenths(300), KmhTenths(450)];
     let aspects = AspectTable::new(&speeds).ok()?;
     let frequencies = CodeFrequencies::new(&[Millihertz(10_000), Millihertz(15_000)], Millihertz(1_000)).ok()?;
     let mut named = [[None; PLACES]; PLACES];
     (named[0][0], named[0][1], named[1][0]) = (Some(speeds[0]), Some(speeds[1]), Some(speeds[2]));
     let codes = CodeTable::new(frequencies, frequencies, named).ok()?;
-    Some(SignalPlan { circuits: [None; MAX_CIRCUITS], speeds: [None; MAX_CODES], aspects, codes })
+    Some((aspects, codes))
 }
 
 harness! {
@@ -103,7 +103,8 @@ harness! {
         NoPair: "a speed without a pair of codes",
     }
     {
-        let Some(mut signals) = fixed_tables() else { return };
+        let Some((aspects, codes)) = fixed_tables() else { return };
+        let mut speeds = [None; MAX_CODES];
         let case = e.choose("the code besides 0", OTHERS.len());
         let mut other = OTHERS[0];
         for (place, each) in OTHERS.iter().enumerate() {
@@ -111,13 +112,13 @@ harness! {
         }
         let zero = KmhTenths(e.word("speed of code 0 (tenths of km/h)", 0..=0));
         let high = KmhTenths(e.word("speed of the other code (150, 300 or 450: it has a rank)", 300..=300));
-        signals.speeds[0] = if e.word("there is code 0 (odd: yes)", 1..=1) & 1 == 1 { Some(zero) } else { None };
+        speeds[0] = if e.word("there is code 0 (odd: yes)", 1..=1) & 1 == 1 { Some(zero) } else { None };
         let there = e.word("there is the other code (odd: yes)", 1..=1) & 1 == 1;
         for number in 1..MAX_CODES {
-            signals.speeds[number] = if number == other && there { Some(high) } else { None };
+            speeds[number] = if number == other && there { Some(high) } else { None };
         }
-        let made = words(&signals);
-        let stops = signals.speeds[0] == Some(KmhTenths(0));
+        let made = words(&speeds, &aspects, &codes);
+        let stops = speeds[0] == Some(KmhTenths(0));
         // 150 and 300 have a rank and a pair, 450 a rank alone.
         let spelt = matches!(high.0, 150 | 300);
         e.claim(Claim::Exact as u32, made.is_ok() == (stops && (!there || spelt)));
@@ -238,14 +239,15 @@ harness! {
     }
     {
         let lengths = any_lengths(e);
-        let Some(mut signals) = fixed_tables() else { return };
+        let Some((aspects, _)) = fixed_tables() else { return };
         let mut any = |likely| any_facing(e, likely);
         let (Some(left), Some(right), Some(next_left), Some(next_right)) = (any(0), any(2), any(1), any(4)) else { return };
         let (one, other) = (Fixed { left, right }, Fixed { left: next_left, right: next_right });
-        signals.circuits[0] = Some(one);
-        signals.circuits[1] = Some(other);
+        let mut described = PerCircuit::all(None);
+        described[0] = Some(one);
+        described[1] = Some(other);
         let used = CircuitSet::from_bits(u64::from(e.word("circuits in which trains may be (bits)", 0..=7) & 15));
-        let made = circuits(used, &lengths, &signals);
+        let made = circuits(used, &lengths, &described, &aspects);
         let ids = [one.left.section.0, one.right.section.0, other.left.section.0, other.right.section.0];
         let mut twice = false;
         for place in 1..4 {
@@ -254,14 +256,14 @@ harness! {
             }
         }
         let facing = ids[0] % 2 == 1 && ids[1] % 2 == 0 && ids[2] % 2 == 1 && ids[3] % 2 == 0;
-        let described = used.bits() < 4;
+        let all = used.bits() < 4;
         let long = lengths[0].0 > 0 && lengths[1].0 > 0;
         let known = |rank: AspectId| usize::from(rank.rank()) <= SPEEDS;
         let curves = known(one.left.curve) && known(one.right.curve) && known(other.left.curve) && known(other.right.curve);
-        e.claim(Claim::Exact as u32, made.is_ok() == (described && long && curves && !twice && facing));
+        e.claim(Claim::Exact as u32, made.is_ok() == (all && long && curves && !twice && facing));
         let told = match made.as_ref().err() {
             None => true,
-            Some(WaysideError::CircuitWithoutSignals(_)) => !described,
+            Some(WaysideError::CircuitWithoutSignals(_)) => !all,
             Some(WaysideError::NoLength(_)) => !long,
             Some(WaysideError::UnknownCurve(_)) => !curves,
             Some(WaysideError::SectionNumberTwice(_)) => twice,

@@ -248,7 +248,7 @@ harness! {
         let Some(said) = any_said(e, &lengths) else { return };
         let movement = any_movement(e);
         let movement = if any_flag(e, "the ATC is silent (odd: yes)") { None } else { Some(movement) };
-        let circuit = CircuitId::new(any_byte(e, "the circuit (number)", 0..=1));
+        let circuit = CircuitId::new(any_byte(e, "the circuit (number)", 0..=1) & 63);
         e.assume(circuit.is_some());
         let Some(circuit) = circuit else { return };
         let counters = Counters { main: Counter(any_byte(e, "number", 0..=255)), sub: Counter(0) };

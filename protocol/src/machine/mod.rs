@@ -79,7 +79,7 @@ pub const KINDS: &[Kind] = &[
     kind::<pattern::Braking>(),
     kind::<permitted::Permitting>(),
     kind::<position::Positioned>(),
-    kind::<interlocking::Interlocked>(),
+    kind::<interlocking::Sizes>(),
     kind::<train::OnBoard>(),
     kind::<wayside::Ground>(),
 ];

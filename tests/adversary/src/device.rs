@@ -1,8 +1,8 @@
 //! The device under attack. This is the only file of the adversary that knows the kernel: a change of the kernel's interface ends here.
 
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Heading, Input, Layout, Orders, PointId, PointSet, Position, Positions, Request, RouteId,
-    RouteSet, SegmentId, SegmentSet, SpeedCode, State, Travel, begins, silent, telegram,
+    CircuitId, CircuitSet, Heading, Input, Large, Layout, Orders, PointId, PointSet, Position, Positions, Request,
+    RouteId, RouteSet, SegmentId, SegmentSet, Size, Small, SpeedCode, State, Travel, begins, silent, telegram,
 };
 pub use atc_kernel::interlocking::{Phase, Refusal};
 use atc_layout::{Description, Errors};
@@ -41,7 +41,7 @@ pub struct Read {
     /// The circuits that are reported occupied.
     pub occupied: Mask,
     /// The points that are detected normal, and reverse.
-    pub detected: [u32; 2],
+    pub detected: [u64; 2],
     /// One request or none.
     pub ask: Option<Ask>,
     /// What staff command.
@@ -54,9 +54,9 @@ pub struct Read {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Said {
     /// The routes that show proceed.
-    pub proceed: u64,
+    pub proceed: Mask,
     /// The points that are driven to normal, and to reverse.
-    pub drives: [u32; 2],
+    pub drives: [u64; 2],
     /// The lines where it permits the neighbour to send.
     pub permits: u8,
     /// The blocks that staff may rely on.
@@ -97,16 +97,84 @@ pub trait Device {
 }
 
 /// The kernel.
-struct Kernel<const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: Box<Layout<R, P, N, S>>,
-    state: State<R, S>,
-    table: Option<atc_kernel::interlocking::Contents<R>>,
-    begins: CircuitSet,
-    silent: CircuitSet,
+struct Kernel<const R: usize, const P: usize, const N: usize, const S: usize, Z: Masked> {
+    layout: Box<Layout<R, P, N, S, Z>>,
+    state: State<R, S, Z>,
+    table: Option<atc_kernel::interlocking::Contents<R, Z>>,
+    begins: CircuitSet<Z>,
+    silent: CircuitSet<Z>,
 }
 
-fn circuits(mask: Mask) -> CircuitSet {
-    CircuitSet::from_bits(u64::try_from(mask & Mask::from(u64::MAX)).unwrap_or(0))
+/// Sets as masks: of 128 circuits and routes, 64 points and 8 segments at most. What is beyond that is not attacked.
+trait Masked: Size {
+    fn circuits(mask: Mask) -> CircuitSet<Self>;
+    fn of_circuits(set: CircuitSet<Self>) -> Mask;
+    fn of_routes(set: RouteSet<Self>) -> Mask;
+    fn points(mask: u64) -> PointSet<Self>;
+    fn of_points(set: PointSet<Self>) -> u64;
+    fn segments(mask: u8) -> SegmentSet<Self>;
+    fn of_segments(set: SegmentSet<Self>) -> u8;
+}
+
+fn low(mask: Mask) -> u64 {
+    u64::try_from(mask & Mask::from(u64::MAX)).unwrap_or(0)
+}
+
+fn half(points: u64) -> u32 {
+    u32::try_from(points & u64::from(u32::MAX)).unwrap_or(0)
+}
+
+impl Masked for Small {
+    fn circuits(mask: Mask) -> CircuitSet {
+        CircuitSet::from_bits(low(mask))
+    }
+    fn of_circuits(set: CircuitSet) -> Mask {
+        set.bits().into()
+    }
+    fn of_routes(set: RouteSet) -> Mask {
+        set.bits().into()
+    }
+    fn points(mask: u64) -> PointSet {
+        PointSet::from_bits(half(mask))
+    }
+    fn of_points(set: PointSet) -> u64 {
+        set.bits().into()
+    }
+    fn segments(mask: u8) -> SegmentSet {
+        SegmentSet::from_bits(mask)
+    }
+    fn of_segments(set: SegmentSet) -> u8 {
+        set.bits()
+    }
+}
+
+fn two([first, second, ..]: [u64; 4]) -> Mask {
+    Mask::from(first) | Mask::from(second) << 64
+}
+
+impl Masked for Large {
+    fn circuits(mask: Mask) -> CircuitSet<Self> {
+        CircuitSet::from_words([low(mask), low(mask >> 64), 0, 0])
+    }
+    fn of_circuits(set: CircuitSet<Self>) -> Mask {
+        two(set.words())
+    }
+    fn of_routes(set: RouteSet<Self>) -> Mask {
+        two(set.words())
+    }
+    fn points(mask: u64) -> PointSet<Self> {
+        PointSet::from_words([half(mask), half(mask >> 32), 0, 0])
+    }
+    fn of_points(set: PointSet<Self>) -> u64 {
+        let [first, second, ..] = set.words();
+        u64::from(first) | u64::from(second) << 32
+    }
+    fn segments(mask: u8) -> SegmentSet<Self> {
+        SegmentSet::from_words([mask, 0, 0, 0])
+    }
+    fn of_segments(set: SegmentSet<Self>) -> u8 {
+        set.words()[0]
+    }
 }
 
 fn small(number: usize) -> u8 {
@@ -128,23 +196,20 @@ fn request(ask: Ask) -> Option<Request> {
     })
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Kernel<R, P, N, S> {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Masked> Device for Kernel<R, P, N, S, Z> {
     fn cycle(&mut self, read: &Read) -> Said {
         let input = Input {
-            occupied: circuits(read.occupied),
-            detected: Positions {
-                normal: PointSet::from_bits(read.detected[0]),
-                reverse: PointSet::from_bits(read.detected[1]),
-            },
+            occupied: Z::circuits(read.occupied),
+            detected: Positions { normal: Z::points(read.detected[0]), reverse: Z::points(read.detected[1]) },
             request: read.ask.and_then(request),
             orders: Orders {
-                block: circuits(read.commands.block),
-                unblock: circuits(read.commands.unblock),
-                restrict: circuits(read.commands.restrict.0),
+                block: Z::circuits(read.commands.block),
+                unblock: Z::circuits(read.commands.unblock),
+                restrict: Z::circuits(read.commands.restrict.0),
                 speed: SpeedCode(read.commands.restrict.1),
-                lift: circuits(read.commands.lift),
+                lift: Z::circuits(read.commands.lift),
             },
-            consent: SegmentSet::from_bits(read.consent),
+            consent: Z::segments(read.consent),
         };
         let (state, output) = self.layout.cycle(self.state, input);
         self.state = state;
@@ -152,10 +217,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
         self.begins = self.table.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(&self.layout, contents));
         self.silent = silent(&self.layout, self.table.as_ref());
         Said {
-            proceed: RouteSet::bits(output.proceed),
-            drives: [output.drives.normal.bits(), output.drives.reverse.bits()],
-            permits: output.permits.bits(),
-            confirmed: Mask::from(output.confirmed.bits()),
+            proceed: Z::of_routes(output.proceed),
+            drives: [Z::of_points(output.drives.normal), Z::of_points(output.drives.reverse)],
+            permits: Z::of_segments(output.permits),
+            confirmed: Z::of_circuits(output.confirmed),
             done: output.answer == Some(Ok(())),
             refused: output.answer.and_then(Result::err),
         }
@@ -168,7 +233,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
         if movement.is_open() {
             let right = movement.heading.map(|heading| heading == Heading::Right);
             let stop = usize::from(movement.stop.number());
-            Telegram { hold: Mask::from(movement.hold.bits()), code: movement.speed.0, right, stop }
+            Telegram { hold: Z::of_circuits(movement.hold), code: movement.speed.0, right, stop }
         } else {
             Telegram::default()
         }
@@ -190,21 +255,26 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
 /// # Errors
 /// What is wrong with the layout.
 pub fn kernel(description: &Description) -> Result<(Box<dyn Device>, Ground), Errors> {
-    if let Ok(compiled) = description.compile_to::<8, 4, 4, 2>() {
+    if let Ok(compiled) = description.compile_to::<8, 4, 4, 2, Small>() {
         let ground = Ground::of_compiled(description, &compiled);
         return Ok((started(compiled.layout()), ground));
     }
-    if let Ok(compiled) = description.compile_to::<8, 4, 8, 5>() {
+    if let Ok(compiled) = description.compile_to::<8, 4, 8, 5, Small>() {
         let ground = Ground::of_compiled(description, &compiled);
         return Ok((started(compiled.layout()), ground));
     }
-    let compiled = description.compile_to::<64, 16, 32, 8>()?;
+    if description.model()?.extent().is_large() {
+        let compiled = description.compile_to::<128, 32, 64, 8, Large>()?;
+        let ground = Ground::of_compiled(description, &compiled);
+        return Ok((started(compiled.layout()), ground));
+    }
+    let compiled = description.compile_to::<64, 16, 32, 8, Small>()?;
     let ground = Ground::of_compiled(description, &compiled);
     Ok((started(compiled.layout()), ground))
 }
 
-fn started<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: Box<Layout<R, P, N, S>>,
+fn started<const R: usize, const P: usize, const N: usize, const S: usize, Z: Masked>(
+    layout: Box<Layout<R, P, N, S, Z>>,
 ) -> Box<dyn Device> {
     Box::new(Kernel {
         layout,

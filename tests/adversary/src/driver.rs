@@ -80,7 +80,7 @@ fn run_over(train: &Train, ground: &Ground, points: &Points, goes_on: impl Fn(i6
 }
 
 /// What the driver decides for the next cycle: how far the train may run. The authority is noted.
-pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: u64) -> i64 {
+pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: Mask) -> i64 {
     let told = train.heard;
     let by_telegram = (told.limit - train.run).max(0);
     let (distance, speed) = match train.driver {
@@ -107,7 +107,7 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: u64)
 }
 
 /// Looks ahead from signal to signal.
-fn look(train: &Train, ground: &Ground, points: &Points, proceed: u64) -> Sight {
+fn look(train: &Train, ground: &Ground, points: &Points, proceed: Mask) -> Sight {
     let front = train.front();
     let here = train.front_circuit(ground);
     let on_line = ground.lines.iter().any(|line| line.mask & bit(here) != 0);

@@ -3,6 +3,7 @@
 //! Lengths are in mm, speeds in mm/s, times in cycles. Each segment of plain line goes on over its border into a stretch that
 //! only the neighbouring station sees; that stretch is a circuit of its own here, numbered after those of the station.
 
+use atc_kernel::interlocking::Size;
 use atc_layout::form::{EndKind, Position};
 use atc_layout::graph::Kind;
 use atc_layout::model::Model;
@@ -203,9 +204,9 @@ impl Ground {
     }
 
     /// The ground of a compiled layout.
-    pub fn of_compiled<const R: usize, const P: usize, const N: usize, const S: usize>(
+    pub fn of_compiled<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
         description: &Description,
-        compiled: &Compiled<R, P, N, S>,
+        compiled: &Compiled<R, P, N, S, Z>,
     ) -> Self {
         Self::of(description, &compiled.model)
     }

@@ -302,7 +302,7 @@ impl Pair {
             .filter(|(_, it)| occupied & bit(**it) != 0)
             .fold(0, |all, (number, _)| all | bit(number));
         let points = (1_u64 << place.point_count) - 1;
-        let detected = read.detected.map(|it| u32::try_from(u64::from(it) >> place.points & points).unwrap_or(0));
+        let detected = read.detected.map(|it| it >> place.points & points);
         let it =
             Read { occupied: local, detected, ask: mine.or(asked.and_then(|ask| own(place, ask))), commands, consent };
         let its = side.device.cycle(&it);

@@ -30,13 +30,13 @@ pub struct Points {
 }
 
 impl Points {
-    /// All points at rest in normal; bit `i` of `slow` says that point `i` takes a command a cycle late.
+    /// All points at rest in normal; bit `i` of `slow` says that point `i`, and each 32nd after it, takes a command a cycle late.
     pub fn at_rest(ground: &Ground, slow: u32, throw_percent: i64) -> Self {
         let blades = ground.throw.iter().enumerate().map(|(number, throw)| Blade {
             reverse: false,
             left: 0,
             late: None,
-            slow: slow >> number & 1 == 1,
+            slow: slow >> (number % 32) & 1 == 1,
             throw: (throw * throw_percent / 100).max(1),
             blind: 0,
             driven: i64::MAX / 2,
@@ -83,7 +83,7 @@ impl Points {
     }
 
     /// The device drives: `drives` are the points to normal, and to reverse.
-    pub fn drive(&mut self, drives: [u32; 2]) {
+    pub fn drive(&mut self, drives: [u64; 2]) {
         for (number, blade) in self.blades.iter_mut().enumerate() {
             let wanted = match (drives[0] >> number & 1, drives[1] >> number & 1) {
                 (1, 0) => false,
@@ -103,7 +103,7 @@ impl Points {
     }
 
     /// The points that are detected normal, and reverse: only at rest (`points-detect-truly`).
-    pub fn detected(&self) -> [u32; 2] {
+    pub fn detected(&self) -> [u64; 2] {
         let mut detected = [0, 0];
         for (number, blade) in self.blades.iter().enumerate() {
             if blade.left == 0 && blade.blind == 0 {

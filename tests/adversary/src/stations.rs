@@ -7,8 +7,11 @@ use atc_layout::Description;
 
 use super::dice::Dice;
 
-/// The stations of `layouts/`, by name.
+/// The small stations of `layouts/`, by name.
 pub const NAMES: [&str; 4] = ["passing-loop", "junction", "terminus", "station-30"];
+
+/// The large one.
+pub const LARGE: &str = "station-100";
 
 /// A station of `layouts/`.
 ///

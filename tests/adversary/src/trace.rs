@@ -55,7 +55,7 @@ fn lines(ground: &Ground, set: u8) -> Vec<&str> {
     lines.filter(|(number, _)| set >> number & 1 == 1).map(|(_, line)| line.name.as_str()).collect()
 }
 
-fn positions(ground: &Ground, [normal, reverse]: [u32; 2]) -> Value {
+fn positions(ground: &Ground, [normal, reverse]: [u64; 2]) -> Value {
     let side = |number: usize| match (normal >> number & 1, reverse >> number & 1) {
         (1, 0) => Some("normal"),
         (0, 1) => Some("reverse"),

@@ -65,7 +65,7 @@ fn story(device: &mut dyn Device, ground: &Ground, scenario: &Scenario, last: i6
 }
 
 /// What makes a line of its own worth it: the circuits under each train, the signals, the detected points.
-fn state(world: &World) -> (Vec<u128>, u64, [u32; 2]) {
+fn state(world: &World) -> (Vec<u128>, u128, [u64; 2]) {
     let under = world.trains.iter().map(|train| train.under).collect();
     (under, world.said.proceed, world.points.detected())
 }

@@ -15,14 +15,24 @@ fn main() -> ExitCode {
         (Some("position"), Some(count)) => println!("{count} steps, at last {:?}", reception::run_position(count)),
         (Some("deframer"), Some(count)) => println!("{count} steps, {} telegrams", reception::run_deframer(count)),
         (Some("interlocking"), Some(count)) => {
-            println!("{count} cycles, at last {:?}", busy_station::run(&busy_station::traffic(), count));
+            let (station, inputs) = (busy_station::station(), busy_station::traffic(busy_station::SMALL));
+            println!("{count} cycles, at last {:?}", busy_station::run(&station, &inputs, count));
         }
         (Some("interlocking-full"), Some(count)) => {
-            println!("{count} cycles, at last {:?}", busy_station::run(&busy_station::full(), count));
+            let (station, inputs) = (busy_station::station(), busy_station::full(busy_station::SMALL));
+            println!("{count} cycles, at last {:?}", busy_station::run(&station, &inputs, count));
+        }
+        (Some("large"), Some(count)) => {
+            let (station, inputs) = (busy_station::large(), busy_station::traffic(busy_station::LARGE));
+            println!("{count} cycles, at last {:?}", busy_station::run(&station, &inputs, count));
+        }
+        (Some("large-full"), Some(count)) => {
+            let (station, inputs) = (busy_station::large(), busy_station::full(busy_station::LARGE));
+            println!("{count} cycles, at last {:?}", busy_station::run(&station, &inputs, count));
         }
         _ => {
             eprintln!(
-                "kernel-steps: expected `aspect`, `block`, `permitted`, `position`, `deframer`, `interlocking` or `interlocking-full`, and a number of steps"
+                "kernel-steps: expected `aspect`, `block`, `permitted`, `position`, `deframer`, `interlocking`, `interlocking-full`, `large` or `large-full`, and a number of steps"
             );
             return ExitCode::FAILURE;
         }

@@ -276,7 +276,7 @@ pub fn signals(circuits: usize) -> SignalPlan {
         *circuit = Some(Fixed { left: facing(2 * number + 1), right: facing(2 * number) });
     }
     let codes = CodeTable::new(nominal(10_000), nominal(12_000), pairs).unwrap();
-    SignalPlan { circuits: all, speeds: told, aspects, codes }
+    SignalPlan { circuits: all.into(), speeds: told, aspects, codes }
 }
 
 /// A plan with the times and distances of this world.

@@ -149,5 +149,5 @@ pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
 /// Whether the kernel takes the station.
 fn is_taken(config: &Value) -> bool {
     let config = serde_json::from_value::<Config>(config.clone());
-    config.is_ok_and(|config| Interlocked::open(&config).is_ok())
+    config.is_ok_and(|config| <Interlocked>::open(&config).is_ok())
 }

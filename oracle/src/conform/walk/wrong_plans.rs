@@ -141,7 +141,7 @@ fn changed(plan: &Value, changes: Changes) -> Value {
 /// A path of a place more than there is room for.
 fn long(fork: &Value) -> Value {
     let mut plan = fork.clone();
-    let names: Vec<String> = (0..15).map(|number| format!("D{number}")).collect();
+    let names: Vec<String> = (0..31).map(|number| format!("D{number}")).collect();
     let circuits = names.iter().map(|name| json!({"name": name, "length_m": 600}));
     let places = names.iter().map(|name| json!({"circuits": [name], "points": {}}));
     for (at, more) in [("/plan/circuits", circuits.collect::<Vec<_>>()), ("/plan/routes/1/path", places.collect())] {

@@ -4,26 +4,27 @@
 use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Input, PointSet, Positions, Refusal, Request, Route, RouteSet, RouteState, SegmentSet, Travel,
+    CircuitSet, Element, Input, PointSet, Positions, Refusal, Request, Route, RouteSet, RouteState, SegmentSet, Size,
+    Travel,
 };
 
 use super::Interlocked;
 
 /// What the request asks for: circuits of the path and of the overlap, and positions of points.
-struct Asked {
-    path: CircuitSet,
-    overlap: CircuitSet,
-    positions: Positions,
-    number: RouteSet,
-    conflicts: RouteSet,
-    continuing: RouteSet,
+struct Asked<Z: Size> {
+    path: CircuitSet<Z>,
+    overlap: CircuitSet<Z>,
+    positions: Positions<Z>,
+    number: RouteSet<Z>,
+    conflicts: RouteSet<Z>,
+    continuing: RouteSet<Z>,
     /// The segment that the route leads to, or that is to be turned.
-    out: SegmentSet,
+    out: SegmentSet<Z>,
 }
 
-impl Interlocked {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Interlocked<R, P, N, S, Z> {
     /// The names that belong to a refusal of this cycle's request.
-    pub(super) fn because(&self, input: Input, occupied: CircuitSet, refusal: Refusal) -> BTreeSet<String> {
+    pub(super) fn because(&self, input: Input<Z>, occupied: CircuitSet<Z>, refusal: Refusal) -> BTreeSet<String> {
         let Some(request) = input.request else { return BTreeSet::new() };
         let asked = self.asked(request);
         let all = asked.path.or(asked.overlap);
@@ -79,7 +80,7 @@ impl Interlocked {
         }
     }
 
-    fn asked(&self, request: Request) -> Asked {
+    fn asked(&self, request: Request) -> Asked<Z> {
         let plan = self.layout.plan();
         let nothing = Asked {
             path: CircuitSet::EMPTY,
@@ -112,7 +113,7 @@ impl Interlocked {
     }
 
     /// The circuits of segments.
-    fn line(&self, segments: SegmentSet) -> CircuitSet {
+    fn line(&self, segments: SegmentSet<Z>) -> CircuitSet<Z> {
         let mut circuits = CircuitSet::EMPTY;
         for (number, segment) in self.layout.plan().segments.iter().enumerate() {
             circuits = circuits.or(segment.all().only_if(segments.meets(SegmentSet::nth(number))));
@@ -121,14 +122,14 @@ impl Interlocked {
     }
 
     /// The detector circuits of points.
-    fn detectors(&self, points: PointSet) -> CircuitSet {
+    fn detectors(&self, points: PointSet<Z>) -> CircuitSet<Z> {
         let all = self.layout.plan().points.iter().enumerate();
         all.fold(CircuitSet::EMPTY, |circuits, (number, point)| {
             circuits.or(point.detectors.only_if(points.meets(PointSet::nth(number))))
         })
     }
 
-    fn under(&self, points: PointSet, occupied: CircuitSet) -> PointSet {
+    fn under(&self, points: PointSet<Z>, occupied: CircuitSet<Z>) -> PointSet<Z> {
         let mut under = PointSet::EMPTY;
         for (number, point) in self.layout.plan().points.iter().enumerate() {
             under = under.or(PointSet::nth(number).only_if(point.detectors.meets(occupied)));
@@ -137,7 +138,7 @@ impl Interlocked {
     }
 
     /// The segments that a route lacks; or what keeps a segment from turning: circuits with trains, and routes.
-    fn in_the_way(&self, request: Request, occupied: CircuitSet) -> BTreeSet<String> {
+    fn in_the_way(&self, request: Request, occupied: CircuitSet<Z>) -> BTreeSet<String> {
         let directions = self.state().directions;
         match request {
             Request::Set(route) => {
@@ -158,7 +159,7 @@ impl Interlocked {
     }
 
     /// The held routes for which it is so.
-    fn held_where(&self, is_so: impl Fn(RouteSet, &Route<16>, &RouteState) -> bool) -> BTreeSet<String> {
+    fn held_where(&self, is_so: impl Fn(RouteSet<Z>, &Route<P, Z>, &RouteState) -> bool) -> BTreeSet<String> {
         let routes = self.layout.plan().routes.iter().zip(&self.state().routes).enumerate();
         let found =
             routes.filter(|(number, (route, state))| state.is_held() && is_so(RouteSet::nth(*number), route, state));

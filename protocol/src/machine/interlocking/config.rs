@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use atc_kernel::interlocking::{Heading, MAX_CODES, Station};
+use atc_kernel::interlocking::{Heading, Layout, MAX_CODES, Size};
 use atc_layout::model::Model;
 use atc_layout::{Description, Errors, Names, form};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -22,8 +22,8 @@ pub enum Config {
 }
 
 /// What the machine needs of a configuration.
-pub(super) struct Opened {
-    pub(super) layout: Box<Station>,
+pub(super) struct Opened<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> {
+    pub(super) layout: Box<Layout<R, P, N, S, Z>>,
     pub(super) names: Names,
     pub(super) speeds_kmh: [u16; MAX_CODES],
     pub(super) cycle_ms: u32,
@@ -73,23 +73,30 @@ impl Said {
 }
 
 impl Config {
+    /// Whether a small station has no room for it. A layout that breaks a rule is not said to be large.
+    pub(super) fn is_large(&self) -> bool {
+        match self {
+            Self::Layout(description) => description.model().is_ok_and(|model| model.extent().is_large()),
+            Self::Plan(plan) => plan.extent().is_large(),
+        }
+    }
+
     /// The layout in the kernel's form, with its names.
     ///
     /// # Errors
     /// Every rule that it breaks, in sentences.
-    pub(super) fn opened(&self) -> Result<Opened, String> {
+    pub(super) fn opened<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        &self,
+    ) -> Result<Opened<R, P, N, S, Z>, String> {
         match self {
             Self::Layout(description) => {
-                let compiled = description.compile().map_err(|errors| sentences(&errors))?;
+                let compiled = description.compile_to::<R, P, N, S, Z>().map_err(|errors| sentences(&errors))?;
                 let values = &compiled.model.values;
                 let (speeds_kmh, cycle_ms) = (values.speeds_kmh, values.cycle_ms);
                 let said = Some(Said::of(&description.station, &compiled.model));
                 Ok(Opened { layout: compiled.layout(), names: compiled.names, speeds_kmh, cycle_ms, said })
             }
-            Self::Plan(plan) => {
-                let (layout, names, speeds_kmh) = plan.layout()?;
-                Ok(Opened { layout, names, speeds_kmh, cycle_ms: plan.cycle_ms, said: None })
-            }
+            Self::Plan(plan) => plan.opened(),
         }
     }
 }

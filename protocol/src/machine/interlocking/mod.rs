@@ -5,13 +5,14 @@ mod config;
 mod forms;
 mod part;
 mod plan;
+mod sizes;
 mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
-    SegmentSet, SpeedCode, Station,
+    self as kernel, CircuitId, CircuitSet, Combined, Layout, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
+    SegmentSet, Size, Small, SpeedCode,
 };
 use atc_layout::Names;
 
@@ -19,6 +20,7 @@ use config::Opened;
 
 pub use config::{Config, Found, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
+pub use sizes::Sizes;
 pub use words::{Heading, Phase, Reason, Side, Travel};
 
 use super::contract::Machine;
@@ -27,15 +29,21 @@ use crate::decimal::shorten;
 /// The state of the kernel's machine, with room for every station.
 pub type State = kernel::State<64, 8>;
 
-/// The machine with its state.
+/// The machine with its state, on a layout of one size.
 #[derive(Clone, Debug)]
-pub struct Interlocked {
-    layout: Box<Station>,
+pub struct Interlocked<
+    const R: usize = 64,
+    const P: usize = 16,
+    const N: usize = 32,
+    const S: usize = 8,
+    Z: Size = Small,
+> {
+    layout: Box<Layout<R, P, N, S, Z>>,
     names: Names,
     speeds_kmh: [u16; kernel::MAX_CODES],
     cycle_ms: u32,
     said: Option<Said>,
-    memory: Box<Memory<64, 8>>,
+    memory: Box<Memory<R, S, Z>>,
 }
 
 /// Where the name stands in the list.
@@ -80,9 +88,9 @@ fn named(names: &[String], is_in: impl Fn(usize) -> bool) -> BTreeSet<String> {
     names.iter().enumerate().filter(|(number, _)| is_in(*number)).map(|(_, name)| name.clone()).collect()
 }
 
-impl Interlocked {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Interlocked<R, P, N, S, Z> {
     /// The layout.
-    pub fn layout(&self) -> &Station {
+    pub fn layout(&self) -> &Layout<R, P, N, S, Z> {
         &self.layout
     }
 
@@ -92,7 +100,7 @@ impl Interlocked {
     }
 
     /// The kernel's state.
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &kernel::State<R, S, Z> {
         &self.memory.interlocking
     }
 
@@ -106,20 +114,20 @@ impl Interlocked {
         self.said.as_ref()
     }
 
-    fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
-        let or = |all: CircuitSet, number| all.or(CircuitSet::nth(number));
+    fn circuits(&self, list: &[String], field: &str) -> Result<CircuitSet<Z>, String> {
+        let or = |all: CircuitSet<Z>, number| all.or(CircuitSet::nth(number));
         set(&self.names.circuits, list, field, "circuit", CircuitSet::EMPTY, or)
     }
 
-    fn circuits_of(&self, set: CircuitSet) -> BTreeSet<String> {
+    fn circuits_of(&self, set: CircuitSet<Z>) -> BTreeSet<String> {
         named(&self.names.circuits, |number| set.meets(CircuitSet::nth(number)))
     }
 
-    fn points_of(&self, set: PointSet) -> BTreeSet<String> {
+    fn points_of(&self, set: PointSet<Z>) -> BTreeSet<String> {
         named(&self.names.points, |number| set.meets(PointSet::nth(number)))
     }
 
-    fn segments_of(&self, set: SegmentSet) -> BTreeSet<String> {
+    fn segments_of(&self, set: SegmentSet<Z>) -> BTreeSet<String> {
         named(&self.names.segments, |number| set.meets(SegmentSet::nth(number)))
     }
 
@@ -127,7 +135,7 @@ impl Interlocked {
     ///
     /// # Errors
     /// If it names what the layout does not have, or one thing twice, or restricts to different speeds.
-    pub fn input(&self, step: &Step) -> Result<kernel::Input, String> {
+    pub fn input(&self, step: &Step) -> Result<kernel::Input<Z>, String> {
         let mut detected = Positions::NONE;
         for (name, side) in &step.detected.0 {
             let point = PointId::new(place(&self.names.points, name, "detected", "point")?);
@@ -135,7 +143,7 @@ impl Interlocked {
                 detected = detected.or(Positions::of(point, *position));
             }
         }
-        let or = |all: SegmentSet, number| all.or(SegmentSet::nth(number));
+        let or = |all: SegmentSet<Z>, number| all.or(SegmentSet::nth(number));
         let consent = set(&self.names.segments, &step.consent, "consent", "segment", SegmentSet::EMPTY, or)?;
         Ok(kernel::Input {
             occupied: self.circuits(&step.occupied, "occupied")?,
@@ -171,7 +179,7 @@ impl Interlocked {
         })
     }
 
-    fn orders(&self, orders: &Orders) -> Result<kernel::Orders, String> {
+    fn orders(&self, orders: &Orders) -> Result<kernel::Orders<Z>, String> {
         let restricted: Vec<String> = orders.restrict.0.keys().cloned().collect();
         let mut speeds = orders.restrict.0.values();
         let first = speeds.next().copied().unwrap_or(0);
@@ -201,7 +209,7 @@ impl Interlocked {
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
-    fn output(&self, input: kernel::Input, commands: &kernel::Commands<64>, all_telegrams: bool) -> Output {
+    fn output(&self, input: kernel::Input<Z>, commands: &kernel::Commands<R, Z>, all_telegrams: bool) -> Output {
         let (output, movements) = (&commands.interlocking, &commands.telegrams);
         let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
         let silent = named(&self.names.circuits, |number| movements[number].is_none());
@@ -224,7 +232,7 @@ impl Interlocked {
     }
 }
 
-impl Machine for Interlocked {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Machine for Interlocked<R, P, N, S, Z> {
     const NAME: &'static str = "interlocking";
     const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"request":{"set":"W-1"},"orders":{"unblock":["1T"]},"consent":["West"]}"#;
     const CONFIG: &'static str = r#"a layout as layouts/*.toml have it, as an object: {"name":"…","circuit":[…],"point":[…],"segment":[…],"route":[…]}; or {"plan":{…}}, the kernel's own terms, for the traces of models: the rules of engineering are checked only if it says "rules":true"#;

@@ -4,20 +4,21 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
     self as kernel, CircuitId, CircuitSet, Input, Memory, PointSet, Position, Positions, Refusal, RouteSet, SegmentId,
+    Size,
 };
 
 use super::forms::{Accepted, Answer, Refused};
 use super::words::{Phase, Reason, Side};
 use super::{Interlocked, named, place};
 
-impl Interlocked {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Interlocked<R, P, N, S, Z> {
     /// The speeds of the codes in km/h; 0 where there is no such code.
     pub(in crate::machine) fn speeds_kmh(&self) -> [u16; kernel::MAX_CODES] {
         self.speeds_kmh
     }
 
     /// Goes on from this memory.
-    pub(in crate::machine) fn remember(&mut self, memory: &Memory<64, 8>) {
+    pub(in crate::machine) fn remember(&mut self, memory: &Memory<R, S, Z>) {
         *self.memory = *memory;
     }
 
@@ -34,12 +35,12 @@ impl Interlocked {
     }
 
     /// The circuits of those names, each once.
-    pub(in crate::machine) fn circuits_named(&self, list: &[String], field: &str) -> Result<CircuitSet, String> {
+    pub(in crate::machine) fn circuits_named(&self, list: &[String], field: &str) -> Result<CircuitSet<Z>, String> {
         self.circuits(list, field)
     }
 
     /// The names of circuits.
-    pub(in crate::machine) fn names_of_circuits(&self, set: CircuitSet) -> BTreeSet<String> {
+    pub(in crate::machine) fn names_of_circuits(&self, set: CircuitSet<Z>) -> BTreeSet<String> {
         self.circuits_of(set)
     }
 
@@ -50,12 +51,12 @@ impl Interlocked {
     }
 
     /// The names of routes.
-    pub(in crate::machine) fn names_of_routes(&self, set: RouteSet) -> BTreeSet<String> {
+    pub(in crate::machine) fn names_of_routes(&self, set: RouteSet<Z>) -> BTreeSet<String> {
         named(&self.names.routes, |number| set.meets(RouteSet::nth(number)))
     }
 
     /// The points that are driven, and whereto.
-    pub(in crate::machine) fn sides(&self, drives: Positions) -> BTreeMap<String, Side> {
+    pub(in crate::machine) fn sides(&self, drives: Positions<Z>) -> BTreeMap<String, Side> {
         let drives = self.names.points.iter().enumerate().filter_map(|(number, name)| {
             let point = PointSet::nth(number);
             let side = |position| Some((name.clone(), Side(position)));
@@ -69,17 +70,18 @@ impl Interlocked {
     }
 
     /// The circuits that count as occupied after the cycle whose state is remembered.
-    pub(in crate::machine) fn counted(&self) -> CircuitSet {
+    pub(in crate::machine) fn counted(&self) -> CircuitSet<Z> {
         let clear = self.layout.plan().clear;
-        let ages = self.state().track.clear_for().into_iter().enumerate();
-        ages.fold(CircuitSet::EMPTY, |set, (number, age)| set.or(CircuitSet::nth(number).only_if(age < clear)))
+        let ages = self.state().track.clear_for();
+        let young = ages.iter().enumerate().filter(|(_, age)| **age < clear);
+        young.fold(CircuitSet::EMPTY, |set, (number, _)| set.or(CircuitSet::nth(number)))
     }
 
     /// What became of the request, with what is in the way. `occupied` are the circuits that count as occupied.
     pub(in crate::machine) fn answer(
         &self,
-        input: Input,
-        occupied: CircuitSet,
+        input: Input<Z>,
+        occupied: CircuitSet<Z>,
         answer: Option<Result<(), Refusal>>,
     ) -> Option<Answer> {
         answer.map(|answer| match answer {

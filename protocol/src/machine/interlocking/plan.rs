@@ -2,13 +2,15 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Element, Layout, PointSet, Positions, RouteSet, Segment, SegmentSet, SpeedCode, Station,
+    self as kernel, CircuitSet, Element, Layout, PointSet, Positions, RouteSet, Segment, SegmentSet, Size, SpeedCode,
 };
 use atc_kernel::time::Ticks;
+use atc_layout::model::Extent;
 use atc_layout::{Names, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::config::Opened;
 use super::{ByName, Heading, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
@@ -159,14 +161,27 @@ pub struct RouteForm {
     pub cab_signalled: bool,
 }
 
-type Plan = kernel::Plan<64, 16, 32, 8>;
-
 impl PlanConfig {
+    /// How much there is in it.
+    pub(super) fn extent(&self) -> Extent {
+        let paths = self.routes.iter().map(|route| route.path.len());
+        let segments = self.segments.iter().map(|segment| segment.circuits.len());
+        Extent {
+            circuits: self.circuits.len(),
+            points: self.points.len(),
+            segments: self.segments.len(),
+            routes: self.routes.len(),
+            longest: paths.chain(segments).max().unwrap_or(0),
+        }
+    }
+
     /// The layout, and the names of its numbers.
     ///
     /// # Errors
     /// What there is no room for, a name that stands twice or for nothing, and the first rule that the plan breaks.
-    pub(super) fn layout(&self) -> Result<(Box<Station>, Names, [u16; kernel::MAX_CODES]), String> {
+    pub(super) fn opened<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        &self,
+    ) -> Result<Opened<R, P, N, S, Z>, String> {
         if self.cycle_ms == 0 {
             return Err("cycle_ms is 0; a cycle lasts 1 ms or more".to_owned());
         }
@@ -175,10 +190,10 @@ impl PlanConfig {
         }
         // Before names are looked up: one that is listed beyond the room there is would be unknown.
         for (field, count, most) in [
-            ("circuits", self.circuits.len(), kernel::MAX_CIRCUITS),
-            ("points", self.points.len(), 32),
-            ("segments", self.segments.len(), 8),
-            ("routes", self.routes.len(), 64),
+            ("circuits", self.circuits.len(), CircuitSet::<Z>::MOST),
+            ("points", self.points.len(), N),
+            ("segments", self.segments.len(), S),
+            ("routes", self.routes.len(), R),
         ] {
             if count > most {
                 return Err(too_many(field, most));
@@ -186,10 +201,10 @@ impl PlanConfig {
         }
         let names = self.names()?;
         let mut speeds = [0; kernel::MAX_CODES];
-        let mut plan = Box::new(Plan::EMPTY);
+        let mut plan = Box::new(kernel::Plan::<R, P, N, S, Z>::EMPTY);
         fill(&mut speeds, self.speeds_km_h.iter().copied(), "speeds_km_h")?;
         fill(&mut plan.braking, self.braking_m.iter().map(|metres| Metres(*metres)), "braking_m")?;
-        fill(&mut plan.lengths, self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
+        fill(&mut plan.lengths[..], self.circuits.iter().map(|circuit| Metres(circuit.length_m)), "circuits")?;
         for (number, circuit) in self.circuits.iter().enumerate() {
             if let Some(code) = circuit.speed_code {
                 let code = speed_code(&format!("circuit {}: speed_code", circuit.name), code)?;
@@ -216,7 +231,7 @@ impl PlanConfig {
         let checked = if self.rules { Layout::new(*plan) } else { Layout::with_what_proofs_need(*plan) };
         let layout = checked
             .map_err(|broken| format!("{} [{}]", names.broken(broken, &plan), Rule::Plan(broken.rule).name()))?;
-        Ok((Box::new(layout), names, speeds))
+        Ok(Opened { layout: Box::new(layout), names, speeds_kmh: speeds, cycle_ms: self.cycle_ms, said: None })
     }
 
     fn names(&self) -> Result<Names, String> {
@@ -256,19 +271,19 @@ fn too_many(field: &str, most: usize) -> String {
     format!("{field} has more than {most} entries; there is room for {most}")
 }
 
-fn circuits(names: &Names, list: &[String], field: &str) -> Result<CircuitSet, String> {
+fn circuits<Z: Size>(names: &Names, list: &[String], field: &str) -> Result<CircuitSet<Z>, String> {
     set(&names.circuits, list, field, "circuit", CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)))
 }
 
-fn routes(names: &Names, list: &[String], field: &str) -> Result<RouteSet, String> {
+fn routes<Z: Size>(names: &Names, list: &[String], field: &str) -> Result<RouteSet<Z>, String> {
     set(&names.routes, list, field, "route", RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number)))
 }
 
-fn segments(names: &Names, list: &[String], field: &str) -> Result<SegmentSet, String> {
+fn segments<Z: Size>(names: &Names, list: &[String], field: &str) -> Result<SegmentSet<Z>, String> {
     set(&names.segments, list, field, "segment", SegmentSet::EMPTY, |all, number| all.or(SegmentSet::nth(number)))
 }
 
-fn element(names: &Names, form: &ElementForm, field: &str) -> Result<Element, String> {
+fn element<Z: Size>(names: &Names, form: &ElementForm, field: &str) -> Result<Element<Z>, String> {
     let mut positions = Positions::NONE;
     for (name, Side(position)) in &form.points.0 {
         let point = PointSet::nth(place(&names.points, name, field, "point")?.into());
@@ -287,22 +302,22 @@ fn speed_code(field: &str, code: u8) -> Result<SpeedCode, String> {
     Ok(SpeedCode(code))
 }
 
-fn segment_of(names: &Names, form: &SegmentForm) -> Result<Segment<16>, String> {
+fn segment_of<const P: usize, Z: Size>(names: &Names, form: &SegmentForm) -> Result<Segment<P, Z>, String> {
     let throat = circuits(names, &form.throat, "throat")?;
     let mut made = Segment { throat, outward: form.outward.0, shared: form.shared, ..Segment::NONE };
     let listed = form.circuits.iter().map(|name| circuits(names, std::slice::from_ref(name), "circuits"));
     fill(&mut made.circuits, listed.collect::<Result<Vec<_>, _>>()?, "circuits")?;
-    made.length = length_of(form.circuits.len(), "circuits")?;
+    made.length = length_of::<P>(form.circuits.len(), "circuits")?;
     Ok(made)
 }
 
-fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String> {
+fn route_of<const P: usize, Z: Size>(names: &Names, form: &RouteForm) -> Result<kernel::Route<P, Z>, String> {
     let overlap_speed = form.overlap_speed_code.unwrap_or(form.speed_code);
     let mut made = kernel::Route {
         heading: form.heading.0,
         entry: circuits(names, &form.entry, "entry")?,
         approach: circuits(names, &form.approach, "approach")?,
-        length: length_of(form.path.len(), "path")?,
+        length: length_of::<P>(form.path.len(), "path")?,
         overlap: element(names, &form.overlap, "overlap")?,
         beyond: circuits(names, &form.beyond, "beyond")?,
         continuing: routes(names, &form.continuing, "continuing")?,
@@ -323,7 +338,7 @@ fn route_of(names: &Names, form: &RouteForm) -> Result<kernel::Route<16>, String
 }
 
 /// In a plan of the kernel a length of 0 means that there is no such thing; what is listed is there.
-fn length_of(circuits: usize, field: &str) -> Result<u8, String> {
+fn length_of<const P: usize>(circuits: usize, field: &str) -> Result<u8, String> {
     let length = u8::try_from(circuits).ok().filter(|length| *length > 0);
-    length.ok_or_else(|| format!("{field} has {circuits} circuits; it has 1 to 16"))
+    length.ok_or_else(|| format!("{field} has {circuits} circuits; it has 1 to {P}"))
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::block::{self as kernel, Block, LineError};
-use atc_kernel::interlocking::{CircuitId, MAX_CIRCUITS, MAX_CODES, SpeedCode};
+use atc_kernel::interlocking::{CircuitId, MAX_CODES, PerCircuit, SpeedCode};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::SectionId;
 use atc_kernel::time::{Cycle as Clock, Millis, Ticks};
@@ -345,7 +345,7 @@ impl Signals {
         let aspects = AspectTable::new(&ranks).map_err(|_| {
             "signals.speeds_km_h must have 1 to 16 speeds, each higher than the one before it".to_owned()
         })?;
-        let mut circuits = [None; MAX_CIRCUITS];
+        let mut circuits = PerCircuit::NONE;
         for (name, its) in &self.circuits {
             let field = format!("signals.circuits.{name}");
             let number = usize::from(station.circuit(name, "signals.circuits")?.number());

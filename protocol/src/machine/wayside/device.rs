@@ -2,7 +2,7 @@
 
 use atc_kernel::Machine as _;
 use atc_kernel::block::{Detection, Hold, Output as Block, SectionSet};
-use atc_kernel::interlocking::{self, CircuitSet, MAX_CIRCUITS, Memory, Orders, Positions, Refusal, Request, RouteSet};
+use atc_kernel::interlocking::{self, CircuitSet, Memory, Orders, PerCircuit, Positions, Refusal, Request, RouteSet};
 use atc_kernel::time::Ticks;
 use atc_kernel::wayside::{Equipment, Framed, Input, Message, Session, State, Transmission, Wayside, WaysideError};
 
@@ -28,7 +28,7 @@ pub(super) struct Done {
     pub(super) answer: Option<Result<(), Refusal>>,
     pub(super) messages: [Option<Message>; 8],
     pub(super) line: Option<(Vec<Block>, Hold)>,
-    pub(super) transmissions: Box<[Option<Transmission>; MAX_CIRCUITS]>,
+    pub(super) transmissions: Box<PerCircuit<Option<Transmission>>>,
     /// What the interlocking was told.
     pub(super) told: interlocking::Input,
     pub(super) memory: Memory<64, 8>,

@@ -1,0 +1,238 @@
+//! How large a station is: what a set of its circuits, points, routes and segments is made of.
+//!
+//! There are two sizes. Everything else of the kernel is written once for both, in terms of sets, and knows of no bits. A set of
+//! a [`Small`] station is one word, which a processor and a prover take whole; one of a [`Large`] station is four.
+
+use core::fmt::Debug;
+use core::hash::Hash;
+
+use crate::distance::Metres;
+
+/// The words of a set of a large station.
+const WORDS: usize = 4;
+
+/// Plain data: it can be copied, compared, hashed, shown and sent.
+pub trait Plain: Copy + Debug + Eq + Hash + Send + Sync + 'static {}
+
+impl<T: Copy + Debug + Eq + Hash + Send + Sync + 'static> Plain for T {}
+
+/// The bits of a set.
+pub trait Bits: Plain {
+    /// No bit.
+    const NONE: Self;
+    /// All bits.
+    const ALL: Self;
+    /// How many bits there are.
+    const WIDTH: usize;
+
+    /// The bit of this number alone; none if there is none of that number.
+    fn nth(number: usize) -> Self;
+    /// The bits of either.
+    #[must_use]
+    fn or(self, other: Self) -> Self;
+    /// The bits of both.
+    #[must_use]
+    fn and(self, other: Self) -> Self;
+    /// The bits that `other` has not.
+    #[must_use]
+    fn without(self, other: Self) -> Self;
+    /// Whether exactly one bit is set.
+    fn is_one(self) -> bool;
+    /// The lowest number of a bit that is set.
+    fn first(self) -> Option<usize>;
+    /// A check word with these bits in it: each changes exactly one bit of it.
+    fn fold(self, check: u64) -> u64;
+}
+
+macro_rules! word {
+    ($word:ident) => {
+        impl Bits for $word {
+            const NONE: Self = 0;
+            const ALL: Self = $word::MAX;
+            const WIDTH: usize = $word::BITS as usize;
+
+            #[inline]
+            fn nth(number: usize) -> Self {
+                if number < Self::WIDTH { 1 << number } else { 0 }
+            }
+
+            #[inline]
+            fn or(self, other: Self) -> Self {
+                self | other
+            }
+
+            #[inline]
+            fn and(self, other: Self) -> Self {
+                self & other
+            }
+
+            #[inline]
+            fn without(self, other: Self) -> Self {
+                self & !other
+            }
+
+            #[inline]
+            fn is_one(self) -> bool {
+                self != 0 && self & (self - 1) == 0
+            }
+
+            #[inline]
+            fn first(self) -> Option<usize> {
+                if self == 0 { None } else { Some(self.trailing_zeros() as usize) }
+            }
+
+            #[inline]
+            fn fold(self, check: u64) -> u64 {
+                check.rotate_left(5) ^ u64::from(self)
+            }
+        }
+    };
+}
+
+word!(u64);
+word!(u32);
+word!(u8);
+
+/// The lowest numbers are in the first word.
+//= spec/interlocking.md#lay-3-two-sizes
+//# A set MUST have a number in it exactly if what it was made from has it, for every number that a station of its size has room for, and no other number.
+impl<B: Bits> Bits for [B; WORDS] {
+    const NONE: Self = [B::NONE; WORDS];
+    const ALL: Self = [B::ALL; WORDS];
+    const WIDTH: usize = WORDS * B::WIDTH;
+
+    #[inline]
+    fn nth(number: usize) -> Self {
+        let mut words = Self::NONE;
+        if let Some(word) = words.get_mut(number / B::WIDTH) {
+            *word = B::nth(number % B::WIDTH);
+        }
+        words
+    }
+
+    #[inline]
+    fn or(mut self, other: Self) -> Self {
+        for (word, other) in self.iter_mut().zip(other) {
+            *word = word.or(other);
+        }
+        self
+    }
+
+    #[inline]
+    fn and(mut self, other: Self) -> Self {
+        for (word, other) in self.iter_mut().zip(other) {
+            *word = word.and(other);
+        }
+        self
+    }
+
+    #[inline]
+    fn without(mut self, other: Self) -> Self {
+        for (word, other) in self.iter_mut().zip(other) {
+            *word = word.without(other);
+        }
+        self
+    }
+
+    #[inline]
+    fn is_one(self) -> bool {
+        let (mut some, mut more) = (false, false);
+        for word in self {
+            let any = word != B::NONE;
+            more |= any && (some || !word.is_one());
+            some |= any;
+        }
+        some && !more
+    }
+
+    #[inline]
+    fn first(self) -> Option<usize> {
+        let mut first = None;
+        for (place, word) in self.iter().enumerate() {
+            first = first.or(word.first().map(|number| place * B::WIDTH + number));
+        }
+        first
+    }
+
+    #[inline]
+    fn fold(self, mut check: u64) -> u64 {
+        for word in self {
+            check = word.fold(check);
+        }
+        check
+    }
+}
+
+/// What there can be a value of for each circuit or point.
+pub trait Value: Plain {
+    /// The value before there is one: nothing.
+    const NONE: Self;
+}
+
+impl Value for u8 {
+    const NONE: Self = 0;
+}
+
+impl Value for Metres {
+    const NONE: Self = Self(0);
+}
+
+impl<T: Plain> Value for Option<T> {
+    const NONE: Self = None;
+}
+
+/// A fixed number of values.
+pub trait Values<T: Value>: AsRef<[T]> + AsMut<[T]> + IntoIterator<Item = T> + Plain {
+    /// No value.
+    const NONE: Self;
+
+    /// A value for each number.
+    fn from_fn(value: impl FnMut(usize) -> T) -> Self;
+}
+
+impl<T: Value, const COUNT: usize> Values<T> for [T; COUNT] {
+    const NONE: Self = [T::NONE; COUNT];
+
+    #[inline]
+    fn from_fn(value: impl FnMut(usize) -> T) -> Self {
+        core::array::from_fn(value)
+    }
+}
+
+/// The size of a station. There are two, [`Small`] and [`Large`].
+pub trait Size: Default + Plain {
+    /// A set of circuits, or of routes.
+    type Wide: Bits;
+    /// A set of points.
+    type Middle: Bits;
+    /// A set of segments.
+    type Narrow: Bits;
+    /// A value for each circuit.
+    type PerCircuit<T: Value>: Values<T>;
+    /// A value for each point.
+    type PerPoint<T: Value>: Values<T>;
+}
+
+/// A station of up to 64 circuits, 64 routes, 32 points and 8 segments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Small;
+
+impl Size for Small {
+    type Wide = u64;
+    type Middle = u32;
+    type Narrow = u8;
+    type PerCircuit<T: Value> = [T; 64];
+    type PerPoint<T: Value> = [T; 32];
+}
+
+/// A station of up to 256 circuits, 256 routes, 128 points and 32 segments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Large;
+
+impl Size for Large {
+    type Wide = [u64; WORDS];
+    type Middle = [u32; WORDS];
+    type Narrow = [u8; WORDS];
+    type PerCircuit<T: Value> = [T; 256];
+    type PerPoint<T: Value> = [T; 128];
+}
