@@ -8,6 +8,7 @@ use atc_kernel::interlocking::{
 };
 
 use crate::check;
+use crate::extent::Extent;
 use crate::form::{self, Position};
 use crate::model::{self, Model, Note};
 use crate::problem::{Errors, Problem, Source};
@@ -116,7 +117,7 @@ pub struct Sound {
 /// # Errors
 /// As [`compile`].
 pub fn sound(source: &Source, station: &form::Station, model: Model) -> Result<Sound, Errors> {
-    if model.extent().is_large() {
+    if Extent::of(station).is_large() {
         let Compiled { names, model, .. } = compile::<256, 32, 128, 32, Large>(source, station, model)?;
         return Ok(Sound { names, model });
     }

@@ -38,42 +38,7 @@ pub struct Model {
     pub notes: Vec<Note>,
 }
 
-/// How much there is of what a station must have room for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Extent {
-    /// The track circuits.
-    pub circuits: usize,
-    /// The points.
-    pub points: usize,
-    /// The segments of plain line.
-    pub segments: usize,
-    /// The routes.
-    pub routes: usize,
-    /// The circuits of the longest path or segment.
-    pub longest: usize,
-}
-
-impl Extent {
-    /// Whether a small station has no room for it ([`atc_kernel::interlocking::Station`]).
-    pub const fn is_large(self) -> bool {
-        self.circuits > 64 || self.points > 32 || self.segments > 8 || self.routes > 64 || self.longest > 16
-    }
-}
-
 impl Model {
-    /// How much there is in it.
-    pub fn extent(&self) -> Extent {
-        let paths = self.routes.iter().map(|route| route.path.len());
-        let segments = self.segments.iter().map(|segment| segment.circuits.len());
-        Extent {
-            circuits: self.circuits.len(),
-            points: self.points.len(),
-            segments: self.segments.len(),
-            routes: self.routes.len(),
-            longest: paths.chain(segments).max().unwrap_or(0),
-        }
-    }
-
     /// For how long at most a train may count on what was before: the longest release time, or the turn time.
     pub fn longest_authority(&self) -> Ticks {
         self.routes.iter().map(|route| route.release).max().unwrap_or_default().max(self.values.turn)

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::num::NonZero;
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -137,7 +138,15 @@ pub fn setting<'a>(line: &Line, campaign: &'a Campaign, run: u64) -> (&'a Cause,
     (cause, Setting { trains, seed, faults, signal, drivers, defects, ..Setting::default() })
 }
 
-/// Runs a campaign, on both cores; `watch` hears of each run that is over.
+/// What is kept of a run.
+struct Run {
+    cause: Cause,
+    seed: u64,
+    arrivals: u64,
+    harm: Option<Event>,
+}
+
+/// Runs a campaign, on all cores; `watch` hears of each run that is over.
 ///
 /// # Errors
 /// What is wrong with the campaign: no causes, or more trains than there is room for.
@@ -145,35 +154,36 @@ pub fn run(line: &Line, campaign: &Campaign, watch: &(dyn Fn(u64) + Sync)) -> Re
     if campaign.causes.is_empty() || campaign.seconds <= 60 {
         return Err("a campaign needs something that is wrong, and more than 60 s".to_owned());
     }
-    let one = |run: u64| -> Result<(Cause, u64, Vec<Event>), String> {
+    let one = |run: u64| -> Result<Run, String> {
         let (cause, setting) = setting(line, campaign, run);
         let seed = setting.seed;
         let mut world = World::new(line, setting)?;
         world.run(u64::from(campaign.seconds) * 1000);
         watch(run);
-        Ok((cause.clone(), seed, world.events))
+        let arrived = |event: &&Event| matches!(event.what, crate::event::What::Arrived { .. });
+        let arrivals = world.events.iter().filter(arrived).count() as u64;
+        let harm = world.events.into_iter().find(|event| event.what.is_unsafe());
+        Ok(Run { cause: cause.clone(), seed, arrivals, harm })
     };
-    let workers = 2;
-    let halves: Vec<Result<Vec<_>, String>> = std::thread::scope(|scope| {
-        let started: Vec<_> = (0..workers)
-            .map(|worker| scope.spawn(move || (worker..campaign.runs).step_by(2).map(one).collect()))
-            .collect();
-        started.into_iter().map(|half| half.join().unwrap_or_else(|_| Err("a run broke off".to_owned()))).collect()
+    let workers = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let parts: Vec<Result<Vec<_>, String>> = std::thread::scope(|scope| {
+        let runs = |first: usize| (0..campaign.runs).skip(first).step_by(workers);
+        let started: Vec<_> = (0..workers).map(|worker| scope.spawn(move || runs(worker).map(one).collect())).collect();
+        started.into_iter().map(|part| part.join().unwrap_or_else(|_| Err("a run broke off".to_owned()))).collect()
     });
     let mut ended = Vec::new();
-    for half in halves {
-        ended.extend(half?);
+    for part in parts {
+        ended.extend(part?);
     }
-    ended.sort_by_key(|(_, seed, _)| *seed);
+    ended.sort_by_key(|run| run.seed);
     let mut outcomes = Outcomes::new();
-    for (cause, seed, events) in ended {
+    for Run { cause, seed, arrivals, harm } in ended {
         let outcome = outcomes.entry(cause).or_default();
         outcome.runs += 1;
-        let arrived = |event: &&Event| matches!(event.what, crate::event::What::Arrived { .. });
-        outcome.arrivals += events.iter().filter(arrived).count() as u64;
-        if let Some(event) = events.iter().find(|event| event.what.is_unsafe()) {
+        outcome.arrivals += arrivals;
+        if let Some(event) = harm {
             outcome.unsafe_runs += 1;
-            outcome.first = outcome.first.take().or_else(|| Some((seed, event.clone())));
+            outcome.first = outcome.first.take().or(Some((seed, event)));
         }
     }
     Ok(outcomes)

@@ -53,6 +53,15 @@ fn the_station_with_30_routes_keeps_every_rule_and_says_against_what() {
 }
 
 #[test]
+fn a_large_station_is_held_against_every_rule() {
+    let station = read(&layouts("station-100.toml")).expect("readable").case(&[], &[]);
+    assert!(station.is_sound() && station.checks.len() == 64, "{:?}", station.checks);
+    let rule = |name: &str| station.checks.iter().find(|one| one.rule == name).expect("a rule");
+    assert_eq!(rule("plan-conflict-one-way").scope, "4950 pairs");
+    assert_eq!((station.table.len(), station.drawing.contains("<svg")), (100, true));
+}
+
+#[test]
 fn a_broken_rule_is_named_with_its_place_and_what_follows_it_is_not_called_kept() {
     let broken = changed("[[segment]]", "[times]\nturn_ms = 1000\n\n[[segment]]");
     let found = &broken.broken().next().expect("broken").findings()[0];

@@ -182,17 +182,15 @@ impl<const P: usize, Z: Size> Segment<P, Z> {
         let mut joined = train;
         let mut before = self.throat;
         for (place, circuit) in (0_u8..).zip(&self.circuits) {
-            if place < self.length {
-                joined = joined.or(circuit.and(occupied).only_if(before.meets(joined)));
-                before = *circuit;
-            }
+            let follows = place < self.length && before.meets(joined);
+            joined = joined.or(circuit.and(occupied).only_if(follows));
+            before = *circuit;
         }
         for back in 1..=P {
             let place = P - back;
-            if place < usize::from(self.length) {
-                let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
-                joined = joined.or(inner.and(occupied).only_if(self.circuits[place].meets(joined)));
-            }
+            let outer = self.circuits[place].only_if(place < usize::from(self.length));
+            let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
+            joined = joined.or(inner.and(occupied).only_if(outer.meets(joined)));
         }
         joined
     }
@@ -251,6 +249,14 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
 
 /// A layout that has been checked. The only way to one is [`Layout::new`], or, for proofs and for the models of bad layouts,
 /// [`Layout::with_what_proofs_need`].
+///
+/// What a station of its size has no room for does not compile:
+///
+/// ```compile_fail,E0080
+/// use atc_kernel::interlocking::{Layout, Plan};
+///
+/// let too_many = Layout::<65, 1, 1, 1>::new(Plan::EMPTY); // 65 routes in a small station
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size = Small> {
     plan: Plan<R, P, N, S, Z>,
@@ -284,7 +290,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
     pub fn with_what_proofs_need(plan: Plan<R, P, N, S, Z>) -> Result<Self, super::Broken> {
         const {
             let room = R <= RouteSet::<Z>::MOST && N <= PointSet::<Z>::MOST && S <= SegmentSet::<Z>::MOST;
-            assert!(room && P < 256, "a station of this size has no room for so much");
+            assert!(room && P < 255, "a station of this size has no room for so much");
         }
         let mut first = None;
         plan.check_needed(&mut |broken| first = first.or(Some(broken)));

@@ -70,20 +70,17 @@ impl<const R: usize, Z: Size> Standing<R, Z> {
     ) -> CircuitSet<Z> {
         //= spec/interlocking.md#atc-8-train
         //# A train MUST be taken to stand on its front's circuit and, from there on, on every occupied circuit that is of the same held route, its entry included while no place is released and its held overlap while its last circuit is occupied, or follows on plain line; and on every occupied circuit where one of these is neither of a held route nor of plain line.
-        let (mut train, mut longer, mut grows) = (front, front, true);
+        let (mut train, mut longer) = (front, front);
         for _ in 0..=MAX_JOINTS {
-            if grows {
-                train = longer;
-                for body in &self.bodies {
-                    longer = longer.or(body.only_if(body.meets(longer)));
-                }
-                for segment in &layout.plan().segments {
-                    longer = longer.or(segment.joined_to(longer, occupied));
-                }
-                grows = longer != train;
+            train = longer;
+            for body in &self.bodies {
+                longer = longer.or(body.only_if(body.meets(longer)));
+            }
+            for segment in &layout.plan().segments {
+                longer = longer.or(segment.joined_to(longer, occupied));
             }
         }
-        if grows || train.meets(self.loose) { occupied.or(train) } else { train }
+        if longer != train || train.meets(self.loose) { occupied.or(train) } else { train }
     }
 }
 

@@ -5,7 +5,7 @@ use atc_kernel::interlocking::{
     RouteId, RouteSet, SegmentId, SegmentSet, Size, Small, SpeedCode, State, Travel, begins, silent, telegram,
 };
 pub use atc_kernel::interlocking::{Phase, Refusal};
-use atc_layout::{Description, Errors};
+use atc_layout::{Description, Errors, Extent};
 
 use super::ground::{Ground, Mask, bit, members};
 
@@ -263,7 +263,7 @@ pub fn kernel(description: &Description) -> Result<(Box<dyn Device>, Ground), Er
         let ground = Ground::of_compiled(description, &compiled);
         return Ok((started(compiled.layout()), ground));
     }
-    if description.model()?.extent().is_large() {
+    if Extent::of(&description.station).is_large() {
         let compiled = description.compile_to::<128, 32, 64, 8, Large>()?;
         let ground = Ground::of_compiled(description, &compiled);
         return Ok((started(compiled.layout()), ground));

@@ -5,7 +5,7 @@ use std::fmt;
 
 use atc_kernel::interlocking::{Heading, Layout, MAX_CODES, Size};
 use atc_layout::model::Model;
-use atc_layout::{Description, Errors, Names, form};
+use atc_layout::{Description, Errors, Extent, Names, form};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -73,10 +73,10 @@ impl Said {
 }
 
 impl Config {
-    /// Whether a small station has no room for it. A layout that breaks a rule is not said to be large.
+    /// Whether a small station has no room for it.
     pub(super) fn is_large(&self) -> bool {
         match self {
-            Self::Layout(description) => description.model().is_ok_and(|model| model.extent().is_large()),
+            Self::Layout(description) => Extent::of(&description.station).is_large(),
             Self::Plan(plan) => plan.extent().is_large(),
         }
     }

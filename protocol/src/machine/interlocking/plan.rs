@@ -5,8 +5,7 @@ use atc_kernel::interlocking::{
     self as kernel, CircuitSet, Element, Layout, PointSet, Positions, RouteSet, Segment, SegmentSet, Size, SpeedCode,
 };
 use atc_kernel::time::Ticks;
-use atc_layout::model::Extent;
-use atc_layout::{Names, Rule};
+use atc_layout::{Extent, Names, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
