@@ -199,8 +199,32 @@ impl<T: Value, const COUNT: usize> Values<T> for [T; COUNT] {
     }
 }
 
-/// The size of a station. There are two, [`Small`] and [`Large`].
-pub trait Size: Default + Plain {
+/// What makes a size one of the two.
+mod sealed {
+    /// Nobody else can name it.
+    pub trait Sealed {}
+
+    impl Sealed for super::Small {}
+    impl Sealed for super::Large {}
+}
+
+/// The size of a station. There are two, [`Small`] and [`Large`], whose sets are proved; nobody else can make one:
+///
+/// ```compile_fail,E0277
+/// use atc_kernel::interlocking::Size;
+///
+/// #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// struct Mine;
+///
+/// impl Size for Mine {
+///     type Wide = u8; // a set of 64 circuits in eight bits
+///     type Middle = u8;
+///     type Narrow = u8;
+///     type PerCircuit<T: atc_kernel::interlocking::Value> = [T; 64];
+///     type PerPoint<T: atc_kernel::interlocking::Value> = [T; 32];
+/// }
+/// ```
+pub trait Size: Default + Plain + sealed::Sealed {
     /// A set of circuits, or of routes.
     type Wide: Bits;
     /// A set of points.

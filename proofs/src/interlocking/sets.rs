@@ -83,7 +83,7 @@ harness! {
     assumptions [];
     bound "";
     cases 3;
-    unwind 33 = 1 + 32;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Parts: "a number is in both, in either, or in the one and not the other, exactly if it is",
         Alone: "the set of one number has that number and no other; of a number that there is no room for, none",
@@ -115,7 +115,7 @@ harness! {
     assumptions [];
     bound "1 route, one wrong bit, contents in the first and the last word";
     cases 3;
-    unwind 33 = 1 + 32;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Unreadable: "a table with one wrong bit in a set is not read",
         Read: "the right one is, in its own cycle alone",
