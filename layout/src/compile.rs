@@ -166,9 +166,9 @@ fn room<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>
     }
     let counts = [
         ("track circuits", model.circuits.len(), CircuitSet::<Z>::MOST),
-        ("points", model.points.len(), N),
-        ("routes", model.routes.len(), R),
-        ("segments", model.segments.len(), S),
+        ("points", model.points.len(), N.min(PointSet::<Z>::MOST)),
+        ("routes", model.routes.len(), R.min(RouteSet::<Z>::MOST)),
+        ("segments", model.segments.len(), S.min(SegmentSet::<Z>::MOST)),
     ];
     for (kind, count, room) in counts {
         if count > room {

@@ -18,17 +18,22 @@ pub struct Extent {
 }
 
 impl Extent {
+    /// So many circuits and points, and these paths and segments of so many circuits each.
+    pub fn new(
+        circuits: usize,
+        points: usize,
+        paths: impl ExactSizeIterator<Item = usize>,
+        segments: impl ExactSizeIterator<Item = usize>,
+    ) -> Self {
+        let (routes, lines) = (paths.len(), segments.len());
+        Self { circuits, points, segments: lines, routes, longest: paths.chain(segments).max().unwrap_or(0) }
+    }
+
     /// What a file describes.
     pub fn of(station: &Station) -> Self {
         let paths = station.routes.iter().map(|route| route.path.len());
         let segments = station.segments.iter().map(|segment| segment.circuits.len());
-        Self {
-            circuits: station.circuits.len(),
-            points: station.points.len(),
-            segments: station.segments.len(),
-            routes: station.routes.len(),
-            longest: paths.chain(segments).max().unwrap_or(0),
-        }
+        Self::new(station.circuits.len(), station.points.len(), paths, segments)
     }
 
     /// Whether a small station has no room for it ([`atc_kernel::interlocking::Station`]).

@@ -111,27 +111,18 @@ impl<B: Bits> Bits for [B; WORDS] {
     }
 
     #[inline]
-    fn or(mut self, other: Self) -> Self {
-        for (word, other) in self.iter_mut().zip(other) {
-            *word = word.or(other);
-        }
-        self
+    fn or(self, other: Self) -> Self {
+        core::array::from_fn(|word| self[word].or(other[word]))
     }
 
     #[inline]
-    fn and(mut self, other: Self) -> Self {
-        for (word, other) in self.iter_mut().zip(other) {
-            *word = word.and(other);
-        }
-        self
+    fn and(self, other: Self) -> Self {
+        core::array::from_fn(|word| self[word].and(other[word]))
     }
 
     #[inline]
-    fn without(mut self, other: Self) -> Self {
-        for (word, other) in self.iter_mut().zip(other) {
-            *word = word.without(other);
-        }
-        self
+    fn without(self, other: Self) -> Self {
+        core::array::from_fn(|word| self[word].without(other[word]))
     }
 
     #[inline]

@@ -165,13 +165,7 @@ impl PlanConfig {
     pub(super) fn extent(&self) -> Extent {
         let paths = self.routes.iter().map(|route| route.path.len());
         let segments = self.segments.iter().map(|segment| segment.circuits.len());
-        Extent {
-            circuits: self.circuits.len(),
-            points: self.points.len(),
-            segments: self.segments.len(),
-            routes: self.routes.len(),
-            longest: paths.chain(segments).max().unwrap_or(0),
-        }
+        Extent::new(self.circuits.len(), self.points.len(), paths, segments)
     }
 
     /// The layout, and the names of its numbers.
