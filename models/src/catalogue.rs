@@ -12,6 +12,7 @@ mod block;
 mod interlocking;
 mod permitted;
 mod reception;
+mod whole;
 
 /// Every model over the kernel's machine.
 pub fn catalogue() -> Vec<Entry> {
@@ -22,6 +23,7 @@ pub fn catalogue() -> Vec<Entry> {
     entries.extend(block::entries());
     entries.extend(permitted::entries());
     entries.extend(interlocking::entries());
+    entries.extend(whole::entries());
     entries
 }
 

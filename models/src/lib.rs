@@ -13,6 +13,7 @@
 //! | [`block`] | trains, tails, borders and faults of block counting |
 //! | [`permitted`] | the permitted speed: two kinds of line, lost and old telegrams, distances |
 //! | [`interlocking`] | stations with trains, points, dispatchers and staff; two stations and the line between them |
+//! | [`whole`] | the whole line: both stations' and both trains' whole devices, on metres |
 //! | [`spin`] | the second opinion: models in Promela, searched by SPIN |
 //! | [`replay`] | what the models of aspect acceptance have in common, and their traces |
 //! | [`claimed`] | the machine as claimed by the patent, to compare with |
@@ -42,6 +43,7 @@ pub mod spin;
 mod subject;
 pub mod train;
 mod twin;
+pub mod whole;
 
 /// What the tests look at. A test of the library itself would compile all models once more.
 #[doc(hidden)]

@@ -1,6 +1,7 @@
 //! The counted line between two stations: wrong devices and wrong grounds turn it red, and drawn runs on a longer line find nothing.
 
 mod common;
+mod drawn;
 
 use atc_models::block::fault::Kind;
 use atc_models::interlocking::between::Lives;
@@ -9,6 +10,7 @@ use atc_models::interlocking::counted_between::{
 };
 use atc_models::{Subject, Verdict};
 use common::outcome;
+use drawn::Drawn;
 use std::collections::HashSet;
 
 const LIVES: Lives = Lives { permission: 1, residual: 1 };
@@ -119,17 +121,6 @@ fn a_receiver_that_starts_again_lets_in_a_train_that_is_on_the_line() {
     let after = reachable(&model, struck);
     assert!(after.iter().any(|state| state.trains.iter().any(|train| train.front == throat)));
     assert!(after.iter().all(|state| state.wrong == 0));
-}
-
-/// Numbers that look drawn: the same on every machine.
-struct Drawn(u64);
-
-impl Drawn {
-    /// One of so many.
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).expect("31 bits") % count
-    }
 }
 
 /// Runs of `depth` cycles, each from a drawn one of the initial states. The first state in which something is wrong; and how often a train was wholly

@@ -88,7 +88,7 @@ fn three_stations() -> Result<Line, String> {
 }
 
 /// The cut sets that are known.
-pub fn all() -> [CutSet; 6] {
+pub fn all() -> [CutSet; 8] {
     let run = |signal, faults, seed| Campaign {
         runs: 1,
         causes: Vec::new(),
@@ -148,6 +148,22 @@ pub fn all() -> [CutSet; 6] {
             both: [Cause::from(Kind::MissedHead), Cause::from(Kind::CheckInLost)],
             line: Line::double_track,
             campaign: Campaign { trains: 8, ..run(Signal::Telegrams, 20, 49) },
+        },
+        CutSet {
+            name: "not-heard-and-reset",
+            happens: "The detectors of a counted line do not hear a train; staff reset its block, which disagrees, to a number without it: its section \
+                      counts as free, and the next train is sent there.",
+            both: [Cause::from(Kind::MissedHead), Cause::from(Kind::WrongReset)],
+            line: Line::double_track,
+            campaign: Campaign { trains: 8, extent: Extent::Beyond, ..run(Signal::Telegrams, 20, 12) },
+        },
+        CutSet {
+            name: "not-heard-and-a-phantom",
+            happens: "The detectors of a counted line do not hear a train, and hear one farther on that is not there: the count agrees, the train's section \
+                      counts as free, and the next train is sent there.",
+            both: [Cause::from(Kind::MissedHead), Cause::from(Kind::PhantomHead)],
+            line: Line::long_block,
+            campaign: Campaign { trains: 8, extent: Extent::Beyond, ..run(Signal::Telegrams, 4, 19) },
         },
     ]
 }

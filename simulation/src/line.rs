@@ -193,8 +193,20 @@ impl Line {
     /// # Errors
     /// None; a test makes it.
     pub fn double_track() -> Result<Self, String> {
-        let blocks = [["L1E-2", "L1E-3"], ["L1E-4", "L1E-5"]].map(|block| block.map(str::to_owned).to_vec());
-        let counted = vec![CountedFile { line: "Line 1 E".to_owned(), blocks: blocks.to_vec() }];
+        Self::counted_double(&[&["L1E-2", "L1E-3"], &["L1E-4", "L1E-5"]])
+    }
+
+    /// The same with one counted block of four sections in place of two blocks of two.
+    ///
+    /// # Errors
+    /// None; it is tested.
+    pub fn long_block() -> Result<Self, String> {
+        Self::counted_double(&[&["L1E-2", "L1E-3", "L1E-4", "L1E-5"]])
+    }
+
+    fn counted_double(blocks: &[&[&str]]) -> Result<Self, String> {
+        let blocks = blocks.iter().map(|block| block.iter().map(ToString::to_string).collect()).collect();
+        let counted = vec![CountedFile { line: "Line 1 E".to_owned(), blocks }];
         Self::generate_counted("Double track", &Shape::double(vec![4; 3], vec![7, 4]), counted)
     }
 

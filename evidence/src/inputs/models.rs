@@ -278,6 +278,7 @@ mod tests {
             "interlocking-undeclared",
             "interlocking-line-other-protocol",
             "interlocking-counted-between-not-asked",
+            "whole-line-no-filter",
         ];
         let catalogue = atc_models::catalogue();
         let entries = catalogue.iter().filter(|entry| named.contains(&entry.name));

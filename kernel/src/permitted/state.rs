@@ -7,7 +7,7 @@ use crate::telegram::{Gradient, SectionId, Stream};
 use crate::time::Ticks;
 
 /// The state, all of it. Proofs and replays may write any; [`State::is_valid`] says which ones occur.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct State {
     /// The kind of line that the train is on.
     pub line: LineKind,
@@ -26,7 +26,7 @@ pub struct State {
 }
 
 /// What a main telegram asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Target {
     /// The section that the telegram is for.
     pub section: SectionId,
@@ -41,7 +41,7 @@ pub struct Target {
 }
 
 /// What a sub telegram says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Fixed {
     /// The section that the telegram is for.
     pub section: SectionId,

@@ -30,7 +30,7 @@ pub enum SequenceError {
 }
 
 /// What a telegram says of its place in its stream.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {
     /// The section that the telegram is for.
     pub section: SectionId,
@@ -64,7 +64,7 @@ pub enum Judgement {
 }
 
 /// What is remembered of a stream.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Stream {
     /// The last telegram heard, used or not; `None` if there is none, or it is forgotten.
     pub last: Option<Header>,

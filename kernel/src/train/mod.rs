@@ -89,7 +89,7 @@ impl Cab {
 }
 
 /// What the device remembers: the states of its parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct State<const N: usize> {
     /// Of aspect acceptance.
     pub acceptance: aspect::State<N>,

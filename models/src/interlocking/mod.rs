@@ -33,7 +33,7 @@ mod purpose;
 mod sizes;
 mod state;
 pub mod stations;
-mod trace;
+pub(crate) mod trace;
 pub mod train;
 pub mod yard;
 

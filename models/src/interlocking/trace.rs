@@ -55,7 +55,7 @@ impl<D: Device> Yard<D> {
 }
 
 /// A run of the kernel on a layout, in the words of the oracle's protocol.
-pub(super) struct Run<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
+pub(crate) struct Run<'a, const R: usize, const P: usize, const N: usize, const S: usize> {
     station: &'a str,
     circuits: &'a [&'a str],
     layout: &'a Layout<R, P, N, S>,
@@ -65,19 +65,19 @@ pub(super) struct Run<'a, const R: usize, const P: usize, const N: usize, const 
 
 impl<'a, const R: usize, const P: usize, const N: usize, const S: usize> Run<'a, R, P, N, S> {
     /// From the initial state.
-    pub(super) fn begin(station: &'a str, circuits: &'a [&'a str], layout: &'a Layout<R, P, N, S>) -> Self {
+    pub(crate) fn begin(station: &'a str, circuits: &'a [&'a str], layout: &'a Layout<R, P, N, S>) -> Self {
         Self { station, circuits, layout, state: layout.initial(), steps: Vec::new() }
     }
 
     /// One more cycle.
-    pub(super) fn step(&mut self, input: &Input, words: BTreeMap<String, Value>) {
+    pub(crate) fn step(&mut self, input: &Input, words: BTreeMap<String, Value>) {
         let (next, output) = self.layout.cycle(self.state, *input);
         self.state = next;
         self.steps.push(Step { input: self.input(input), output: self.output(&output), words });
     }
 
     /// The whole run.
-    pub(super) fn trace(self) -> Trace {
+    pub(crate) fn trace(self) -> Trace {
         Trace { machine: "interlocking".to_owned(), config: self.config(), steps: self.steps, loop_start: None }
     }
 
@@ -242,7 +242,7 @@ fn route_name(number: u8) -> String {
     format!("R{number}")
 }
 
-fn names(set: RouteSet) -> Vec<String> {
+pub(crate) fn names(set: RouteSet) -> Vec<String> {
     (0..8).filter(|number| set.meets(RouteSet::nth(usize::from(*number)))).map(route_name).collect()
 }
 

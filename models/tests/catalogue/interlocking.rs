@@ -95,7 +95,7 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
     ]
     .into();
     let mut excluding = BTreeSet::new();
-    for outcome in outcomes(&["interlocking"]) {
+    for outcome in outcomes(&["interlocking", "whole-line"]) {
         for property in outcome.properties.iter().filter(|p| p.expectation == Expectation::HazardFound) {
             let last = property.trace.as_ref().and_then(|trace| trace.steps.last()).expect("a trace");
             assert_eq!(last.words["hazard"], true, "{}", outcome.model);
@@ -129,7 +129,7 @@ fn the_pairs_of_faults_on_a_counted_line_between_two_stations() {
 #[test]
 fn a_trace_is_what_the_model_saw() {
     let mut steps = 0;
-    for outcome in outcomes(&["interlocking"]) {
+    for outcome in outcomes(&["interlocking", "whole-line"]) {
         for trace in outcome.properties.iter().filter_map(|property| property.trace.as_ref()) {
             for step in trace.steps.iter().filter(|step| step.words.contains_key("proceed_by_the_model")) {
                 assert_eq!(step.output["proceed"], step.words["proceed_by_the_model"], "{}", outcome.model);

@@ -159,4 +159,12 @@ pub const UNIQUE_STATES: &[(&str, usize)] = &[
     ("interlocking-false-detection", 79_320),
     ("interlocking-late-drive", 28_550),
     ("interlocking-signals-ignored", 4_632),
+    ("whole-line", 364_840),
+    ("whole-line-three", 813_096),
+    ("whole-line-staff", 885_652),
+    ("whole-line-lost", 238_642),
+    ("whole-line-start", 714_039),
+    ("whole-line-no-filter", 124_565),
+    ("whole-line-short-release", 141_853),
+    ("whole-line-short-start", 391_931),
 ];

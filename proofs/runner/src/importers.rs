@@ -1,6 +1,7 @@
 //! Wrong importers: each must be found out, or leave out what it would have wrong.
 
 use crate::old_rules::{Program, Programs};
+use crate::pool::in_parallel;
 use std::collections::BTreeSet;
 
 pub use crate::importer::{Importer, list};
@@ -28,11 +29,20 @@ pub fn routes(programs: &Programs, mutants: &[&str]) -> Result<BTreeSet<String>,
     Ok(String::from_utf8_lossy(&output.stdout).lines().map(ToOwned::to_owned).collect())
 }
 
+/// Holds each wrong importer against the right one, on all cores. In the order of `all`.
+///
+/// # Errors
+/// The program fails.
+pub fn all_tried(programs: &Programs, all: &[Importer], right: &BTreeSet<String>) -> Result<Vec<Tried>, String> {
+    let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    in_parallel(jobs, all.len(), |number| tried(programs, &all[number].name, right)).into_iter().collect()
+}
+
 /// Holds a wrong importer against the right one.
 ///
 /// # Errors
 /// The program fails.
-pub fn tried(programs: &Programs, mutant: &str, right: &BTreeSet<String>) -> Result<Tried, String> {
+fn tried(programs: &Programs, mutant: &str, right: &BTreeSet<String>) -> Result<Tried, String> {
     let found = routes(programs, &[mutant])?;
     let is_route = |line: &&String| line.starts_with("route\t");
     // A station and a route of it.
