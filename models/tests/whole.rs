@@ -2,17 +2,19 @@
 
 mod drawn;
 
+use atc_kernel::heading::Heading;
 use atc_kernel::interlocking::CircuitSet;
 use atc_kernel::supervision::Brake;
 use atc_kernel::wayside::Counters;
 use atc_models::whole::devices::Times;
 use atc_models::whole::faults::{Event, Kind, request};
-use atc_models::whole::ground::Harm;
+use atc_models::whole::ground::{Blade, Body, Harm};
 use atc_models::whole::{Purpose, Room, State, Whole, shift};
 use drawn::Drawn;
 
 /// Two faults at once, and staff who ask for anything, again and again.
-const ALL: Room = Room { kinds: &Kind::ALL, faults: u8::MAX, together: 2, requests: &request::ALL, asks: u8::MAX };
+const ALL: Room =
+    Room { kinds: &Kind::ALL, faults: u8::MAX, together: 2, requests: &request::ALL, asked: &[0, 1], asks: u8::MAX };
 
 fn line<const T: usize>() -> Whole<T> {
     Whole::new(Times::SOUND, ALL, Purpose::Safe)
@@ -68,10 +70,21 @@ fn counts_at_zero_change_nothing() {
     assert!(again > 20, "a counter begins again: {again}");
 }
 
-/// Runs with up to two faults at once and staff who ask for anything: the trains that arrived, and the harm.
-fn swarm<const T: usize>(seeds: std::ops::Range<u64>, cycles: usize) -> (usize, Vec<(u64, Harm)>) {
+/// What was seen in drawn runs.
+#[derive(Default)]
+struct Seen {
+    /// How often a train changed ends at a station.
+    arrived: usize,
+    /// In how many cycles a train moved.
+    moving: usize,
+    /// The harm, with the seed of its run.
+    harm: Vec<(u64, Harm)>,
+}
+
+/// Runs with up to two faults at once and staff who ask for anything.
+fn swarm<const T: usize>(seeds: std::ops::Range<u64>, cycles: usize) -> Seen {
     let model = line::<T>();
-    let (mut arrived, mut harm) = (0, Vec::new());
+    let mut seen = Seen::default();
     for seed in seeds {
         let mut drawn = Drawn(seed);
         let mut state = model.begin();
@@ -79,29 +92,30 @@ fn swarm<const T: usize>(seeds: std::ops::Range<u64>, cycles: usize) -> (usize, 
             let event = event(&model, &state, &mut drawn, 40);
             let after = model.cycle(&state, event).after;
             let turned = |number: &usize| after.trains[*number].body.heading != state.trains[*number].body.heading;
-            arrived += (0..T).filter(turned).count();
+            seen.arrived += (0..T).filter(turned).count();
+            seen.moving += usize::from(after.trains.iter().any(|train| train.body.speed > 0));
             state = after;
             if state.harm != Harm::None {
-                harm.push((seed, state.harm));
+                seen.harm.push((seed, state.harm));
                 break;
             }
         }
     }
-    (arrived, harm)
+    seen
 }
 
 #[test]
 fn two_faults_at_once_and_staff_do_no_harm_to_two_trains() {
-    let (arrived, harm) = swarm::<2>(0..150, 1500);
-    assert!(harm.is_empty(), "{harm:?}");
-    assert!(arrived > 300, "{arrived}");
+    let seen = swarm::<2>(0..1000, 300);
+    assert!(seen.harm.is_empty(), "{:?}", seen.harm);
+    assert!(seen.arrived > 1000 && seen.moving > 100_000, "{} {}", seen.arrived, seen.moving);
 }
 
 #[test]
 fn two_faults_at_once_and_staff_do_no_harm_to_three_trains() {
-    let (arrived, harm) = swarm::<3>(1000..1150, 1500);
-    assert!(harm.is_empty(), "{harm:?}");
-    assert!(arrived > 300, "{arrived}");
+    let seen = swarm::<3>(1000..2000, 300);
+    assert!(seen.harm.is_empty(), "{:?}", seen.harm);
+    assert!(seen.arrived > 1000 && seen.moving > 100_000, "{} {}", seen.arrived, seen.moving);
 }
 
 /// The ground sees harm: trains whose brakes do not act pass their signals.
@@ -116,4 +130,25 @@ fn trains_without_brakes_come_to_harm() {
         state = model.cycle(&state, Event::default()).after;
     }
     assert_ne!(state.harm, Harm::None);
+}
+
+/// Each kind of harm by itself, on the ground alone.
+#[test]
+fn the_ground_judges_trains_and_points_as_they_are() {
+    let east = |front, tracks| Body { heading: Heading::Right, front, speed: 10, tracks };
+    let west = |front, tracks| Body { heading: Heading::Left, ..east(front, tracks) };
+    // Side by side in two platforms, nose to nose on the line, one into the other.
+    assert!(!east(60, [0, 0]).meets(&west(40, [1, 0])));
+    assert!(east(60, [0, 0]).meets(&west(40, [0, 0])));
+    assert!(east(320, [0, 0]).meets(&east(335, [1, 1])) && !east(320, [0, 0]).meets(&west(320, [1, 1])));
+    assert!(east(110, [0, 0]).meets(&west(105, [1, 1])), "in the throat");
+    let lies = |to| Blade { to, moves: 0 };
+    // Out of the platform to which the point does not lead; into the one to which it does.
+    assert!(lies(1).met(0, &east(96, [0, 0]), east(104, [0, 0])).1);
+    assert!(!lies(0).met(0, &east(96, [0, 0]), east(104, [0, 0])).1);
+    assert_eq!(lies(1).met(0, &west(204, [0, 0]), west(196, [0, 0])).0.tracks[0], 1);
+    // A point that moves under the tail, in the cycle in which it leaves.
+    let moves = Blade { to: 0, moves: 2 };
+    assert!(moves.met(0, &east(215, [0, 0]), east(225, [0, 0])).1);
+    assert!(!moves.met(0, &east(225, [0, 0]), east(235, [0, 0])).1);
 }

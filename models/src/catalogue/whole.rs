@@ -7,7 +7,7 @@ use crate::whole::faults::{Kind, request};
 use crate::whole::{Purpose, Room, Whole};
 
 /// What all of them assume that do not lift it. That trains obey signals is not among it: their devices brake them.
-const ALL: [&str; 11] = [
+const ALL: [&str; 14] = [
     "loss-of-shunt-within-clear",
     "release-covers-residual-running",
     "start-outlasts-running",
@@ -19,6 +19,9 @@ const ALL: [&str; 11] = [
     "turn-outlasts-telegrams",
     "views-of-a-line-meet",
     "no-permissive-misread",
+    "odometer-bound",
+    "stop-point-life",
+    "transmitter-does-not-loop",
 ];
 
 const fn without(place: usize) -> [&'static str; ALL.len() - 1] {
@@ -31,14 +34,16 @@ const SHORT_RELEASE: Conditions = (&without(1), &["release-covers-residual-runni
 const SHORT_START: Conditions = (&without(2), &["start-outlasts-running"]);
 
 const REQUIREMENTS: &[&str] = &[
-    "ILK-4", "ILK-6", "ILK-9", "ILK-10", "ILK-19", "ILK-25", "ATC-1", "WAY-3", "WAY-4", "WAY-5", "WAY-7", "WAY-8",
-    "TRN-1", "TRN-3", "TRN-5", "TRN-7", "TRN-11", "TRN-12", "TRN-13", "PER-6", "PER-8", "TEL-6",
+    "ILK-4", "ILK-6", "ILK-9", "ILK-10", "ILK-25", "ATC-1", "WAY-3", "WAY-4", "WAY-5", "WAY-7", "TRN-1", "TRN-3",
+    "TRN-5", "TRN-7", "TRN-11", "TRN-12", "TRN-13", "PER-6", "PER-8", "TEL-6",
 ];
 
 /// One fault of any kind, anywhere, in any cycle.
-const ONE: Room = Room { kinds: &Kind::ALL, faults: 1, together: 1, requests: &[], asks: 0 };
+const ONE: Room = Room { kinds: &Kind::ALL, faults: 1, together: 1, requests: &[], asked: &EAST, asks: 0 };
 /// Staff ask twice for anything.
-const STAFF: Room = Room { kinds: &[], faults: 0, together: 0, requests: &request::ALL, asks: 2 };
+const STAFF: Room = Room { kinds: &[], faults: 0, together: 0, requests: &request::ALL, asked: &EAST, asks: 2 };
+/// Trains come to the eastern station and leave it; the western one is alike.
+const EAST: [u8; 1] = [1];
 /// To drive the point.
 const POINTS: &[u8] = &[request::DRIVE, request::DRIVE + 1];
 /// To set a route, and to drive the point.
@@ -61,13 +66,16 @@ fn entry<const T: usize>(
 ) -> Entry {
     let begun = match room.faults {
         0 => String::new(),
-        1 => format!("one fault begins in any cycle and ends in any ({})", room.words()),
-        more => format!("{more} faults begin in any cycles and end in any ({})", room.words()),
+        1 => format!("one fault begins in any cycle, and lasts for up to 16 ({})", room.words()),
+        more => format!("{more} faults begin in any cycles, and last for up to 16 ({})", room.words()),
     };
     let asked = match room.asks {
         0 => String::new(),
         asks => {
-            format!("staff ask either station {asks} times, in any cycle, for any of {} things", room.requests.len())
+            format!(
+                "staff ask the eastern station {asks} times, in any cycle, for any of {} things",
+                room.requests.len()
+            )
         }
     };
     let parts = [begun, asked].into_iter().filter(|part| !part.is_empty());

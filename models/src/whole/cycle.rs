@@ -1,7 +1,7 @@
 //! One cycle of the line: trains roll, stations read and put out, trains hear and brake.
 
 use super::devices::{CIRCUITS, HIGHEST, circuit, frequencies, leads_to, levels};
-use super::faults::{Event, Fault, Kind};
+use super::faults::{Event, Fault, Kind, request};
 use super::ground::{self, Blade, Body, Harm, PLACES, PLATFORM};
 use super::station::{Put, Read};
 use super::{Held, Made, State, TOO_LONG, Train, Whole, shift};
@@ -39,6 +39,9 @@ impl<const T: usize> Whole<T> {
             blade.moves = blade.moves.saturating_sub(u8::from(!event.has(Kind::LatePoint, station)));
         }
         after.dispatch(state);
+        if event.asked.is_some_and(|(_, request)| request == request::MIND) {
+            after.bound = after.bound.opposite();
+        }
 
         let mut read = [0, 1].map(|station| Self::read(&after, station, event));
         for sender in 0..2 {
@@ -78,6 +81,7 @@ impl<const T: usize> Whole<T> {
         for (number, (ran, before)) in ran.into_iter().zip(&state.trains).enumerate() {
             self.hear(&mut after, (number, ran, before.body.place()), event, &put);
         }
+        after.turn = after.turn.opposite();
         Made { after, begun, read }
     }
 
@@ -141,9 +145,9 @@ impl<const T: usize> Whole<T> {
         }
         let blade = after.blades[station];
         let seen = blade.moves == 0 && !event.has(Kind::UndetectedPoint, station);
-        let stuck = |circuit: &usize| event.has(Kind::StuckTransmitter, station * CIRCUITS.len() + circuit);
+        let stuck = |circuit: &usize| event.repeats(Kind::StuckTransmitter, station * CIRCUITS.len() + circuit);
         let asked = match event.asked {
-            Some((at, request)) if usize::from(at) == station => Some(request),
+            Some((at, request)) if usize::from(at) == station && request != request::MIND => Some(request),
             _ => after.wanted(station),
         };
         Read {
@@ -193,14 +197,16 @@ impl<const T: usize> Whole<T> {
             shows |= put.proceed.meets(routes_from(station, body));
         }
         // Two at once are heard as neither.
-        let feed = if let [one] = sent[..] { Some(one.facing(body.heading)) } else { None };
         let quiet = event.has(Kind::Interruption, number);
-        let feed = feed.filter(|_| !quiet);
+        let sent = if let [one] = sent[..] { Some(one).filter(|_| !quiet) } else { None };
+        // Frames are heard for whatever direction of travel they are, and codes at the end for which they are.
+        let feed = sent.map(|sent| sent.facing(after.turn));
+        let codes = sent.map(|sent| sent.facing(body.heading).codes).filter(|_| place == before);
         // A code counts that was heard throughout the cycle.
-        let [main, sub] = match feed {
+        let [main, sub] = match codes {
             _ if event.has(Kind::MisreadCode, number) => HIGHEST,
-            Some(feed) if place == before => frequencies(feed.codes),
-            _ => [None; 2],
+            Some(codes) => frequencies(codes),
+            None => [None; 2],
         };
         let [first, second] = if quiet { [None; 2] } else { levels(body.to_exit()) };
         let antennas = Antennas {

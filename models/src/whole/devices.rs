@@ -66,7 +66,7 @@ pub struct Times {
 impl Times {
     /// Times that keep every rule.
     pub const SOUND: Self =
-        Self { life: 4, residual: 12, loss: 1, clear: 2, consent: 4, turn: 18, release: 14, start: 14, margin: 20 };
+        Self { life: 6, residual: 14, loss: 1, clear: 2, consent: 4, turn: 20, release: 16, start: 16, margin: 20 };
 }
 
 /// The circuit of a place, to a station; none if it does not see it.
@@ -135,7 +135,7 @@ fn plan(station: usize, times: Times) -> SmallPlan {
     plan.segments[0] =
         Segment { circuits: [set(0), set(BETWEEN)], length: 2, throat: set(1), outward: outward(station), shared: 1 };
     plan.lengths[..CIRCUITS.len()].fill(Metres(100));
-    plan.braking[..3].copy_from_slice(&[Metres(0), Metres(50), Metres(90)]);
+    plan.braking[..3].copy_from_slice(&[Metres(0), Metres(55), Metres(98)]);
     (plan.clear, plan.loss, plan.settle) = (times.clear, times.loss, 1);
     (plan.turn, plan.start) = (Ticks(times.turn), Ticks(times.start));
     (plan.residual, plan.standstill) = (Ticks(times.residual), Ticks(8));
@@ -209,10 +209,10 @@ pub fn on_board(times: Times) -> OnBoard {
         brake: Deceleration::brake(2000).expect("a brake"),
         worst: Gradient(0),
         margin: Metres(times.margin),
-        fresh: Ticks(2),
+        fresh: Ticks(3),
         life,
         fixed_life: Ticks(50),
-        sequence: Sequence::new(4, 1, Ticks(4)).expect("a window"),
+        sequence: Sequence::new(4, 1, Ticks(6)).expect("a window"),
     };
     let times = atc_kernel::aspect::Times::from_ticks(Ticks(2), Ticks(2), Ticks(2), Ticks(3), Ticks(1));
     let parts = Parts {

@@ -2,10 +2,10 @@
 
 use super::devices::outward;
 use super::faults::request;
-use super::ground::{Body, PLATFORM};
-use super::{State, Train};
+use super::ground::{Body, PLATFORM, THROAT};
+use super::{State, TOO_LONG, Train};
 use atc_kernel::heading::Heading;
-use atc_kernel::interlocking::SegmentSet;
+use atc_kernel::interlocking::{Phase, SegmentSet};
 
 impl<const T: usize> State<T> {
     /// How many trains are on their way.
@@ -33,7 +33,7 @@ impl<const T: usize> State<T> {
         }
         for train in &mut self.trains {
             if train.body.speed == 0 && train.body.is_in(train.body.stations().1) {
-                *train = Train::at_a_stand(train.body.turned());
+                (train.body, train.since) = (train.body.turned(), TOO_LONG);
             }
         }
         if self.next().is_none() && self.coming() == 0 {
@@ -59,6 +59,14 @@ impl<const T: usize> State<T> {
             _ => (0..2).find(free)?,
         };
         let known = device.routes[usize::from(route)];
-        (!known.is_held() || known.may_resume()).then_some(request::SET + route)
+        let here = |train: &Train| train.body.on() >> THROAT[station] & 1 == 1;
+        let entered = self.trains.iter().any(here);
+        match known.phase {
+            // It was entered by nobody: by a circuit that was falsely occupied.
+            Phase::InUse if known.head > 0 && !entered => Some(request::WITHDRAW + route),
+            Phase::Failed => Some(request::WITHDRAW + route),
+            _ if !known.is_held() || known.may_resume() && entered => Some(request::SET + route),
+            _ => None,
+        }
     }
 }

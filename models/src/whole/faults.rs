@@ -15,7 +15,7 @@ pub enum Kind {
     UndetectedPoint,
     /// A point that moves stands still for a while.
     LatePoint,
-    /// A transmitter repeats what it sent in the cycle before the first.
+    /// A transmitter repeats what it sent in the first cycle.
     StuckTransmitter,
     /// A train hears nothing.
     Interruption,
@@ -98,10 +98,10 @@ pub struct Fault {
     pub age: u8,
 }
 
-/// From which numbers a station that starts again may send its telegrams, counted from where it would have gone on: its counters begin at 0,
-/// and how far they had come is of no run. The same number once more, the next ones up to the last that a train takes for news, the first
+/// From which numbers a station that starts again may send its telegrams, counted from those that it sent last: its counters begin at 0, and
+/// how far they had come is of no run. The same number once more, the next ones up to the last that a train takes for news, the first
 /// that it does not, one that is long past, and the one before.
-pub const FROM: [u8; 6] = [u8::MAX, 0, 3, 4, 127, 254];
+pub const FROM: [u8; 6] = [0, 1, 4, 5, 128, u8::MAX];
 
 /// Requests by number: to set and to withdraw each of four routes, to drive the point either way, to turn the line either way.
 pub mod request {
@@ -117,8 +117,10 @@ pub mod request {
     pub const TOWARD: u8 = 10;
     /// To turn it away.
     pub const AWAY: u8 = 11;
+    /// Nothing of the station: the dispatcher changes his mind, and sends trains the other way from now on.
+    pub const MIND: u8 = 12;
     /// All of them.
-    pub const ALL: [u8; 12] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
+    pub const ALL: [u8; 13] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, MIND];
 
     /// The request of this number.
     pub fn of(number: u8) -> Option<Request> {
@@ -147,6 +149,11 @@ impl Event {
     /// The station that starts again, and from where it sends its telegrams: see [`FROM`].
     pub fn starts(&self, station: usize) -> Option<u8> {
         (0..FROM.len()).find(|place| self.has(Kind::StationStarts, 2 * place + station)).map(|place| FROM[place])
+    }
+
+    /// Whether a fault of this kind repeats here what was in the cycle in which it began.
+    pub fn repeats(&self, kind: Kind, at: usize) -> bool {
+        self.faults.iter().flatten().any(|fault| fault.kind == kind && usize::from(fault.at) == at && fault.age > 0)
     }
 
     /// Whether a fault of this kind is at work here.
@@ -179,7 +186,7 @@ impl<const T: usize> Whole<T> {
         let mut asked = vec![None];
         if state.asks > 0 {
             let requests = |station| self.room.requests.iter().map(move |request| Some((station, *request)));
-            asked.extend((0..2).flat_map(requests));
+            asked.extend(self.room.asked.iter().copied().flat_map(requests));
         }
         asked
     }

@@ -169,7 +169,7 @@ impl Blade {
         if after.crossed(before, legs) && after.stations().0 == station {
             derailed |= after.tracks[station] != self.to;
         }
-        derailed |= self.moves > 0 && after.on() >> THROAT[station] & 1 == 1;
+        derailed |= self.moves > 0 && (before.on() | after.on()) >> THROAT[station] & 1 == 1;
         (after, derailed)
     }
 }

@@ -26,7 +26,7 @@ use ground::{Blade, Body, Harm};
 use station::{Read, Station};
 
 /// For how many cycles a train may pass a signal after it fell: what a telegram lives, and braking.
-const RUNS_ON: u8 = 12;
+const RUNS_ON: u8 = 14;
 
 /// Longer than that.
 const TOO_LONG: u8 = RUNS_ON + 1;
@@ -75,6 +75,8 @@ pub struct State<const T: usize> {
     pub bound: Heading,
     /// The train that has left a platform last.
     pub last: u8,
+    /// For trains of which direction of travel the frames of the next cycle are: each in its turn.
+    pub turn: Heading,
     /// The faults that were at work in the last cycle.
     pub faults: [Option<Fault>; 2],
     /// What each repeats.
@@ -105,8 +107,10 @@ pub struct Room {
     pub faults: u8,
     /// How many of them may be there at once: up to 2.
     pub together: u8,
-    /// What staff may ask either station for, by number.
+    /// What staff may ask for, by number.
     pub requests: &'static [u8],
+    /// The stations that they ask.
+    pub asked: &'static [u8],
     /// How often they ask.
     pub asks: u8,
 }
@@ -166,6 +170,7 @@ impl<const T: usize> Whole<T> {
             trains: std::array::from_fn(|number| [train(0, 0), train(1, 1), train(0, 1)][number]),
             bound: Heading::Right,
             last: u8::MAX,
+            turn: Heading::Left,
             faults: [None; 2],
             held: [Held::Nothing; 2],
             left: self.room.faults,

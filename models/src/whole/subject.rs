@@ -57,10 +57,10 @@ impl<const T: usize> Subject for Whole<T> {
             ]),
             Purpose::Hazard(excluded_by) => {
                 claims.push(Claim::<Self>::hazard(
-                    "harm",
-                    "trains collide, derail or do not stop",
+                    "derails",
+                    "a train meets a point that moves or lies wrong",
                     excluded_by,
-                    |_, s| s.harm != Harm::None,
+                    |_, s| s.harm == Harm::Derailment,
                 ));
             }
         }
