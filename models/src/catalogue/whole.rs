@@ -65,12 +65,11 @@ fn entry<const T: usize>(
     purpose: Purpose,
 ) -> Entry {
     let begun = match room.faults {
-        0 => String::new(),
-        1 => format!("one fault begins in any cycle, and lasts for up to 16 ({})", room.words()),
-        more => format!("{more} faults begin in any cycles, and last for up to 16 ({})", room.words()),
+        0 => "nothing fails".to_owned(),
+        faults => format!("{faults} fault begins in any cycle, and lasts for up to 16 ({})", room.words()),
     };
     let asked = match room.asks {
-        0 => String::new(),
+        0 => "staff ask for nothing".to_owned(),
         asks => {
             format!(
                 "staff ask the eastern station {asks} times, in any cycle, for any of {} things",
@@ -78,9 +77,7 @@ fn entry<const T: usize>(
             )
         }
     };
-    let parts = [begun, asked].into_iter().filter(|part| !part.is_empty());
-    let environment =
-        format!("a dispatcher sends trains to and fro for ever; {}", parts.collect::<Vec<_>>().join("; "));
+    let environment = format!("a dispatcher sends trains to and fro for ever; {begun}; {asked}");
     Entry::new(about(name, statement, &environment, REQUIREMENTS, conditions), Whole::<T>::new(times, room, purpose))
 }
 
@@ -93,19 +90,44 @@ pub(super) fn entries() -> Vec<Entry> {
         sound(
             (
                 "whole-line",
-                "Two trains and two stations, each with its whole device, from rail to brake: with any single fault no trains meet, none derails, \
-                 and none passes its signal.",
+                "Two trains and two stations, each with its whole device, from rail to brake: with any one fault of 11 kinds no trains meet, none \
+                 derails, and none passes its signal.",
             ),
             ONE,
         ),
-        entry::<3>(("whole-line-three", "The same with three trains."), SOUND, Times::SOUND, ONE, Purpose::Safe),
-        sound(("whole-line-staff", "The same where nothing fails, and staff ask twice for anything."), STAFF),
+        entry::<3>(
+            (
+                "whole-line-three",
+                "Three trains and two stations, each with its whole device: with any one fault of 11 kinds no trains \
+                 meet, none derails, and none passes its signal.",
+            ),
+            SOUND,
+            Times::SOUND,
+            ONE,
+            Purpose::Safe,
+        ),
         sound(
-            ("whole-line-lost", "The same where a train is lost for a cycle, and staff ask for anything."),
+            (
+                "whole-line-staff",
+                "Two trains and two stations with their whole devices: whatever two things of 13 staff ask for, no \
+                 trains meet, none derails, and none passes its signal.",
+            ),
+            STAFF,
+        ),
+        sound(
+            (
+                "whole-line-lost",
+                "Two trains and two stations with their whole devices: a train is lost for a cycle, staff ask for \
+                 one thing of 13, and there is no harm.",
+            ),
             one(&[Kind::LostShunt], &request::ALL),
         ),
         sound(
-            ("whole-line-start", "The same where a station starts again, and staff set a route or drive a point."),
+            (
+                "whole-line-start",
+                "Two trains and two stations with their whole devices: a station starts again, staff set a route or \
+                 drive a point, and there is no harm.",
+            ),
             one(&[Kind::StationStarts], SETS),
         ),
         hazard(
@@ -120,7 +142,8 @@ pub(super) fn entries() -> Vec<Entry> {
         hazard(
             (
                 "whole-line-short-release",
-                "A route is released a cycle after it was withdrawn: a point is driven before a train that cannot stop.",
+                "A route is released a cycle after it was withdrawn: a point is driven before a train that cannot \
+                 stop.",
             ),
             SHORT_RELEASE,
             Times { release: 1, residual: 0, loss: 0, ..Times::SOUND },

@@ -6,7 +6,7 @@ use super::ground::{self, Blade, Body, Harm, PLACES, PLATFORM};
 use super::station::{Put, Read};
 use super::{Held, Made, State, TOO_LONG, Train, Whole, shift};
 use atc_kernel::Machine as _;
-use atc_kernel::interlocking::{PointId, Position, Positions, RouteSet};
+use atc_kernel::interlocking::{Positions, RouteSet};
 use atc_kernel::position::Moved;
 use atc_kernel::speed::RawKmhTenths;
 use atc_kernel::supervision::Brake;
@@ -247,11 +247,9 @@ fn routes_from(station: usize, body: Body) -> RouteSet {
 
 /// The point is driven.
 fn drive(blade: &mut Blade, drives: Positions) {
-    for (to, position) in [(0, Position::Normal), (1, Position::Reverse)] {
-        let driven = Positions::of(PointId::ZERO, position);
-        if !driven.missing_in(drives).is_empty() || blade.to == to {
-            continue;
+    for to in 0..2 {
+        if leads_to(to).missing_in(drives).is_empty() && blade.to != to {
+            *blade = Blade { to, moves: STROKE };
         }
-        *blade = Blade { to, moves: STROKE };
     }
 }

@@ -1,7 +1,7 @@
 //! The devices of the model: two stations of two platforms each, and the trains' device. A cycle is 1 s, on the ground and on board.
 
 use super::ground::{MIDDLE, PLATFORM, THROAT};
-use atc_kernel::aspect::{Acceptance, AspectId, AspectTable};
+use atc_kernel::aspect::{self, Acceptance, AspectId, AspectTable};
 use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES, Millihertz};
 use atc_kernel::distance::Metres;
 use atc_kernel::heading::Heading;
@@ -17,7 +17,7 @@ use atc_kernel::supervision::Supervision;
 use atc_kernel::telegram::{Gradient, SectionId, Sequence};
 use atc_kernel::time::Ticks;
 use atc_kernel::train::{Parts, Train};
-use atc_kernel::wayside::{Equipment, Facing, Fixed, Session, SignalPlan, State, Wayside};
+use atc_kernel::wayside::{Codes, Equipment, Facing, Fixed, Session, SignalPlan, State, Wayside};
 
 /// The layout of a station.
 pub type Small = Layout<4, 2, 1, 1>;
@@ -169,7 +169,7 @@ fn words() -> (AspectTable, CodeTable) {
 }
 
 /// The frequencies of a pair of codes.
-pub fn frequencies(codes: atc_kernel::wayside::Codes) -> [Option<Millihertz>; 2] {
+pub fn frequencies(codes: Codes) -> [Option<Millihertz>; 2] {
     [MAIN.get(usize::from(codes.main.place())).copied(), SUB.get(usize::from(codes.sub.place())).copied()]
 }
 
@@ -214,7 +214,7 @@ pub fn on_board(times: Times) -> OnBoard {
         fixed_life: Ticks(50),
         sequence: Sequence::new(4, 1, Ticks(6)).expect("a window"),
     };
-    let times = atc_kernel::aspect::Times::from_ticks(Ticks(2), Ticks(2), Ticks(2), Ticks(3), Ticks(1));
+    let times = aspect::Times::from_ticks(Ticks(2), Ticks(2), Ticks(2), Ticks(3), Ticks(1));
     let parts = Parts {
         codes,
         acceptance: Acceptance { times: times.expect("times that keep every rule") },

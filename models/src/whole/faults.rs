@@ -23,7 +23,7 @@ pub enum Kind {
     MisreadCode,
     /// No message of a station arrives.
     LostMessage,
-    /// The message that arrives from a station is an old one.
+    /// The message that a station sends in the first cycle arrives again and again.
     OldMessage,
     /// The device of a station starts again.
     StationStarts,

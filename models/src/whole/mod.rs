@@ -1,8 +1,8 @@
 //! The whole line: two stations with the kernel's whole device each, and trains with the kernel's whole device, on whole metres.
 //!
 //! Nothing is left out between rail and brake: what is detected goes into [`atc_kernel::wayside`], the frames and codes that it puts out go
-//! into [`atc_kernel::train`], and what that commands brakes the train. Drivers obey nothing: a train gains speed in every cycle in which
-//! its brake is released. A dispatcher sends the trains to and fro, for ever.
+//! into [`atc_kernel::train`], and what that commands brakes the train. There is one kind of driver: he gains speed in every cycle in which
+//! his brake is released. A dispatcher sends the trains to and fro, for ever.
 //!
 //! What a run can come to is finite because states that differ by nothing but when they are reached are one ([`shift`]).
 
@@ -122,7 +122,7 @@ impl Room {
     }
 }
 
-/// The model.
+/// The model, of two or three trains.
 #[derive(Clone, Debug)]
 pub struct Whole<const T: usize> {
     stations: [Station; 2],
@@ -160,7 +160,7 @@ impl<const T: usize> Whole<T> {
         self.stations[station].device()
     }
 
-    /// Before the first cycle: every device starts, and a train stands at each station.
+    /// Before the first cycle: every device starts, a train stands at each station, and the third one at the western.
     pub fn begin(&self) -> State<T> {
         let train = |station, track| Train::at_a_stand(Body::standing(station, track));
         State {

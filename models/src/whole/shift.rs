@@ -87,8 +87,8 @@ fn counters<const T: usize>(state: &mut State<T>, stations: &[usize], circuit: u
         for (station, base) in stations.iter().zip(&bases) {
             let next = carrier.next(&mut state.stations[*station].counters[circuit]);
             *next = less(*next, *base);
-            for (_, held) in state.held.iter_mut().enumerate().filter(|(slot, _)| repeats(*slot, *station)) {
-                if let Held::Air(Some(air)) = held {
+            for (slot, held) in state.held.iter_mut().enumerate() {
+                if let (Held::Air(Some(air)), true) = (held, repeats(slot, *station)) {
                     for frame in carrier.frames(air) {
                         *frame = renumbered(*frame, *base);
                     }
