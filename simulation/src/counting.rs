@@ -3,155 +3,21 @@
 //! A head is heard in a section; at a border in both blocks from the check-in ahead to the check-out behind, so that it is never in neither (condition
 //! `loops-overlap`). Both stations read the same checks and detectors, and each counts by itself.
 
-use atc_kernel::block::{Block, Detection, Direction, Hold, MAX_SECTIONS, SectionSet, TrainCount, hold_for};
-use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitId, SegmentId, Travel};
-use atc_kernel::time::{Cycle, Millis, Ticks};
-use atc_kernel::wayside::Join;
-use serde::{Deserialize, Serialize};
+use atc_kernel::block::{SectionSet, TrainCount};
 
+use crate::bound::Bound;
+use crate::counted::{Counted, Detections, Disagreeing, MAX_BLOCKS, SILENT};
 use crate::fault::{Fault, Kind};
-use crate::line::{Bound, Line};
+use crate::line::Line;
 use crate::world::World;
 
-/// The most blocks of a counted line here.
-pub const MAX_BLOCKS: usize = 2;
 /// A check-in is on from this far before the border, and a check-out until this far behind it, in m.
 const CHECK_IN_M: (f64, f64) = (-3.0, 7.0);
 const CHECK_OUT_M: (f64, f64) = (4.0, 14.0);
-/// The longest that a passing train keeps a check-in on. A train that stands there is a fault.
-const PASS_MS: u32 = 10_000;
 /// After how long staff look at a block that disagrees. They reset it when no head is on its borders (condition `verified-reset`).
 const STAFF_MS: u64 = 20_000;
 
-/// A counted line as a line file has it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CountedFile {
-    /// The name that both stations give the line.
-    pub line: String,
-    /// The circuits of each block, one a section, in the direction of travel: one or two blocks.
-    pub blocks: Vec<Vec<String>>,
-}
-
-/// A counted line.
-#[derive(Clone, Debug)]
-pub struct Counted {
-    /// Which of the lines.
-    pub link: usize,
-    /// The direction of its trains.
-    pub bound: Bound,
-    /// The circuits of each block, in the direction of travel.
-    pub blocks: Vec<Vec<usize>>,
-}
-
-/// What one station's device reads of its counted line in a cycle.
-pub type Detections = [Detection; MAX_BLOCKS];
-
-/// Nothing is heard.
-pub const SILENT: Detections =
-    [Detection { low_check: false, high_check: false, present: SectionSet::EMPTY, reset: None }; MAX_BLOCKS];
-
-/// The counted lines that end at a station.
-fn ending(line: &Line, station: usize) -> impl Iterator<Item = &Counted> {
-    line.counted.iter().filter(move |counted| [0, 1].contains(&station.wrapping_sub(line.links[counted.link].west)))
-}
-
-/// The counted line of a station's device: it can have one.
-pub fn at(line: &Line, station: usize) -> Option<&Counted> {
-    ending(line, station).next()
-}
-
-/// The counted line that a file names.
-///
-/// # Errors
-/// What is wrong with it.
-pub fn of(line: &Line, file: &CountedFile) -> Result<Counted, String> {
-    let wrong = |what: String| format!("[[counted]] {}: {what}", file.line);
-    let called = |link: usize| {
-        let joined = &line.links[link];
-        line.stations[joined.west].compiled.model.segments[joined.segments[0]].line.as_deref() == Some(&file.line)
-    };
-    let link =
-        (0..line.links.len()).find(|link| called(*link)).ok_or_else(|| wrong("no line has this name".to_owned()))?;
-    let bound = match line.ways[link] {
-        [true, false] => Bound::West,
-        [false, true] => Bound::East,
-        _ => return Err(wrong("trains run on it in both directions; a counted line has one".to_owned())),
-    };
-    if !(1..=MAX_BLOCKS).contains(&file.blocks.len()) {
-        return Err(wrong(format!("{} blocks: 1 or {MAX_BLOCKS} are possible", file.blocks.len())));
-    }
-    let circuit = |name: &String| {
-        let named = |circuit: &&usize| line.track.circuits[**circuit].name == *name;
-        let found = line.links[link].circuits.iter().find(named).copied();
-        found.ok_or_else(|| wrong(format!("{name} is none of its circuits")))
-    };
-    let block = |names: &Vec<String>| {
-        if !(1..=usize::from(MAX_SECTIONS)).contains(&names.len()) {
-            return Err(wrong(format!("a block of {} sections: 1 to {MAX_SECTIONS} are possible", names.len())));
-        }
-        names.iter().map(circuit).collect::<Result<Vec<_>, _>>()
-    };
-    let blocks = file.blocks.iter().map(block).collect::<Result<Vec<_>, _>>()?;
-    Ok(Counted { link, bound, blocks })
-}
-
-/// Checks that no station has two counted lines, and that the kernel takes each.
-///
-/// # Errors
-/// What is wrong.
-pub fn check(line: &Line) -> Result<(), String> {
-    for station in 0..line.stations.len() {
-        if ending(line, station).count() > 1 {
-            return Err(format!("{}: two [[counted]] lines; a device counts one", line.stations[station].name));
-        }
-        if at(line, station).is_some() {
-            line.device(station, true, &[])?;
-        }
-    }
-    Ok(())
-}
-
 impl Counted {
-    /// The line as the device of a station has it.
-    ///
-    /// # Errors
-    /// What the kernel says of a block.
-    pub fn join<const B: usize>(&self, line: &Line, station: usize) -> Result<Join<B>, String> {
-        let link = &line.links[self.link];
-        let here = station - link.west;
-        let length = |circuit: &usize| line.track.circuits[*circuit].length_m;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "metres of a layout fit in 16 bits")]
-        let metres = |length: f64| Metres(length as u16);
-        let lengths: Vec<Metres> = self.blocks.iter().flatten().map(|circuit| metres(length(circuit))).collect();
-        let train = metres(line.dynamics.length_m.ceil());
-        let hold = hold_for(&lengths, train).map_err(|error| format!("counted sections: {error:?}"))?;
-        let hold = if hold == Hold::NONE { Hold::new(1).unwrap_or(Hold::MOST) } else { hold };
-        let cycle = Cycle::new(Millis(line.cycle_ms)).ok_or("a cycle of 0 ms")?;
-        let pass = cycle.at_most(Millis(PASS_MS)).unwrap_or(Ticks(1));
-        let mut blocks = Vec::new();
-        let mut circuits = [[None; MAX_SECTIONS as usize]; B];
-        for (block, places) in self.blocks.iter().zip(&mut circuits) {
-            let sections = u8::try_from(block.len()).unwrap_or(u8::MAX);
-            blocks
-                .push(Block::new(sections, sections, hold, pass).map_err(|error| format!("counted block: {error:?}"))?);
-            for (circuit, place) in block.iter().zip(places) {
-                let local = line.track.sites[station].circuits.iter().position(|own| own == circuit);
-                let local = local.ok_or_else(|| {
-                    let (name, at) = (&line.track.circuits[*circuit].name, &line.stations[station].name);
-                    format!("{name} is counted, and {at} does not see it: both stations see every counted circuit")
-                })?;
-                *place = u8::try_from(local).ok().and_then(CircuitId::new);
-            }
-        }
-        let blocks = <[Block; B]>::try_from(blocks).map_err(|blocks| format!("{} blocks", blocks.len()))?;
-        let segment = u8::try_from(link.segments[here]).ok().and_then(SegmentId::new).ok_or("too many segments")?;
-        // Trains to the east run away from the western station.
-        let travel = if (here == 0) == (self.bound == Bound::East) { Travel::Away } else { Travel::Toward };
-        Ok(Join { blocks, direction: Direction::Up, train, segment, travel, circuits })
-    }
-
     /// How far heads are along the line, in m from the entry of its first section; negative before it.
     fn heads(&self, world: &World<'_>) -> Vec<(usize, f64)> {
         let line = world.line;
@@ -186,13 +52,10 @@ impl Counted {
     }
 }
 
-/// Since when a block disagrees at a station, in ms.
-pub type Disagreeing = [Option<u64>; MAX_BLOCKS];
-
 /// What the device of a station reads of its counted line, with the faults of this cycle; and what staff command. `agree` is what it said last.
 pub fn read(world: &World<'_>, station: usize, agree: [bool; MAX_BLOCKS], since: &mut Disagreeing) -> Detections {
     let mut read = SILENT;
-    let Some(counted) = at(world.line, station) else { return read };
+    let Some(counted) = world.line.counted_at(station) else { return read };
     let heads = counted.heads(world);
     let length = f64::from(world.line.cycle_ms);
     let missed = |train| world.faults(Kind::MissedHead, length).any(|fault| fault.which % world.trains.len() == train);

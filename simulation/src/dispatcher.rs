@@ -8,8 +8,9 @@ use std::collections::VecDeque;
 
 use atc_kernel::interlocking::{Refusal, Request, RouteId, RouteSet, SegmentId, Travel};
 
+use crate::bound::Bound;
 use crate::event::What;
-use crate::line::{Bound, Line};
+use crate::line::Line;
 
 /// After how long a signal that does not show proceed is given up, in ms.
 const PATIENCE_MS: u64 = 20_000;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use crate::bound::Bound;
 use crate::fault::Kind;
-use crate::line::Bound;
 
 /// Something that happened, and when.
 #[derive(Clone, Debug, PartialEq, Serialize)]

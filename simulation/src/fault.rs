@@ -145,16 +145,6 @@ fn repeated_ms(line: &Line) -> u32 {
     line.telegram_age_ms.saturating_sub(spent).max(101)
 }
 
-/// How long telegrams between stations may take: with their life they are no older than the ground counts on.
-pub const fn longest_delay_ms(line: &Line) -> u32 {
-    consent_life_ms(line) - 2 * line.cycle_ms
-}
-
-/// For how long a neighbour's telegram is used: half of what the ground counts on, and the other half for its way.
-pub const fn consent_life_ms(line: &Line) -> u32 {
-    line.telegram_age_ms / 2
-}
-
 /// Whether a fault is one that the line must stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -198,7 +188,7 @@ impl Fault {
         let lasts_ms = random.random_range(f64::from(least)..=f64::from(most));
         let much = match kind {
             Kind::LatePoint => random.random_range(2_000..30_000),
-            Kind::DelayedTelegram if extent == Extent::Tolerated => random.random_range(100..=longest_delay_ms(line)),
+            Kind::DelayedTelegram if extent == Extent::Tolerated => random.random_range(100..=line.longest_delay_ms()),
             Kind::DelayedTelegram => random.random_range(20_000..60_000),
             Kind::MisreadCode if extent == Extent::Beyond => 7,
             _ => random.random_range(0..8),

@@ -10,11 +10,12 @@ use atc_kernel::interlocking::{CircuitSet, Heading, Movement, Phase, PointSet, P
 use atc_kernel::supervision::Brake;
 use atc_layout::draw;
 
+use crate::bound::Bound;
 use crate::event::What;
 use crate::ground::{PointState, View};
-use crate::line::{Bound, Line};
-use crate::rolling::Train;
+use crate::line::Line;
 use crate::track::Track;
+use crate::train::Train;
 use crate::world::World;
 
 /// A station at one time.

@@ -12,7 +12,7 @@ use atc_kernel::interlocking::{
 use atc_kernel::wayside::{Equipment, Framed, Message as Said, Session, Transmission, Wayside, WaysideError};
 use atc_kernel::wayside::{Input as WaysideInput, State as WaysideState};
 
-use crate::counting::{Detections, Disagreeing, MAX_BLOCKS, SILENT};
+use crate::counted::{Detections, Disagreeing, MAX_BLOCKS, SILENT};
 use crate::motion::Lie;
 use crate::track::Track;
 

@@ -129,8 +129,8 @@ fn measure_one(line: &Line, extent: &Extent, (length_ms, operate): (u32, Operate
             arrivals[train].push(event.at_ms);
         }
     }
-    let sum = |of: fn(&crate::rolling::Train) -> u32| world.trains.iter().map(of).sum();
-    let margins = world.trains.iter().fold(crate::rolling::Margins::FAR, |all, train| all.or_less(train.margins));
+    let sum = |of: fn(&crate::train::Train) -> u32| world.trains.iter().map(of).sum();
+    let margins = world.trains.iter().fold(crate::train::Margins::FAR, |all, train| all.or_less(train.margins));
     let measured = Measured {
         interruptions: sum(|train| train.interrupted),
         needless: sum(|train| train.needless),

@@ -3,7 +3,7 @@
 
 use crate::driver::Drivers;
 use crate::event::What;
-use crate::rolling::Margins;
+use crate::train::Margins;
 use crate::world::World;
 
 /// By how much a train may be faster than the track allows, in m/s: a speed is measured in tenths of km/h, and a brake takes its time. What a train
@@ -43,7 +43,7 @@ impl World<'_> {
             if !crowded {
                 continue;
             }
-            let touches = |other: &crate::rolling::Train| {
+            let touches = |other: &crate::train::Train| {
                 if it.plain {
                     let (mine, its) = (train.body.on(track, piece), other.body.on(track, piece));
                     mine.zip(its).is_some_and(|(mine, its)| mine.0 < its.1 && its.0 < mine.1)
@@ -93,7 +93,7 @@ impl World<'_> {
                 stop_m = Some(ahead_m);
             }
             if self.on_piece[next] > 0 && train_m.is_infinite() {
-                let gap = |other: &crate::rolling::Train| {
+                let gap = |other: &crate::train::Train| {
                     let (from, to) = other.body.on(track, next)?;
                     let length = track.pieces[next].length_m;
                     Some(if track.pieces[next].joints[0] == exit { from } else { length - to })

@@ -7,12 +7,12 @@
 //!
 //! | module | part |
 //! |---|---|
-//! | [`mod@line`], [`generate`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
+//! | [`mod@file`], [`generate`], [`mod@line`], [`track`] | a line from its file: stations, the lines between them, the ground as it lies |
 //! | [`motion`], [`driver`] | trains as bodies, and who drives them |
-//! | [`onboard`], [`ground`] | the kernel's devices |
+//! | [`onboard`], [`ground`], `equipment`, [`counted`] | the kernel's devices, and what each has |
 //! | [`dispatcher`] | who asks for routes and turns lines |
 //! | [`fault`], [`defect`] | what fails, when, for how long; what is wrong all the time |
-//! | [`world`], [`rolling`], `judge` | a cycle of everything; of a train; the truth |
+//! | [`world`], [`train`], `run`, `rolling`, `counting`, `judge` | a line at work; a cycle of everything, of a train, of counting; the truth |
 //! | [`campaign`], [`headline`] | many runs: whether a fault leads to harm; what the shortened operate time buys |
 //! | [`cut_sets`] | what a case is shown of faults: single ones, and two that together lead to harm |
 //! | [`splitting`], [`rare`] | how likely something rare is; faults that come by chance |
@@ -22,16 +22,20 @@
 
 #![forbid(unsafe_code)]
 
+pub mod bound;
 pub mod campaign;
 pub mod charts;
-pub mod counting;
+pub mod counted;
+mod counting;
 pub mod cut_sets;
 pub mod defect;
 pub mod diagram;
 pub mod dispatcher;
 pub mod driver;
+mod equipment;
 pub mod event;
 pub mod fault;
+pub mod file;
 pub mod film;
 pub mod generate;
 pub mod ground;
@@ -42,7 +46,9 @@ pub mod motion;
 pub mod onboard;
 pub mod rare;
 pub mod record;
-pub mod rolling;
+mod rolling;
+mod run;
 pub mod splitting;
 pub mod track;
+pub mod train;
 pub mod world;

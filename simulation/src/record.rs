@@ -64,7 +64,7 @@ impl Record {
     fn look(&mut self, world: &World<'_>, open: &mut (Vec<Option<usize>>, Vec<Option<usize>>)) {
         let now_s = world.now_ms as f64 / 1000.0;
         let track = &world.line.track;
-        let glimpse = |train: &crate::rolling::Train| Glimpse {
+        let glimpse = |train: &crate::train::Train| Glimpse {
             front_m: train.body.along_m(track),
             tail_m: train.body.tail_along_m(track),
             speed_kmh: train.body.speed * 3.6,

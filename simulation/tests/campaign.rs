@@ -9,7 +9,7 @@ use atc_simulation::fault::{Extent, Fault, Kind};
 use atc_simulation::generate::Shape;
 use atc_simulation::line::Line;
 use atc_simulation::onboard::Signal;
-use atc_simulation::rolling::Train;
+use atc_simulation::train::Train;
 use atc_simulation::world::{Setting, World};
 
 /// Four tracks a station, so that trains follow each other on the line.

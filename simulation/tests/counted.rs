@@ -4,7 +4,6 @@ use std::path::Path;
 
 use atc_kernel::interlocking::CircuitSet;
 use atc_simulation::campaign::{Campaign, Cause, run, setting};
-use atc_simulation::counting;
 use atc_simulation::driver::Drivers;
 use atc_simulation::event::What;
 use atc_simulation::fault::{Extent, Kind};
@@ -38,7 +37,7 @@ fn arrivals(world: &World<'_>) -> usize {
 fn heads(world: &World<'_>) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     for station in 0..world.stations.len() {
-        let Some(counted) = counting::at(world.line, station) else { continue };
+        let Some(counted) = world.line.counted_at(station) else { continue };
         let heads = world.trains.iter().map(|train| world.line.track.pieces[train.body.front().piece].circuit);
         let on = heads.filter(|circuit| counted.blocks.iter().flatten().any(|section| section == circuit));
         all.extend(on.map(|circuit| (station, circuit)));
