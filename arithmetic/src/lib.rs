@@ -10,6 +10,10 @@
 //! | [`energy`], [`root`] | the braking pattern |
 //! | [`part`], [`Quotient::digit`] | the train's position between two knots of its table |
 //! | [`lowest_member`] | the lowest aspect of a set of any size |
+//!
+//! # In the house
+//!
+//! Uses no other crate of the house. Used by `atc-kernel`, `atc-proofs`. Begin with [`divide_up`].
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -7,6 +7,10 @@
 //! kernel's constructors and its `is_valid` in every step, so that no byte that C has written is ever trusted.
 //!
 //! No allocation, no global state, no panic that is known of. The names are C's.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`. Used by no other crate of the house. Begin with `include/atc.h` and [`border`].
 #![no_std]
 #![deny(unsafe_code)]
 #![allow(non_camel_case_types, reason = "these are C's names")]

@@ -7,6 +7,11 @@
 //!
 //! The case is one value, [`case::Case`]; every output is a function of it. Nothing here decides what is true: it
 //! reads what engines report, credits nothing that a report does not show, and never says more than its weakest part.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-layout`, `atc-line`, `atc-models`, `atc-oracle`, `atc-proofs`, `atc-protocol`,
+//! `atc-prover`, `atc-simulation`. Used by no other crate of the house. Begin with [`case::Case`].
 #![forbid(unsafe_code)]
 
 pub mod again;

@@ -1,4 +1,8 @@
 //! Writes a file so that nothing half-written ever has its name. For every command that has an `-o`.
+//!
+//! # In the house
+//!
+//! Uses no other crate of the house. Used by `atc-fmi`, `atc-oracle`, `atc-waveform`. Begin with [`write()`].
 
 use std::fs;
 use std::io::{self, Write as _};

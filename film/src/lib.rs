@@ -7,6 +7,10 @@
 //!   read it back.
 //!
 //! The crate knows nothing of the kernel: who makes a film says what is in it.
+//!
+//! # In the house
+//!
+//! Uses no other crate of the house. Used by `atc-oracle`, `atc-simulation`. Begin with [`Film`].
 
 #![forbid(unsafe_code)]
 

@@ -7,6 +7,10 @@
 //! * [`description`], [`package`]: the XML and the file around all of it.
 //!
 //! Nothing here decides anything. It calls the protocol's machine.
+//!
+//! # In the house
+//!
+//! Uses `atc-files`, `atc-protocol`. Used by no other crate of the house. Begin with [`cycle`].
 #![deny(unsafe_code)]
 
 pub mod border;

@@ -31,6 +31,12 @@
 //! * **The fail-safe order is in the type.** Outputs are ordered, so that "safer" is a comparison:
 //!   a lower [`aspect::Display`], a higher [`supervision::Brake`], more sections in [`block::Output::occupied`], a lower
 //!   [`permitted::Permission`], a wider [`position::Interval`], fewer proceed aspects in [`interlocking::Output`].
+//!
+//! # In the house
+//!
+//! Uses `atc-arithmetic`. Used by `atc-adversary`, `atc-c`, `atc-commands`, `atc-evidence`, `atc-film-kernel`,
+//! `atc-layout`, `atc-line`, `atc-models`, `atc-oracle`, `atc-proofs`, `atc-protocol`, `atc-prover`, `atc-python`,
+//! `atc-simulation`, `atc-tests`, `atc-waveform`. Begin with [`aspect`], the smallest machine with a deadline.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -9,6 +9,11 @@
 //! * [`second`]: a layout held against a railML file, by other code than the import's.
 //! * [`lives`]: what the ground counts on telegrams to live, held against what trains do.
 //! * [`Errors`]: every broken rule with its place in the file and what would be right.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`. Used by `atc-adversary`, `atc-evidence`, `atc-line`, `atc-oracle`, `atc-protocol`,
+//! `atc-simulation`, `atc-tests`. Begin with [`read`] and [`Description`].
 
 #![forbid(unsafe_code)]
 

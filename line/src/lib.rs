@@ -8,7 +8,10 @@
 //! * [`DataCheck`]: a rule and what it came to, for lines and for stations. [`Rule`] lists the rules of lines.
 //! * [`seam`]: what the stations count on, held against what the trains do; both places are named.
 //!
-//! It knows the kernel and `atc-layout`. The oracle and the safety case use it. Begin with [`Line`].
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-layout`. Used by `atc-evidence`, `atc-oracle`, `atc-protocol`, `atc-python`. Begin with
+//! [`Line`].
 
 #![forbid(unsafe_code)]
 

@@ -19,6 +19,10 @@
 //! | [`claimed`] | the machine as claimed by the patent, to compare with |
 //!
 //! [`catalogue`] lists the models with their parameters, [`check`] searches one.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`. Used by `atc-evidence`. Begin with [`comparison`] and [`catalogue`].
 #![forbid(unsafe_code)]
 
 pub mod assumptions;

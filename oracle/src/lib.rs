@@ -8,6 +8,12 @@
 //! * [`conform`]: another implementation against the kernel, down to the first difference; and vectors.
 //! * [`replay`]: the logs of recorders against the kernel, in bulk.
 //! * [`signal`]: the train control signal as a WAV file, made and read back.
+//!
+//! # In the house
+//!
+//! Uses `atc-files`, `atc-film`, `atc-film-kernel`, `atc-kernel`, `atc-layout`, `atc-line`, `atc-protocol`,
+//! `atc-simulation`, `atc-waveform`. Used by `atc-adversary`, `atc-commands`, `atc-evidence`, `atc-tests`. Begin
+//! with [`serve`].
 
 pub mod chart;
 pub mod conform;

@@ -6,6 +6,11 @@
 //!
 //! A theorem is stated on the fields of the state ([`atc_kernel::aspect::Parts`]) and on ghosts, never with the
 //! kernel's own helpers: those may be wrong.
+//!
+//! # In the house
+//!
+//! Uses `atc-arithmetic`, `atc-kernel`. Used by `atc-evidence`, `atc-prover`. Begin with [`aspect`] and
+//! [`Harness`].
 #![no_std]
 #![cfg_attr(not(engine = "cbmc"), forbid(unsafe_code))]
 

@@ -6,6 +6,11 @@
 //! * [`schema`]: the JSON Schema of all of it, generated from the types.
 //!
 //! Nothing here reads a file, a clock or a socket: it also runs where there is none of them, in a browser.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-layout`, `atc-line`. Used by `atc-adversary`, `atc-commands`, `atc-evidence`, `atc-fmi`,
+//! `atc-oracle`, `atc-python`, `atc-tests`, `atc-wasm`. Begin with [`Session`] and [`machine`].
 
 pub mod form;
 pub mod machine;

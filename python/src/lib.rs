@@ -4,6 +4,11 @@
 //! * `columns`: many cycles of one machine at once, from arrays of numbers into arrays of numbers.
 //!
 //! Nothing here decides anything. It calls the oracle and the kernel.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-line`, `atc-protocol`. Used by no other crate of the house. Begin with
+//! `python/atc/__init__.py`.
 
 use pyo3::prelude::*;
 

@@ -19,6 +19,11 @@
 //! | [`record`], [`diagram`], [`charts`], [`film`] | pictures; a run as a film |
 //!
 //! A run is the same every time for one seed.
+//!
+//! # In the house
+//!
+//! Uses `atc-film`, `atc-kernel`, `atc-layout`, `atc-waveform`. Used by `atc-evidence`, `atc-oracle`. Begin with
+//! [`world`].
 
 #![forbid(unsafe_code)]
 

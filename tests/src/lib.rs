@@ -1,6 +1,11 @@
 //! Tests across the folders. This library is what they share: charts drawn in ASCII, the devices that a chart
 //! is checked against, sessions and drawn charts, trains under way, and the input of the
 //! benchmarks; and a browser.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-layout`, `atc-oracle`, `atc-protocol`. Used by no other crate of the house. Begin with
+//! `tests/tests/interlocking_situations.rs`.
 
 pub mod approach;
 pub mod block_chart;

@@ -14,6 +14,10 @@
 //! | `reply()` | where the reply is; it stays there until the next call |
 //!
 //! What a host passes is never trusted: a number that is no session has no answer, and a request is bytes that need not be text.
+//!
+//! # In the house
+//!
+//! Uses `atc-protocol`. Used by no other crate of the house. Begin with `wasm/index.js`.
 
 use std::cell::RefCell;
 

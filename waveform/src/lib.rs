@@ -61,6 +61,11 @@
 //! }
 //! # Ok::<(), atc_waveform::config::ConfigError>(())
 //! ```
+//!
+//! # In the house
+//!
+//! Uses `atc-files`, `atc-kernel`. Used by `atc-oracle`, `atc-simulation`. Begin with [`transmitter`] and
+//! [`receiver`].
 #![forbid(unsafe_code)]
 
 pub mod calibration;

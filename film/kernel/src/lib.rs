@@ -9,6 +9,10 @@
 //!
 //! The one who writes the words and the module that reads them are this one file's two sides, so there is one form of
 //! them.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`. Used by `atc-oracle`. Begin with [`Device`].
 
 mod device;
 #[cfg(target_arch = "wasm32")]

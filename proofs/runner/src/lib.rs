@@ -3,6 +3,10 @@
 //! Three engines are here. `native` *tests*: it draws values and replays counterexamples. `cbmc` *proves*, on the
 //! compiled, optimised code: Rust → WebAssembly → C → CBMC. `reals` proves the algebra of motion, by Z3. Kani is run by `cargo kani` itself. A result is only ever
 //! what a run said: a prover that is missing, was killed or was silent is never a pass.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-proofs`. Used by `atc-evidence`. Begin with [`select`] and [`mod@campaign`].
 
 mod alone;
 mod asked;

@@ -11,6 +11,11 @@
 //! * [`joined`], [`pair`], [`between`], [`sliding`]: two stations with a line between them, as one ground and one device, for the program `two_stations`.
 //! * [`altered`]: stations whose files were altered at random, and still break no rule.
 //! * [`stations`]: where it hunts. [`known`]: the faults that it must find while they are there.
+//!
+//! # In the house
+//!
+//! Uses `atc-kernel`, `atc-layout`, `atc-oracle`, `atc-protocol`. Used by no other crate of the house. Begin with
+//! [`hunt`].
 
 pub mod altered;
 pub mod arsenal;
