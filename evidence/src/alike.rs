@@ -1,8 +1,7 @@
 //! When two cases are the same: without their times, and without other chance.
 
-use crate::case::{Case, Severity};
+use crate::case::{Case, Matter};
 use crate::inputs::measured;
-use crate::open::SEARCHED;
 
 /// The case without its times, for a comparison: what is left must be the same however it was run. Of what rejects a mutant the harness is
 /// left, and not the claims of the counterexample.
@@ -21,7 +20,7 @@ pub fn without_times(mut case: Case) -> Case {
     case.second_opinions.iter_mut().for_each(|one| one.seconds = 0.0);
     case.measurements.seconds = 0.0;
     // Who searched a model, the tests or this run, is no matter of what was found.
-    case.open_items.retain(|item| item.severity != Severity::Note || item.about != SEARCHED);
+    case.open_items.retain(|item| item.matter != Matter::Searched);
     // How fast this machine is.
     case.measurements.figures.retain(|figure| figure.group != measured::SPEED);
     case

@@ -2,8 +2,8 @@
 
 use crate::argument;
 use crate::case::{
-    Case, Condition, Engine, EngineResult, Evidence, Kind, OpenItem, Phase, Provenance, Run as About, SCHEMA, Severity,
-    Status, Technique, Tool,
+    Case, Condition, Engine, EngineResult, Evidence, Kind, Matter, OpenItem, Phase, Provenance, Run as About, SCHEMA,
+    Severity, Status, Technique, Tool,
 };
 use crate::error::Fault;
 use crate::hazard;
@@ -151,9 +151,7 @@ pub fn build(plan: &Plan, results: Results, required: Required) -> Result<Case, 
 
 /// Makes a case the one of this station: what it says of the machine is what it said before.
 pub fn at_station(case: &mut Case, station: &station::Checked) {
-    // Items about one thing may have been put together: what is about a former station goes, whatever else stands.
-    let former: Vec<_> = case.station.iter().flat_map(open::of_station).collect();
-    case.open_items.retain(|item| !former.iter().any(|one| one.text == item.text));
+    case.open_items.retain(|item| item.matter != Matter::StationData);
     let station = station.case(&case.evidence, &case.conditions);
     case.open_items.extend(open::of_station(&station));
     case.open_items = open::grouped(std::mem::take(&mut case.open_items));
@@ -254,14 +252,6 @@ fn tools(plan: &Plan, provenance: &Provenance) -> Vec<Tool> {
         .collect()
 }
 
-/// Whether an open item is about several pieces of evidence with one reason, such as `3 models`.
-fn of_many(about: &str) -> bool {
-    let kinds = [Kind::Harness, Kind::Model, Kind::Mutant, Kind::Measured, Kind::Test];
-    about.split_once(' ').is_some_and(|(count, what)| {
-        count.parse::<usize>().is_ok() && kinds.into_iter().any(|kind| open::plural(kind) == what)
-    })
-}
-
 /// The end of the run: complete or not, and the exit code with its reasons.
 pub fn status(case: &Case, required: Required) -> Status {
     let mut counts: BTreeMap<String, BTreeMap<Verdict, usize>> = BTreeMap::new();
@@ -281,10 +271,8 @@ pub fn status(case: &Case, required: Required) -> Status {
         reasons.push(format!("{} is {}: {}", one.id, one.verdict, one.why()));
     }
     for one in case.open_items.iter().filter(|one| one.severity == Severity::Stop) {
-        // Those of line and station follow below, each once.
-        let of_data = data.iter().any(|item| item.text == one.text);
-        let of_evidence = case.evidence.iter().any(|evidence| evidence.title == one.about);
-        if !of_data && !of_evidence && !of_many(&one.about) {
+        // Each result stands above, and those of line and station follow below, each once.
+        if !matches!(one.matter, Matter::Result | Matter::LineData | Matter::StationData) {
             reasons.push(format!("{}: {}", one.about, one.text));
         }
     }

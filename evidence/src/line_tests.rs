@@ -1,7 +1,7 @@
 //! What the case adds to a line: the sizes for which theorems are proved. And what decides that a line is refused.
 
 use super::{EXAMPLE, case, example};
-use crate::case::{Asked, DataCheck, Outcome};
+use crate::case::{Asked, DataCheck, Matter, Outcome};
 use crate::open::of_checks;
 use std::path::Path;
 
@@ -20,7 +20,9 @@ fn a_line_beyond_what_is_proved_is_told_so() {
 #[test]
 fn nothing_is_open_on_the_example() {
     let line = case(&example().expect("good"), &[]);
-    assert!(of_checks(&line.checks).is_empty() && line.checks.iter().all(|check| check.outcome.holds()));
+    assert!(
+        of_checks(Matter::LineData, &line.checks).is_empty() && line.checks.iter().all(|check| check.outcome.holds())
+    );
 }
 
 /// Before, a check was a sentence, and one with the letters "NO" was refused. So a line called "NORTH" had an open item that stops the
@@ -45,8 +47,8 @@ fn an_outcome_decides_and_no_word_of_a_text() {
     // The old rule, on what the two would have said.
     let old = |check: &DataCheck, what: &str| format!("{}: {} {what}", check.rule, check.scope).contains("NO");
     assert!(old(&met, "") && !old(&broken, "one is too long"), "the old way was wrong about both");
-    assert!(of_checks(&[met]).is_empty());
-    let items = of_checks(&[broken]);
+    assert!(of_checks(Matter::LineData, &[met]).is_empty());
+    let items = of_checks(Matter::LineData, &[broken]);
     assert_eq!(items.len(), 1);
     assert_eq!(items[0].about, "l.toml:1:1");
     assert_eq!(items[0].text, "one is too long (against s.toml:2:3) [train-length]");

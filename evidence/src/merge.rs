@@ -2,7 +2,7 @@
 //! contradict each other the worse verdict counts and an open item says so.
 
 use crate::build::Results;
-use crate::case::{OpenItem, Phase, Provenance, Severity};
+use crate::case::{Matter, OpenItem, Phase, Provenance, Severity};
 use crate::error::Fault;
 use crate::inputs::proofs::Campaigned;
 use crate::inputs::provenance::differences;
@@ -34,6 +34,7 @@ pub fn join(mut runs: Vec<(String, Results)>) -> Result<Results, Vec<Fault>> {
     let all = (1..=of).map(|number| Shard { number, of }).filter(|shard| !there.contains(shard));
     let missing = all.map(|shard| OpenItem {
         severity: Severity::Open,
+        matter: Matter::Shard,
         about: format!("shard {shard}"),
         text: "This shard is missing: what belongs to it is not run.".to_owned(),
     });
@@ -202,7 +203,7 @@ impl Seen<'_> {
             let name = |place: usize| self.names.get(place).cloned().unwrap_or_default();
             let before = name(self.from.get(&id).copied().unwrap_or(0));
             let text = format!("{before} and {} have different verdicts. The worse one counts.", name(self.place));
-            self.open.0.push(OpenItem { severity: Severity::Open, about: id, text });
+            self.open.0.push(OpenItem { severity: Severity::Open, matter: Matter::Contradiction, about: id, text });
         }
         if order == Ordering::Less {
             *old = new;

@@ -24,11 +24,11 @@ pub struct Plan {
     /// The case's own sources.
     pub data: Data,
     /// The harnesses.
-    pub harnesses: Vec<proofs::Catalogue>,
+    pub harnesses: Vec<proofs::HarnessInfo>,
     /// The models.
-    pub models: Vec<models::Catalogue>,
+    pub models: Vec<models::ModelInfo>,
     /// The wrong kernels.
-    pub mutants: Vec<mutants::Catalogue>,
+    pub mutants: Vec<mutants::MutantInfo>,
     /// The requirements.
     pub requirements: Vec<Requirement>,
     /// The quotations of requirements.
@@ -52,7 +52,7 @@ pub struct Plan {
 pub fn plan(
     root: &Path,
     (line, station): (Line, Option<station::Checked>),
-    mutants: Vec<mutants::Catalogue>,
+    mutants: Vec<mutants::MutantInfo>,
 ) -> Result<Plan, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];
     let data = Data::read(root).map_err(one)?;
@@ -60,11 +60,7 @@ pub fn plan(
     let citations = requirements::citations(root, QUOTING).map_err(one)?;
     let ids: Vec<_> = requirements.iter().map(|requirement| requirement.id.clone()).collect();
     let mentions = trace::mentions(root, &ids).map_err(one)?;
-    let (mut harnesses, models) = (proofs::catalogue(), models::catalogue());
-    let mut places = proofs::places(root).map_err(one)?;
-    for harness in &mut harnesses {
-        harness.at = places.remove(&harness.name);
-    }
+    let (harnesses, models) = (proofs::catalogue(), models::catalogue());
     let uses = srac::uses(&data.assumptions, &harnesses, &models, &data.argument);
     let raise = ratchet(data.ratchet, &count(&harnesses, &models, &mutants, &requirements))?;
     let plan = Plan { data, harnesses, models, mutants, requirements, citations, mentions, uses, line, station, raise };
@@ -74,9 +70,9 @@ pub fn plan(
 
 /// What there is to count.
 fn count(
-    harnesses: &[proofs::Catalogue],
-    models: &[models::Catalogue],
-    mutants: &[mutants::Catalogue],
+    harnesses: &[proofs::HarnessInfo],
+    models: &[models::ModelInfo],
+    mutants: &[mutants::MutantInfo],
     requirements: &[Requirement],
 ) -> Ratchet {
     Ratchet {

@@ -4,7 +4,7 @@
 //! changes; so is each open item, unless it only groups such evidence. What holds has none: an incomplete case without
 //! results does not look clean, as its invocation says that it did not succeed.
 
-use crate::case::{Case, Evidence, OpenItem, Severity};
+use crate::case::{Case, Evidence, Matter, OpenItem, Severity};
 use crate::inputs::provenance::sha256;
 use crate::verdict::Verdict;
 use serde::Serialize;
@@ -130,7 +130,7 @@ enum Level {
 /// The text cannot be written as JSON.
 pub fn json(case: &Case) -> Result<String, String> {
     let mut results: Vec<_> = case.evidence.iter().filter(|one| !one.verdict.holds()).map(evidence).collect();
-    results.extend(case.open_items.iter().filter(|one| !groups(case, one)).map(|one| item(case, one)));
+    results.extend(case.open_items.iter().filter(|one| one.matter != Matter::Result).map(|one| item(case, one)));
     let what = "The checkout: the folder that holds kernel/, proofs/ and spec/.".to_owned();
     let log = Log {
         schema: SCHEMA,
@@ -193,12 +193,6 @@ fn item(case: &Case, one: &OpenItem) -> Finding {
     let requirements = case.requirements.iter().filter(|one| about.contains(&one.id.as_str())).map(|one| &one.at);
     let fingerprint = ("openItem/v1", sha256(format!("{rule}\n{}\n{}", one.about, one.text).as_bytes()));
     finding(rule, level, format!("{}: {}", one.about, one.text), requirements, fingerprint)
-}
-
-/// Whether the item says no more than the results of the evidence that it groups.
-fn groups(case: &Case, item: &OpenItem) -> bool {
-    let mut bad = case.evidence.iter().filter(|one| !one.verdict.holds());
-    bad.any(|one| item.text.starts_with(&format!("{}: {}", one.verdict, one.why())))
 }
 
 fn finding<'a>(

@@ -2,7 +2,7 @@
 
 use super::json;
 use crate::argument::tests::evidence;
-use crate::case::{Case, OpenItem, Requirement, Severity};
+use crate::case::{Case, Matter, OpenItem, Requirement, Severity};
 use crate::html::tests;
 use crate::verdict::Verdict;
 use serde_json::{Value, json};
@@ -32,15 +32,15 @@ fn mixed() -> Case {
     let mut not_run = evidence("harness:t", Verdict::NotRun);
     not_run.at = Some("proofs/src/time.rs:12".to_owned());
     case.evidence = vec![failed, not_run, evidence("model:n", Verdict::ModelChecked)];
-    let item = |severity, about: &str, text: &str| {
+    let item = |severity, matter, about: &str, text: &str| {
         let (about, text) = (about.to_owned(), text.to_owned());
-        OpenItem { severity, about, text }
+        OpenItem { severity, matter, about, text }
     };
     case.open_items = vec![
-        item(Severity::Stop, "m", "failed: no theorem noticed it"),
-        item(Severity::Stop, "Line", "BLK-9: NO"),
-        item(Severity::Open, "ACC-1, ACC-2", "No line of the code quotes it."),
-        item(Severity::Note, "provenance", "Not a git checkout."),
+        item(Severity::Stop, Matter::Result, "m", "failed: no theorem noticed it"),
+        item(Severity::Stop, Matter::LineData, "Line", "BLK-9: NO"),
+        item(Severity::Open, Matter::Requirement, "ACC-1, ACC-2", "No line of the code quotes it."),
+        item(Severity::Note, Matter::Provenance, "provenance", "Not a git checkout."),
     ];
     case.requirements = ["ACC-1", "ACC-2", "ACC-22"]
         .map(|id| Requirement {
@@ -131,15 +131,19 @@ fn an_incomplete_case_without_results_did_not_succeed() {
     );
 }
 
-/// A line's name may have spaces; what is one reason for many is told with each of them.
+/// What stops the run is a reason by what it is about, and not by its words; a result is told once.
 #[test]
-fn what_stops_a_line_is_a_reason_whatever_its_name() {
+fn what_stops_a_run_is_a_reason_whatever_its_name() {
     let mut case = mixed();
-    for about in ["A line with spaces", "2 models"] {
+    for (matter, about) in
+        [(Matter::Ratchet, "A line with spaces"), (Matter::Ratchet, "2 models"), (Matter::Result, "m 2")]
+    {
         let text = "BLK-9: NO".to_owned();
-        case.open_items.push(OpenItem { severity: Severity::Stop, about: about.to_owned(), text });
+        case.open_items.push(OpenItem { severity: Severity::Stop, matter, about: about.to_owned(), text });
     }
     let reasons = crate::build::status(&case, crate::build::Required::NoDefect).reasons;
-    assert!(reasons.contains(&"A line with spaces: BLK-9: NO".to_owned()), "{reasons:?}");
-    assert!(!reasons.iter().any(|reason| reason.starts_with("2 models")), "{reasons:?}");
+    for about in ["A line with spaces", "2 models"] {
+        assert!(reasons.contains(&format!("{about}: BLK-9: NO")), "{reasons:?}");
+    }
+    assert!(!reasons.iter().any(|reason| reason.starts_with("m 2")), "{reasons:?}");
 }

@@ -11,8 +11,8 @@ const AT: &str = "spec/assumptions.toml";
 /// Who uses each assumption: harnesses, bounds, models and goals.
 pub fn uses(
     assumptions: &[Assumption],
-    harnesses: &[proofs::Catalogue],
-    models: &[models::Catalogue],
+    harnesses: &[proofs::HarnessInfo],
+    models: &[models::ModelInfo],
     argument: &data::Argument,
 ) -> BTreeMap<String, BTreeSet<String>> {
     let mut uses: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -54,7 +54,7 @@ fn carriers<'a>(assumptions: &'a [Assumption], bound: &'a str) -> impl Iterator<
 pub fn check(
     assumptions: &[Assumption],
     uses: &BTreeMap<String, BTreeSet<String>>,
-    harnesses: &[proofs::Catalogue],
+    harnesses: &[proofs::HarnessInfo],
     hazards: &[data::Hazard],
 ) -> Result<(), Vec<Fault>> {
     let mut faults = Vec::new();
@@ -113,10 +113,10 @@ pub fn conditions(assumptions: &[Assumption], uses: &BTreeMap<String, BTreeSet<S
 mod tests {
     use super::{check, conditions, uses};
     use crate::data::{Argument, Assumption};
-    use crate::inputs::proofs::Catalogue;
+    use crate::inputs::proofs::HarnessInfo;
 
-    fn harness(assumption: &str, bound: &str) -> Catalogue {
-        Catalogue {
+    fn harness(assumption: &str, bound: &str) -> HarnessInfo {
+        HarnessInfo {
             name: "t".to_owned(),
             theorem: "T".to_owned(),
             statement: String::new(),
@@ -141,7 +141,7 @@ mod tests {
         }
     }
 
-    fn faults(assumptions: &[Assumption], harness: Catalogue) -> String {
+    fn faults(assumptions: &[Assumption], harness: HarnessInfo) -> String {
         let harnesses = [harness];
         let uses = uses(assumptions, &harnesses, &[], &Argument::default());
         let faults = check(assumptions, &uses, &harnesses, &[]).err().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use crate::argument::{conclusions, resolve, roll_up};
 use crate::build::{Required, status};
-use crate::case::{Case, Kind, OpenItem, Severity};
+use crate::case::{Case, Kind, Matter, OpenItem, Severity};
 use crate::inputs::{measured, second};
 use crate::verdict::Verdict;
 
@@ -32,7 +32,12 @@ pub fn mark(case: &mut Case, changed: &[String]) {
     }
     for folder in changed {
         let text = format!("{folder} has changed since the engines ran: run again.");
-        case.open_items.push(OpenItem { severity: Severity::Open, about: "stale".to_owned(), text });
+        case.open_items.push(OpenItem {
+            severity: Severity::Open,
+            matter: Matter::Stale,
+            about: "stale".to_owned(),
+            text,
+        });
     }
     let known: Vec<_> = case.evidence.iter().map(|one| one.id.clone()).collect();
     let verdict = |id: &str| case.evidence.iter().find(|one| one.id == id).map(|one| one.verdict);

@@ -31,6 +31,10 @@ pub struct Harness {
     pub apart: &'static [usize],
     /// The module in which Kani's proofs of it stand.
     pub module: &'static str,
+    /// The file in which it stands, from the root of the checkout.
+    pub file: &'static str,
+    /// The line of the file at which it begins.
+    pub line: u32,
     /// Its claims, by number.
     pub claims: &'static [Point],
     /// Its cover points, by number.
@@ -118,6 +122,8 @@ macro_rules! harness {
                     derived: $derived,
                     apart: $crate::harness::counting_up(&[$($($apart),+)?]),
                     module: module_path!(),
+                    file: file!(),
+                    line: line!(),
                     claims: &[$(Point { name: stringify!($claim), text: $claim_text }),+],
                     covers: &[$(Point { name: stringify!($cover), text: $cover_text }),+],
                     run: |engine| run(engine),

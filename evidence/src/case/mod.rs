@@ -22,7 +22,7 @@ pub use run::{Phase, Run};
 pub use station::{Asked, Confirm, DataCheck, Finding, NeededRule, Origin, Outcome, Station, StationCondition};
 
 /// The version of this shape.
-pub const SCHEMA: u32 = 7;
+pub const SCHEMA: u32 = 8;
 
 /// A whole safety case.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -146,12 +146,60 @@ pub enum Severity {
     Note,
 }
 
+/// What an open item is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Matter {
+    /// Results of evidence that are not good, with one reason.
+    Result,
+    /// A rule that the line's data break.
+    LineData,
+    /// A rule that the station's data break.
+    StationData,
+    /// A requirement without a theorem, a line of code or a mutant; or with one that survives.
+    Requirement,
+    /// A doubt about the argument.
+    Defeater,
+    /// An engine without a result, or with fewer than another one.
+    Engine,
+    /// A citation that does not say what its requirement says.
+    Citation,
+    /// An assumption that nothing uses.
+    Assumption,
+    /// A rule of layouts that nothing has shown to be needed.
+    NeededRule,
+    /// Pinned numbers that have grown.
+    Ratchet,
+    /// Which sources it is about.
+    Provenance,
+    /// Faults that were not searched, or that a condition alone excludes.
+    Faults,
+    /// What the tests of this run leave out.
+    Tests,
+    /// Models that this run did not search, since the tests did.
+    Searched,
+    /// A trace that cannot be drawn.
+    Chart,
+    /// Figures that are not of these sources.
+    Figures,
+    /// What a run with a limit of time left out.
+    Limit,
+    /// A shard that is missing.
+    Shard,
+    /// Shards that contradict each other.
+    Contradiction,
+    /// A folder that has changed since.
+    Stale,
+}
+
 /// Something that is not as it should be.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OpenItem {
     /// How bad it is.
     pub severity: Severity,
+    /// What kind of thing it is about. What an item counts for goes by this, and never by its words.
+    pub matter: Matter,
     /// The evidence, requirement or node that it is about.
     pub about: String,
     /// What is open.

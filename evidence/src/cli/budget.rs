@@ -1,6 +1,6 @@
 //! How much of a run fits into the time that it has.
 
-use crate::case::{OpenItem, Severity};
+use crate::case::{Matter, OpenItem, Severity};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -47,6 +47,7 @@ impl Budget {
         let (_, seconds) = self.end.filter(|_| left > 0)?;
         Some(OpenItem {
             severity: Severity::Open,
+            matter: Matter::Limit,
             about: "run".to_owned(),
             text: format!(
                 "{left} pieces of evidence were not run: they would not have ended within {seconds} s (--within). \

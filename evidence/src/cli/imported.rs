@@ -1,10 +1,9 @@
 //! What other programs have found, read and checked before it counts: campaigns of other engines, and models that the
 //! tests have searched.
 
-use crate::case::{OpenItem, Provenance, Severity};
+use crate::case::{Matter, OpenItem, Provenance, Severity};
 use crate::error::{Fault, read};
 use crate::inputs::proofs::{Campaigned, ENGINES};
-use crate::open::SEARCHED;
 use crate::plan::Plan;
 use crate::scope::Chosen;
 use atc_models::{Outcome, Searched};
@@ -62,7 +61,12 @@ pub(super) fn import(path: &Path, sources: &str) -> Result<Campaigned, Fault> {
 /// What the page says of so many models that the tests have searched.
 pub(super) fn searched_by_tests(models: usize) -> Option<OpenItem> {
     let text = format!("{models} of them were searched by the tests of this commit, and not once more in this run.");
-    (models > 0).then(|| OpenItem { severity: Severity::Note, about: SEARCHED.to_owned(), text })
+    (models > 0).then(|| OpenItem {
+        severity: Severity::Note,
+        matter: Matter::Searched,
+        about: "models".to_owned(),
+        text,
+    })
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::{document, headline, station_page};
 use crate::case::{
     Asked, Case, Chart, Conclusion, CutSet, DataCheck, Derived, Evidence, Excluded, FailureMode, Figure, Kind, Line,
-    Measurements, OpenItem, Outcome, Provenance, Run, SCHEMA, SecondOpinion, Severity, Station, Status,
+    Matter, Measurements, OpenItem, Outcome, Provenance, Run, SCHEMA, SecondOpinion, Severity, Station, Status,
 };
 use crate::inputs::measured::HERE;
 use crate::verdict::Verdict;
@@ -14,7 +14,12 @@ pub fn case(verdict: Verdict, open: Option<Severity>) -> Case {
         Evidence { statement: "a < b & c".to_owned(), seconds: 1.0, ..Evidence::bare(Kind::Harness, "t", verdict) };
     let missing = if verdict.is_result() { vec![] } else { vec![evidence.id.clone()] };
     let about = "ACC-1".to_owned();
-    let item = |severity| OpenItem { severity, about: about.clone(), text: "Something is open.".to_owned() };
+    let item = |severity| OpenItem {
+        severity,
+        matter: Matter::Requirement,
+        about: about.clone(),
+        text: "Something is open.".to_owned(),
+    };
     Case {
         schema: SCHEMA,
         title: "A kernel".to_owned(),

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 /// What a model is, apart from any result.
 #[derive(Clone, Debug)]
-pub struct Catalogue {
+pub struct ModelInfo {
     /// Its name.
     pub name: String,
     /// What it shows, in plain English.
@@ -22,11 +22,11 @@ pub struct Catalogue {
 }
 
 /// The models of `atc-models`, in its order.
-pub fn catalogue() -> Vec<Catalogue> {
+pub fn catalogue() -> Vec<ModelInfo> {
     let entries = atc_models::catalogue();
     entries
         .iter()
-        .map(|entry| Catalogue {
+        .map(|entry| ModelInfo {
             name: entry.name.to_owned(),
             statement: entry.statement.clone(),
             requirements: owned(entry.requirements),
@@ -41,7 +41,7 @@ pub fn id(name: &str) -> String {
 }
 
 /// The evidence of every model, and what belongs with it. A model without an outcome is not run.
-pub fn evidence(catalogue: &[Catalogue], outcomes: &[Outcome], why_not: &str) -> (Vec<Evidence>, Vec<Model>) {
+pub fn evidence(catalogue: &[ModelInfo], outcomes: &[Outcome], why_not: &str) -> (Vec<Evidence>, Vec<Model>) {
     catalogue
         .iter()
         .map(|model| {
@@ -55,7 +55,7 @@ pub fn evidence(catalogue: &[Catalogue], outcomes: &[Outcome], why_not: &str) ->
         .unzip()
 }
 
-fn judged(model: &Catalogue, outcome: &Outcome) -> (Evidence, Model) {
+fn judged(model: &ModelInfo, outcome: &Outcome) -> (Evidence, Model) {
     let properties: Vec<_> = outcome.properties.iter().map(|one| property(one, outcome.complete)).collect();
     let worst = Verdict::worst(properties.iter().map(|one| one.verdict));
     let (verdict, reason) = match worst {
@@ -174,7 +174,7 @@ fn claimed_display(step: &Step) -> Option<&Value> {
     step.words.get("as_claimed_km_h")
 }
 
-fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
+fn bare(model: &ModelInfo, verdict: Verdict, reason: &str) -> Evidence {
     Evidence {
         statement: model.statement.clone(),
         reason: Some(reason.to_owned()).filter(|reason| !reason.is_empty()),
@@ -184,7 +184,7 @@ fn bare(model: &Catalogue, verdict: Verdict, reason: &str) -> Evidence {
     }
 }
 
-fn nothing(model: &Catalogue) -> Model {
+fn nothing(model: &ModelInfo) -> Model {
     Model {
         id: id(&model.name),
         parameters: Vec::new(),
@@ -213,7 +213,7 @@ pub fn thousands(number: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Catalogue, evidence};
+    use super::{ModelInfo, evidence};
     use crate::verdict::Verdict;
     use atc_models::{Expectation, Outcome, PropertyOutcome, Trace, Verdict as Search};
     use serde_json::Value;
@@ -236,7 +236,7 @@ mod tests {
 
     fn outcome(properties: Vec<PropertyOutcome>, complete: bool) -> Verdict {
         let catalogue =
-            Catalogue { name: "m".to_owned(), statement: "s".to_owned(), requirements: vec![], assumptions: vec![] };
+            ModelInfo { name: "m".to_owned(), statement: "s".to_owned(), requirements: vec![], assumptions: vec![] };
         let outcome = Outcome {
             model: "m".to_owned(),
             statement: "s".to_owned(),

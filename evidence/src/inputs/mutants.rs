@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// What a wrong kernel is, apart from any result.
 #[derive(Clone, Debug)]
-pub struct Catalogue {
+pub struct MutantInfo {
     /// Its name.
     pub name: String,
     /// What is wrong with it.
@@ -27,13 +27,13 @@ pub struct Catalogue {
 ///
 /// # Errors
 /// The file is missing or wrong: a text that does not stand in the kernel exactly once, a harness that is not there.
-pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
+pub fn catalogue(root: &Path) -> Result<Vec<MutantInfo>, Fault> {
     let all = atc_prover::mutants::list(root).map_err(|error| Fault::new(&"wrong kernels", error))?;
     let one = |mutant: atc_prover::mutants::Mutant| {
         let file = mutant.path();
         let text = read(&root.join(&file))?;
         let line = text.find(&mutant.find).map(|place| text[..place].matches('\n').count() + 1);
-        Ok(Catalogue {
+        Ok(MutantInfo {
             name: mutant.name,
             what: mutant.what,
             requirements: mutant.requirements,
@@ -46,7 +46,7 @@ pub fn catalogue(root: &Path) -> Result<Vec<Catalogue>, Fault> {
 }
 
 /// The evidence of every wrong kernel. `stale`: the results belong to other sources.
-pub fn evidence(catalogue: &[Catalogue], results: Option<&Mutants>, stale: bool) -> Vec<Evidence> {
+pub fn evidence(catalogue: &[MutantInfo], results: Option<&Mutants>, stale: bool) -> Vec<Evidence> {
     catalogue
         .iter()
         .map(|mutant| {
@@ -140,7 +140,7 @@ pub fn killers(evidence: &Evidence) -> impl Iterator<Item = &str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Catalogue, Kill, evidence, killed, only_by_what_holds};
+    use super::{Kill, MutantInfo, evidence, killed, only_by_what_holds};
     use crate::case::{Evidence, Kind};
     use crate::verdict::Verdict;
     use atc_prover::report::{MutantResult, MutantVerdict, Mutants, Provenance};
@@ -157,7 +157,7 @@ mod tests {
 
     fn verdict(word: MutantVerdict, killed: bool, stale: bool) -> Verdict {
         let (name, what) = ("m".to_owned(), "w".to_owned());
-        let catalogue = Catalogue { name, what, requirements: vec![], at: None, find: String::new(), killers: vec![] };
+        let catalogue = MutantInfo { name, what, requirements: vec![], at: None, find: String::new(), killers: vec![] };
         let killer = kill("t", false);
         let result = MutantResult {
             name: "m".to_owned(),

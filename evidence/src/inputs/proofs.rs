@@ -4,19 +4,16 @@
 //! result with its own verdict, every cover point must be hit, and a word that is not known counts as no result.
 
 use super::owned;
-use super::requirements::tree;
 use crate::case::{Claim, Cover, Engine, EngineResult, Evidence, Kind};
-use crate::error::{Fault, read};
+
 use crate::verdict::Verdict;
 use atc_prover::reals;
 use atc_prover::report::{Campaign, HarnessResult, Verdict as Said};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::path::Path;
 
 /// What a harness is, apart from any result.
 #[derive(Clone, Debug)]
-pub struct Catalogue {
+pub struct HarnessInfo {
     /// The harness's name.
     pub name: String,
     /// The theorem's name.
@@ -33,12 +30,12 @@ pub struct Catalogue {
     pub claims: Vec<(String, String)>,
     /// Its cover points: name and text.
     pub covers: Vec<(String, String)>,
-    /// `proofs/src/….rs:12`; nothing until it has been looked for.
+    /// `proofs/src/….rs:12`, if it is known.
     pub at: Option<String>,
 }
 
 /// The harnesses of `atc-proofs`, in its order.
-pub fn catalogue() -> Vec<Catalogue> {
+pub fn catalogue() -> Vec<HarnessInfo> {
     let points = |points: &[atc_proofs::Point]| {
         points.iter().map(|point| (point.name.to_owned(), point.text.to_owned())).collect()
     };
@@ -46,7 +43,7 @@ pub fn catalogue() -> Vec<Catalogue> {
         .iter()
         .copied()
         .flatten()
-        .map(|harness| Catalogue {
+        .map(|harness| HarnessInfo {
             name: harness.name.to_owned(),
             theorem: harness.theorem.to_owned(),
             statement: harness.statement.trim().to_owned(),
@@ -55,33 +52,9 @@ pub fn catalogue() -> Vec<Catalogue> {
             bound: harness.bound.to_owned(),
             claims: points(harness.claims),
             covers: points(harness.covers),
-            at: None,
+            at: Some(format!("{}:{}", harness.file, harness.line)),
         })
         .collect()
-}
-
-/// Where the harnesses stand in `root/proofs/src`: name and `file:line`.
-///
-/// # Errors
-/// A file cannot be read.
-pub fn places(root: &Path) -> Result<BTreeMap<String, String>, Fault> {
-    let mut found = BTreeMap::new();
-    for path in tree(&root.join("proofs/src"), "rs")? {
-        let file = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-        let mut inside = false;
-        for (line, text) in (1..).zip(read(&path)?.lines()) {
-            let text = text.trim();
-            if text == "harness! {" {
-                inside = true;
-            } else if inside && !text.starts_with("///") {
-                inside = false;
-                if let Some((name, _)) = text.split_once('(') {
-                    found.insert(name.to_owned(), format!("{file}:{line}"));
-                }
-            }
-        }
-    }
-    Ok(found)
 }
 
 /// One engine's campaign, and whether it belongs to these sources.
@@ -131,7 +104,7 @@ pub const ENGINES: &[(&str, &str, bool, &str)] = &[
 ];
 
 /// The evidence of every harness, and for every engine how far it went.
-pub fn evidence(harnesses: &[Catalogue], campaigns: &[Campaigned]) -> (Vec<Evidence>, Vec<Engine>) {
+pub fn evidence(harnesses: &[HarnessInfo], campaigns: &[Campaigned]) -> (Vec<Evidence>, Vec<Engine>) {
     // In the order of the table above, whichever ran first.
     let place = |run: &&Campaigned| ENGINES.iter().position(|(name, ..)| *name == run.campaign.engine);
     let mut campaigns: Vec<&Campaigned> = campaigns.iter().collect();
@@ -168,13 +141,13 @@ pub fn evidence(harnesses: &[Catalogue], campaigns: &[Campaigned]) -> (Vec<Evide
 }
 
 /// Whether the engine has anything to say of the harness: the algebra is of a few.
-fn is_asked(harness: &Catalogue, run: &Campaigned) -> bool {
+fn is_asked(harness: &HarnessInfo, run: &Campaigned) -> bool {
     run.campaign.engine != reals::ENGINE || run.campaign.harnesses.iter().any(|result| result.name == harness.name)
 }
 
 /// The evidence of one harness: the best result of any engine that looks at the code, unless one of them refutes it. The algebra is of no code: what it
 /// proves stands beside, and makes no bound of the code's proof go away.
-fn one(harness: &Catalogue, campaigns: &[&Campaigned]) -> Evidence {
+fn one(harness: &HarnessInfo, campaigns: &[&Campaigned]) -> Evidence {
     let asked = campaigns.iter().copied().filter(|run| is_asked(harness, run));
     let judged: Vec<_> = asked.map(|run| (run, judge(harness, run))).collect();
     let refuted = judged.iter().filter(|(_, one)| matches!(one.verdict, Verdict::Failed | Verdict::Vacuous));
@@ -228,7 +201,7 @@ struct Judged {
 }
 
 impl Judged {
-    fn nothing(harness: &Catalogue, verdict: Verdict, reason: &str) -> Self {
+    fn nothing(harness: &HarnessInfo, verdict: Verdict, reason: &str) -> Self {
         let claim = |(name, text): &(String, String)| Claim { name: name.clone(), text: text.clone(), verdict };
         let cover = |(name, text): &(String, String)| Cover { name: name.clone(), text: text.clone(), hit: None };
         Self {
@@ -243,7 +216,7 @@ impl Judged {
     }
 }
 
-fn judge(harness: &Catalogue, run: &Campaigned) -> Judged {
+fn judge(harness: &HarnessInfo, run: &Campaigned) -> Judged {
     let engine = run.campaign.engine.as_str();
     let results: Vec<_> = run.campaign.harnesses.iter().filter(|result| result.name == harness.name).collect();
     let result = match results[..] {
@@ -313,7 +286,7 @@ fn claim((name, text): &(String, String), result: &HarnessResult, holds: Verdict
 
 /// The verdict of the whole result: what it says, unless a part of it says worse.
 fn overall(
-    harness: &Catalogue,
+    harness: &HarnessInfo,
     result: &HarnessResult,
     engine: &str,
     holds: Verdict,

@@ -1,11 +1,11 @@
 //! Each way in which a result could look better than it is, made on purpose.
 
-use super::{Campaigned, Catalogue, catalogue, evidence};
+use super::{Campaigned, HarnessInfo, catalogue, evidence};
 use crate::verdict::Verdict;
 use atc_prover::report::{Campaign, ClaimResult, CoverResult, HarnessResult, Provenance, Verdict as Said};
 
-fn harness() -> Catalogue {
-    Catalogue {
+fn harness() -> HarnessInfo {
+    HarnessInfo {
         name: "t".to_owned(),
         theorem: "T".to_owned(),
         statement: "It holds.".to_owned(),

@@ -2,7 +2,7 @@
 
 use super::{Agreement, Opinion, check, engine, enter, opinions};
 use crate::case::{Evidence, Model};
-use crate::inputs::models::{Catalogue, evidence};
+use crate::inputs::models::{ModelInfo, evidence};
 use crate::verdict::Verdict;
 
 fn opinion(model: &str, verdict: Agreement, states: Option<u64>) -> Opinion {
@@ -19,7 +19,7 @@ fn opinion(model: &str, verdict: Agreement, states: Option<u64>) -> Opinion {
 
 /// Two models, both checked, with seven states each.
 fn checked() -> (Vec<Evidence>, Vec<Model>) {
-    let catalogue = ["block-a", "block-b"].map(|name| Catalogue {
+    let catalogue = ["block-a", "block-b"].map(|name| ModelInfo {
         name: name.to_owned(),
         statement: "s".to_owned(),
         requirements: vec![],

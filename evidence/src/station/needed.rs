@@ -1,15 +1,15 @@
 //! For each rule that theorems rest on: the wrong kernel that leaves it out, and the theorem that fails then.
 
 use super::rules;
-use crate::case::{Evidence, Kind, NeededRule, OpenItem, Severity};
-use crate::inputs::mutants::{Catalogue, killers};
+use crate::case::{Evidence, Kind, Matter, NeededRule, OpenItem, Severity};
+use crate::inputs::mutants::{MutantInfo, killers};
 use crate::verdict::Verdict;
 
 /// The file with the rules.
 const FILE: &str = "kernel/src/interlocking/check.rs";
 
 /// The table.
-pub fn table(mutants: &[Catalogue], evidence: &[Evidence]) -> Vec<NeededRule> {
+pub fn table(mutants: &[MutantInfo], evidence: &[Evidence]) -> Vec<NeededRule> {
     rules::needed()
         .map(|(kernel, rule)| {
             let name = rule.name();
@@ -35,7 +35,7 @@ pub fn table(mutants: &[Catalogue], evidence: &[Evidence]) -> Vec<NeededRule> {
 
 /// Whether a wrong kernel changes the check of this rule: it names the rule in the text that it changes, or, where that is a
 /// helper, in its own name.
-fn leaves_out(mutant: &Catalogue, kernel: &str, name: &str) -> bool {
+fn leaves_out(mutant: &MutantInfo, kernel: &str, name: &str) -> bool {
     let there = mutant.at.as_deref().is_some_and(|at| at.starts_with(FILE));
     let named = mutant.find.match_indices("Rule::").any(|(place, word)| {
         let rest = &mutant.find[place + word.len()..];
@@ -48,6 +48,7 @@ fn leaves_out(mutant: &Catalogue, kernel: &str, name: &str) -> bool {
 pub fn open(table: &[NeededRule]) -> impl Iterator<Item = OpenItem> {
     table.iter().filter(|one| one.mutants.is_empty()).map(|one| OpenItem {
         severity: Severity::Open,
+        matter: Matter::NeededRule,
         about: one.rule.clone(),
         text: "No wrong kernel leaves this rule of layouts out: nothing shows that a theorem needs it.".to_owned(),
     })
@@ -57,11 +58,11 @@ pub fn open(table: &[NeededRule]) -> impl Iterator<Item = OpenItem> {
 mod tests {
     use super::{leaves_out, open, table};
     use crate::case::{Evidence, Kind};
-    use crate::inputs::mutants::Catalogue;
+    use crate::inputs::mutants::MutantInfo;
     use crate::verdict::Verdict;
 
-    fn mutant(name: &str, file: &str, find: &str) -> Catalogue {
-        Catalogue {
+    fn mutant(name: &str, file: &str, find: &str) -> MutantInfo {
+        MutantInfo {
             name: name.to_owned(),
             what: String::new(),
             requirements: vec![],
