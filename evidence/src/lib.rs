@@ -1,9 +1,16 @@
 //! The safety case, generated from the proofs, models, tests and wrong kernels of this repository.
 //!
-//! Reading order: [`verdict`] (what a result is worth, and that a parent takes its worst child), [`plan`] (what is to
-//! be shown, and the checks before anything runs), [`inputs`] (what the engines say, judged piece by piece),
-//! [`argument`] (goals bound to evidence), [`build`] (the case), [`case`] (the case as data), and the renderings:
-//! [`html`], [`gsn`], [`junit`], [`sarif`], [`tables`].
+//! | folder | part |
+//! |---|---|
+//! | [`sources`] | what the case is made of: what engines, tests and files say, read and judged piece by piece |
+//! | [`judge`] | what it amounts to: verdicts, the plan of what is to be shown, the argument, what is open |
+//! | [`case`], [`station`] | the case as data; the part that is about one station |
+//! | [`render`] | the same for its readers: HTML, GSN, JUnit, SARIF, CSV |
+//! | [`cli`] | the commands, and the engines that they start |
+//!
+//! Reading order: [`judge::verdict`] (what a result is worth, and that a parent takes its worst child), [`judge::plan`]
+//! (what is to be shown, and the checks before anything runs), [`sources`], [`judge::argument`] (goals bound to
+//! evidence), [`judge::build`] (the case).
 //!
 //! The case is one value, [`case::Case`]; every output is a function of it. Nothing here decides what is true: it
 //! reads what engines report, credits nothing that a report does not show, and never says more than its weakest part.
@@ -14,36 +21,10 @@
 //! `atc-prover`, `atc-simulation`. Used by no other crate of the house. Begin with [`case::Case`].
 #![forbid(unsafe_code)]
 
-pub mod again;
-pub mod alike;
-pub mod argument;
-pub mod build;
 pub mod case;
 pub mod cli;
-pub mod data;
 pub mod error;
-pub mod files;
-pub mod gsn;
-pub mod hazard;
-pub mod html;
-pub mod inputs;
-pub mod junit;
-pub mod line;
-pub mod live;
-pub mod merge;
-pub mod open;
-pub mod output;
-pub mod plan;
-pub mod progress;
-pub mod prover;
-pub mod results;
-pub mod sarif;
-pub mod scope;
-pub mod srac;
-pub mod stale;
+pub mod judge;
+pub mod render;
+pub mod sources;
 pub mod station;
-pub mod tables;
-pub mod terminal;
-pub mod times;
-pub mod trace;
-pub mod verdict;

@@ -1,6 +1,6 @@
 //! One piece of evidence as data: a theorem, a model, a wrong kernel, a measured target or a suite of tests.
 
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! What faults do, as data: minimal cut sets, failure modes, and what a second model checker says.
 
 use super::Chart;
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

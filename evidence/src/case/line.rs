@@ -1,6 +1,6 @@
 //! The specific application as data.
 
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use atc_line::DataCheck;
 pub use atc_line::figures::{Derived, LineBlock, LineSection, LineTime};
 use schemars::JsonSchema;

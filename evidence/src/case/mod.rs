@@ -8,7 +8,7 @@ mod register;
 mod run;
 mod station;
 
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! The registers of the case: conditions, hazards, requirements, techniques, tools.
 
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

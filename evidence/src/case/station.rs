@@ -1,7 +1,7 @@
 //! The specific application on the ground as data: one station's layout.
 
 use super::Derived;
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 pub use atc_line::{Asked, DataCheck, Finding, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

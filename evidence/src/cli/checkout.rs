@@ -1,9 +1,9 @@
 //! The checkout that the case is made of, and the plan that is read from it.
 
 use crate::error::Fault;
-use crate::inputs::mutants;
-use crate::line;
-use crate::plan::{Plan, plan};
+use crate::judge::plan::{Plan, plan};
+use crate::sources::line;
+use crate::sources::mutants;
 use crate::station;
 use std::path::{Path, PathBuf};
 

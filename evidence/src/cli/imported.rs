@@ -3,9 +3,9 @@
 
 use crate::case::{Matter, OpenItem, Provenance, Severity};
 use crate::error::{Fault, read};
-use crate::inputs::proofs::{Campaigned, ENGINES};
-use crate::plan::Plan;
-use crate::scope::Chosen;
+use crate::judge::plan::Plan;
+use crate::judge::scope::Chosen;
+use crate::sources::proofs::{Campaigned, ENGINES};
 use atc_models::{Outcome, Searched};
 use atc_prover::report::{Campaign, SCHEMA};
 use std::collections::BTreeSet;
@@ -72,7 +72,7 @@ pub(super) fn searched_by_tests(models: usize) -> Option<OpenItem> {
 #[cfg(test)]
 mod tests {
     use super::{Provenance, is_of};
-    use crate::merge::checks::shard;
+    use crate::judge::merge::checks::shard;
 
     #[test]
     fn outcomes_are_of_one_commit_without_a_change() {

@@ -3,14 +3,15 @@
 use super::checkout::{checkout, planned};
 use super::options::{Merge, required};
 use super::render::load;
-use crate::alike::without_times;
-use crate::build::build;
 use crate::error::Fault;
-use crate::files::PAGE;
-use crate::inputs::{faults, provenance, second};
-use crate::merge::join;
-use crate::output::Folder;
-use crate::{results, stale, terminal};
+use crate::judge::alike::without_times;
+use crate::judge::build::build;
+use crate::judge::merge::join;
+use crate::judge::{results, stale};
+use crate::render::files::PAGE;
+use crate::render::output::Folder;
+use crate::render::terminal;
+use crate::sources::{faults, provenance, second};
 use serde_json::Value;
 use std::path::Path;
 

@@ -4,11 +4,15 @@ mod budget;
 mod checkout;
 mod engines;
 mod imported;
+pub mod live;
 mod merge;
 mod options;
+pub mod progress;
+pub mod prover;
 mod render;
 mod run;
 mod suites;
+pub mod times;
 
 pub use options::Cli;
 use options::Command;
@@ -27,7 +31,7 @@ pub fn main(cli: Cli) -> u8 {
         }
         Command::Verify { folder, models, root } => render::verify(&folder, models, root.as_deref()),
         Command::Schema => {
-            print!("{}", crate::output::schema());
+            print!("{}", crate::render::output::schema());
             Ok(0)
         }
     };

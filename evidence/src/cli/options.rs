@@ -1,7 +1,7 @@
 //! What the command line may say.
 
-use crate::build::Required;
-use crate::scope::{Scope, Shard};
+use crate::judge::build::Required;
+use crate::judge::scope::{Scope, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 

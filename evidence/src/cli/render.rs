@@ -1,16 +1,16 @@
 //! `safety-case render` and `safety-case verify`.
 
 use super::checkout::checkout;
-use crate::build::at_station;
 use crate::case::{Case, Kind, SCHEMA};
 use crate::error::{Fault, read};
-use crate::files::{MARKER, SUMS};
-use crate::inputs::models;
-use crate::inputs::provenance::{self, now, sha256};
-use crate::output::Folder;
-use crate::stale;
+use crate::judge::build::at_station;
+use crate::judge::stale;
+use crate::render::files::{MARKER, SUMS};
+use crate::render::output::Folder;
+use crate::render::terminal;
+use crate::sources::models;
+use crate::sources::provenance::{self, now, sha256};
 use crate::station;
-use crate::terminal;
 use std::path::Path;
 
 /// The case in a folder.
@@ -51,7 +51,7 @@ pub fn render(from: &Path, layout: Option<&Path>, out: Option<&Path>, root: Opti
         at_station(&mut case, station);
     }
     // What the engines said stays with it.
-    let results = std::fs::read_to_string(from.join(crate::results::FILE)).ok();
+    let results = std::fs::read_to_string(from.join(crate::judge::results::FILE)).ok();
     let folder = Folder::begin(out.unwrap_or(from)).map_err(one)?;
     folder.finish(&case, results).map_err(one)?;
     println!("{}", terminal::summary(&case));

@@ -109,7 +109,7 @@ fn overlaps(model: &Model, cycle: u32) -> String {
     let missing = if without.is_empty() {
         String::new()
     } else {
-        let names = crate::verdict::list(&without, 40);
+        let names = crate::judge::verdict::list(&without, 40);
         format!(" Without an overlap (buffer stop, plain line, or a reason in the file): {names}.")
     };
     format!("{shortest}; the shortest stay time is {stay} ms.{missing}")

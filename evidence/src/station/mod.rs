@@ -13,8 +13,8 @@ use crate::case::{
     Asked, Conclusion, Condition, DataCheck, Evidence, Finding, Kind, Outcome, Station, StationCondition,
 };
 use crate::error::Fault;
-use crate::inputs::provenance::sha256;
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
+use crate::sources::provenance::sha256;
 use atc_layout::import::{Imported, read_any};
 use atc_layout::lives::{self, TrainLives};
 use atc_layout::model::Model;
@@ -212,7 +212,7 @@ pub fn conclusion(station: &Station) -> Conclusion {
         let sentence = format!(
             "{name} is refused: the layout breaks {} ({}). No theorem holds for it.",
             if broken.len() == 1 { "one rule".to_owned() } else { format!("{} rules", broken.len()) },
-            crate::verdict::list(&broken, 4)
+            crate::judge::verdict::list(&broken, 4)
         );
         return Conclusion { node, verdict: Verdict::Failed, sentence };
     }

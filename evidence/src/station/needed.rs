@@ -2,8 +2,8 @@
 
 use super::rules;
 use crate::case::{Evidence, Kind, Matter, NeededRule, OpenItem, Severity};
-use crate::inputs::mutants::{MutantInfo, killers};
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
+use crate::sources::mutants::{MutantInfo, killers};
 
 /// The file with the rules.
 const FILE: &str = "kernel/src/interlocking/check.rs";
@@ -58,8 +58,8 @@ pub fn open(table: &[NeededRule]) -> impl Iterator<Item = OpenItem> {
 mod tests {
     use super::{leaves_out, open, table};
     use crate::case::{Evidence, Kind};
-    use crate::inputs::mutants::MutantInfo;
-    use crate::verdict::Verdict;
+    use crate::judge::verdict::Verdict;
+    use crate::sources::mutants::MutantInfo;
 
     fn mutant(name: &str, file: &str, find: &str) -> MutantInfo {
         MutantInfo {

@@ -2,7 +2,7 @@
 
 use super::{Checked, check, conclusion, read};
 use crate::case::{Asked, Condition, Evidence, Kind, Origin, Outcome, Station};
-use crate::verdict::Verdict;
+use crate::judge::verdict::Verdict;
 use atc_layout::Description;
 use atc_layout::import::Imported;
 use atc_layout::lives::TrainLives;
