@@ -24,6 +24,8 @@
 pub mod case;
 pub mod cli;
 pub mod error;
+#[cfg(test)]
+mod front_pages;
 pub mod judge;
 pub mod render;
 pub mod sources;
