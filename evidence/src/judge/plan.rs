@@ -55,12 +55,14 @@ pub fn plan(
     mutants: Vec<mutants::MutantInfo>,
 ) -> Result<Plan, Vec<Fault>> {
     let one = |fault: Fault| vec![fault];
-    let data = Data::read(root).map_err(one)?;
+    let mut data = Data::read(root).map_err(one)?;
     let requirements = requirements::specification(root).map_err(one)?;
     let citations = requirements::citations(root, QUOTING).map_err(one)?;
     let ids: Vec<_> = requirements.iter().map(|requirement| requirement.id.clone()).collect();
     let mentions = trace::mentions(root, &ids).map_err(one)?;
     let (harnesses, models) = (proofs::catalogue(), models::catalogue());
+    let theorems: Vec<_> = harnesses.iter().map(|one| (one.theorem.as_str(), one.name.as_str())).collect();
+    data.argument.name_harnesses(&theorems)?;
     let uses = srac::uses(&data.assumptions, &harnesses, &models, &data.argument);
     let raise = ratchet(data.ratchet, &count(&harnesses, &models, &mutants, &requirements))?;
     let plan = Plan { data, harnesses, models, mutants, requirements, citations, mentions, uses, line, station, raise };

@@ -4,7 +4,7 @@
 use crate::error::{Fault, line_of, read};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// All of them.
@@ -105,6 +105,46 @@ pub struct Argument {
     pub justifications: Vec<Text>,
 }
 
+impl Argument {
+    /// Puts the harnesses of each theorem in the place of its name, `theorem:…`; `harnesses` are theorems and harnesses.
+    ///
+    /// # Errors
+    /// The names of which there is no theorem, and the theorems that no goal names.
+    pub fn name_harnesses(&mut self, harnesses: &[(&str, &str)]) -> Result<(), Vec<Fault>> {
+        let (mut faults, mut named) = (Vec::new(), BTreeSet::new());
+        let mut fault = |text: String| faults.push(Fault::new(&"spec/argument.toml", text));
+        for goal in &mut self.goals {
+            let lists =
+                std::iter::once(&mut goal.evidence).chain(goal.defeaters.iter_mut().map(|doubt| &mut doubt.evidence));
+            for (place, list) in lists.enumerate() {
+                for reference in std::mem::take(list) {
+                    let Some(theorem) = reference.strip_prefix("theorem:") else {
+                        list.push(reference);
+                        continue;
+                    };
+                    let of = harnesses.iter().filter(|(its, _)| *its == theorem);
+                    let before = list.len();
+                    list.extend(of.map(|(_, harness)| format!("harness:{harness}")));
+                    if list.len() == before {
+                        fault(format!("{}: there is no theorem {theorem}", goal.id));
+                    }
+                    if place == 0 {
+                        named.insert(theorem.to_owned());
+                    }
+                }
+            }
+        }
+        for theorem in harnesses.iter().map(|(theorem, _)| *theorem).collect::<BTreeSet<_>>() {
+            if !named.contains(theorem) {
+                fault(format!(
+                    "no goal has the evidence \"theorem:{theorem}\": each theorem is named by the goal that it shows"
+                ));
+            }
+        }
+        if faults.is_empty() { Ok(()) } else { Err(faults) }
+    }
+}
+
 /// A claim.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -119,7 +159,7 @@ pub struct Goal {
     /// Goals and strategies below.
     #[serde(default)]
     pub supported_by: Vec<String>,
-    /// Evidence ids; `*` at the end stands for all that begin so.
+    /// Evidence ids; `*` at the end stands for all that begin so, and `theorem:…` for every harness of a theorem.
     #[serde(default)]
     pub evidence: Vec<String>,
     /// Contexts and justifications.
@@ -324,11 +364,34 @@ pub fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, Fault> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Ratchet, parse};
+    use super::{Argument, Defeater, Goal, Ratchet, parse};
 
     #[test]
     fn a_fault_in_a_file_has_its_line() {
         let fault = parse::<Ratchet>("ratchet.toml", "harnesses = 1\nclaim = 2\n").expect_err("unknown field");
         assert!(fault.at == "ratchet.toml:2" && fault.text.contains("claim"), "{fault}");
+    }
+
+    #[test]
+    fn a_goal_names_theorems_and_each_theorem_is_named() {
+        let list = |ids: &[&str]| ids.iter().map(|id| (*id).to_owned()).collect::<Vec<_>>();
+        let argument = |evidence: &[&str], doubted: &[&str]| {
+            let defeaters = vec![Defeater { evidence: list(doubted), ..Defeater::default() }];
+            let goal = Goal { id: "G".to_owned(), evidence: list(evidence), defeaters, ..Goal::default() };
+            Argument { goals: vec![goal], ..Argument::default() }
+        };
+        let harnesses = [("T-1", "one"), ("T-2", "two"), ("T-1", "another")];
+        let mut good = argument(&["theorem:T-1", "model:m*", "theorem:T-2"], &["theorem:T-1"]);
+        good.name_harnesses(&harnesses).expect("good");
+        assert_eq!(good.goals[0].evidence, list(&["harness:one", "harness:another", "model:m*", "harness:two"]));
+        assert_eq!(good.goals[0].defeaters[0].evidence, list(&["harness:one", "harness:another"]));
+        // Harnesses by name, or in a defeater alone, do not name their theorem: the next one of it would be of no goal.
+        for (evidence, doubted, told) in [
+            (&["theorem:T-1", "theorem:T-3", "theorem:T-2"][..], &[][..], "there is no theorem T-3"),
+            (&["theorem:T-1", "harness:two"], &["theorem:T-2"], "theorem:T-2"),
+        ] {
+            let faults = argument(evidence, doubted).name_harnesses(&harnesses).expect_err("wrong");
+            assert!(faults.len() == 1 && faults[0].to_string().contains(told), "{faults:?}");
+        }
     }
 }
