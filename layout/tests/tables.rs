@@ -2,7 +2,8 @@
 
 use atc_layout::conflict::{Reason, reasons};
 use atc_layout::model::Model;
-use atc_layout::{Description, draw, table};
+use atc_layout::{Description, draw, read, table};
+use std::path::Path;
 
 fn description(text: &str) -> Description {
     Description::from_toml("station.toml", text).unwrap()
@@ -135,4 +136,52 @@ fn the_table_in_japanese_columns_compares_with_itself_and_shows_what_is_changed(
     assert_eq!(found[1].to_string(), "route W-1: 信号制御: P1T 1T P2T | nothing");
     assert!(table::rendo::compare(&model, &table.replace(row, &format!("{row},x"))).unwrap_err().contains("8 cells"));
     assert!(table::rendo::compare(&model, "進路,色\r\n").unwrap_err().contains("the column \"色\" is not known"));
+}
+
+/// The labels of a drawing, each with what it covers: its text, left, top, right and bottom.
+fn labels(svg: &str) -> Vec<(String, [f64; 4])> {
+    let page = roxmltree::Document::parse(svg).expect("an SVG");
+    let number =
+        |node: &roxmltree::Node<'_, '_>, name| node.attribute(name).expect("a place").parse::<f64>().expect(name);
+    let label = |node: roxmltree::Node<'_, '_>| {
+        let class = node.attribute("class").filter(|class| *class != "title")?;
+        let text = node.text().unwrap_or_default().to_owned();
+        // Half a letter narrower than drawn, so that it is not the drawing's own measure.
+        let size = if class == "circuit" { 12.0 } else { 10.0 };
+        let width = size * (0.55 * f64::from(u32::try_from(text.chars().count()).expect("short")) - 0.5);
+        let (x, y) = (number(&node, "x"), number(&node, "y"));
+        Some((text, [x - width / 2.0, y - size * 0.75, x + width / 2.0, y]))
+    };
+    page.descendants().filter(|node| node.has_tag_name("text")).filter_map(label).collect()
+}
+
+#[test]
+fn no_label_stands_on_another() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = ["../layouts/passing-loop.toml", "../layouts/junction.toml", "../layouts/terminus.toml"];
+    let files = files.iter().chain(&["../layouts/station-30.toml", "../layouts/station-100.toml"]);
+    let mut stations: Vec<_> = files
+        .chain(&["tests/files/scissors.toml", "tests/files/crossover.toml", "tests/files/diamond.toml"])
+        .map(|file| read(folder.join(file)).unwrap_or_else(|errors| panic!("{file}: {errors}")))
+        .collect();
+    // Names as an import makes them of borders: longer than their tracks.
+    let mut long = stations[1].clone();
+    let text = long.to_toml();
+    let names: Vec<String> = long.station.circuits.iter().map(|circuit| circuit.name.value.clone()).collect();
+    let text = names
+        .iter()
+        .fold(text, |text, name| text.replace(&format!("\"{name}\""), &format!("\"Buf04+Joint06+{name}\"")));
+    long = Description::from_toml("long.toml", &text).expect("only names differ");
+    stations.push(long);
+    for description in stations {
+        let svg = draw::svg(&description.station, &description.tracks().expect("tracks"));
+        let labels = labels(&svg);
+        assert!(labels.len() > 3, "{}: {}", description.station.name, labels.len());
+        for (number, (text, at)) in labels.iter().enumerate() {
+            for (other, its) in &labels[..number] {
+                let apart = at[0] >= its[2] || its[0] >= at[2] || at[1] >= its[3] || its[1] >= at[3];
+                assert!(apart, "{}: {text} stands on {other}: {at:?} and {its:?}", description.station.name);
+            }
+        }
+    }
 }

@@ -16,6 +16,7 @@ svg.plan .point{fill:#a03000;font-size:11px;font-weight:600}\
 svg.plan .signal{font-size:10px}\
 svg.plan .lamp{fill:#c22;stroke:#222}\
 svg.plan .mast{stroke:#222;stroke-width:1.5;fill:none}\
+svg.plan .leader{stroke:#999;stroke-width:.7}\
 svg.plan .segment{fill:#e6f1e4}\
 svg.plan .platform{fill:#d8d8d8}\
 svg.plan .name{fill:#555;font-size:10px}\
@@ -31,10 +32,37 @@ pub struct Drawn<'a> {
     pub leg: Option<(&'a str, bool)>,
 }
 
+/// How far a label is moved at a time that would stand on another one, and how often.
+const STEP: i32 = 12;
+const STEPS: i32 = 3;
+
+/// Where a label stands: left, top, right, bottom.
+type Covered = (i32, i32, i32, i32);
+
 /// A drawing under way. Places are relative to the tracks' own origin.
 pub struct Ink {
     text: String,
     origin: (i32, i32),
+    /// Where labels stand.
+    covered: Vec<Covered>,
+}
+
+/// What a label covers that is centred at `x` over the line `y`.
+fn covers(class: &str, (x, y): (i32, i32), text: &str) -> Covered {
+    let size = match class {
+        "circuit" => 12,
+        "point" => 11,
+        _ => 10,
+    };
+    // A letter is about as wide as 0.6 of its height, one of Chinese or Japanese as its height.
+    let tenths = text.chars().map(|letter| if letter < '\u{2e80}' { 6 } else { 10 }).sum::<i32>();
+    let half = tenths * size / 20;
+    (x - half, y - size + 2, x + half, y + 2)
+}
+
+/// Whether two labels stand on each other.
+fn overlap(one: Covered, other: Covered) -> bool {
+    one.0 < other.2 && other.0 < one.2 && one.1 < other.3 && other.1 < one.3
 }
 
 impl Ink {
@@ -47,18 +75,29 @@ impl Ink {
             text,
             "<svg class=\"plan\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">\n<title>Track plan: {title}</title>\n<style>{STYLE}</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n<text class=\"title\" x=\"20\" y=\"28\">{title}</text>\n"
         );
-        Self { text, origin }
+        Self { text, origin, covered: Vec::new() }
     }
 
     fn at(&self, (x, y): (i32, i32)) -> (i32, i32) {
         (x + self.origin.0, y + self.origin.1)
     }
 
-    fn label(&mut self, class: &str, kind: &str, at: (i32, i32), text: &str) {
+    /// A label at a place, or, if another one stands there, farther off: upward (−1) or downward (1). A line leads to it then.
+    fn label(&mut self, class: &str, kind: &str, (at, away): ((i32, i32), i32), text: &str) {
         let (x, y) = self.at(at);
+        let is_free = |y: &i32| {
+            let its = covers(class, (x, *y), text);
+            !self.covered.iter().any(|other| overlap(its, *other))
+        };
+        let place = (0..=STEPS).map(|step| y + away * step * STEP).find(is_free).unwrap_or(y);
+        self.covered.push(covers(class, (x, place), text));
+        if place != y {
+            let (from, to) = if away > 0 { (y - 6, place - 9) } else { (y, place + 2) };
+            let _ = writeln!(self.text, "<path class=\"leader\" d=\"M{x} {from}V{to}\"/>");
+        }
         let text = escape(text);
         let of = if kind.is_empty() { String::new() } else { format!(" data-{kind}=\"{text}\"") };
-        let _ = writeln!(self.text, "<text class=\"{class}\"{of} x=\"{x}\" y=\"{y}\">{text}</text>");
+        let _ = writeln!(self.text, "<text class=\"{class}\"{of} x=\"{x}\" y=\"{place}\">{text}</text>");
     }
 
     /// A piece of track. What it is stands in attributes, for pages that show more on it.
@@ -113,17 +152,17 @@ impl Ink {
 
     /// The name of a circuit.
     pub fn circuit(&mut self, at: (i32, i32), name: &str) {
-        self.label("circuit", "circuit", at, name);
+        self.label("circuit", "circuit", (at, -1), name);
     }
 
-    /// The name of a circuit that is hardly longer than its point.
-    pub fn small_circuit(&mut self, at: (i32, i32), name: &str) {
-        self.label("circuit small", "circuit", at, name);
+    /// The name of a circuit that is hardly longer than its point, above (−1) or below (1) it.
+    pub fn small_circuit(&mut self, at: (i32, i32), away: i32, name: &str) {
+        self.label("circuit small", "circuit", (at, away), name);
     }
 
-    /// The name of a point.
-    pub fn point(&mut self, at: (i32, i32), name: &str) {
-        self.label("point", "point", at, name);
+    /// The name of a point, above (−1) or below (1) it.
+    pub fn point(&mut self, at: (i32, i32), away: i32, name: &str) {
+        self.label("point", "point", (at, away), name);
     }
 
     /// A signal at the left of the track for trains to the right (1) or to the left (−1).
@@ -138,7 +177,7 @@ impl Ink {
             base_x - toward * 9
         );
         let below = if toward > 0 { -7 } else { 14 };
-        self.label("signal", "", (x - toward * 14, y - toward * 13 + below), name);
+        self.label("signal", "", ((x - toward * 14, y - toward * 13 + below), -toward), name);
         self.text.push_str("</g>\n");
     }
 
@@ -151,7 +190,7 @@ impl Ink {
             y - 20,
             right - left
         );
-        self.label("name", "segment", ((left + right) / 2, height + 25), name);
+        self.label("name", "segment", (((left + right) / 2, height + 25), 1), name);
     }
 
     /// A platform below its track.
@@ -164,7 +203,7 @@ impl Ink {
             x + 10,
             y + 8
         );
-        self.label("name", "", ((left + right) / 2, height + 18), name);
+        self.label("name", "", (((left + right) / 2, height + 18), 1), name);
     }
 
     /// The drawing.

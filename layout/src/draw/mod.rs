@@ -89,7 +89,7 @@ fn joints(ink: &mut Ink, model: &Model, placed: &Placed) {
 fn labels(ink: &mut Ink, model: &Model, placed: &Placed) {
     let mut longest: BTreeMap<usize, (i32, i32, i32)> = BTreeMap::new();
     let mut with_plain = BTreeSet::new();
-    let mut small: BTreeMap<usize, (i32, i32)> = BTreeMap::new();
+    let mut small: BTreeMap<usize, ((i32, i32), i32)> = BTreeMap::new();
     for (number, track) in model.graph.tracks.iter().enumerate() {
         let y = placed.y(number);
         let (one, other) = (placed.joints[track.joints[0]].0, placed.joints[track.joints[1]].0);
@@ -104,15 +104,15 @@ fn labels(ink: &mut Ink, model: &Model, placed: &Placed) {
         if let Kind::Point(point) = track.kind {
             let toward = if other >= one { 1 } else { -1 };
             // Names stand where the reverse leg does not run: the point's at its blades, the circuit's behind them.
-            let height = y + if placed.joints[track.joints[2]].1 > y { -7 } else { 15 };
-            ink.point((one + toward * 10, height), &model.points[point].name);
-            small.entry(track.circuit).or_insert((one + toward * 44, height));
+            let (height, away) = if placed.joints[track.joints[2]].1 > y { (y - 7, -1) } else { (y + 15, 1) };
+            ink.point((one + toward * 10, height), away, &model.points[point].name);
+            small.entry(track.circuit).or_insert(((one + toward * 44, height), away));
         }
     }
     for (circuit, (_, x, y)) in longest {
         let name = &model.circuits[circuit].name;
         match small.get(&circuit) {
-            Some(place) if !with_plain.contains(&circuit) => ink.small_circuit(*place, name),
+            Some((place, away)) if !with_plain.contains(&circuit) => ink.small_circuit(*place, *away, name),
             _ => ink.circuit((x, y - 6), name),
         }
     }
