@@ -12,8 +12,8 @@
 //!
 //! # In the house
 //!
-//! Uses `atc-kernel`. Used by `atc-adversary`, `atc-evidence`, `atc-line`, `atc-oracle`, `atc-protocol`,
-//! `atc-simulation`, `atc-tests`. Begin with [`read`] and [`Description`].
+//! Uses `atc-kernel`. Used by `atc-adversary`, `atc-evidence`, `atc-line`, `atc-models`, `atc-oracle`,
+//! `atc-protocol`, `atc-simulation`, `atc-tests`. Begin with [`read`] and [`Description`].
 
 #![forbid(unsafe_code)]
 

@@ -57,17 +57,22 @@ fn default_shortened_operate() -> u32 {
 }
 
 impl Config {
+    /// A cycle, the aspects and their times.
+    pub fn new(cycle: Millis, aspects_km_h: Vec<Kmh>, times: TimesMs) -> Self {
+        Self {
+            cycle_ms: cycle.0,
+            aspects_km_h,
+            operate_ms: times.operate.0,
+            recovery_ms: times.recovery.0,
+            mask_ms: times.mask.0,
+            interruption_ms: times.interruption.0,
+            shortened_operate_ms: times.shortened_operate.0,
+        }
+    }
+
     /// The patent's times and a cycle of 10 ms.
     pub fn with_defaults(aspects_km_h: Vec<Kmh>) -> Self {
-        Self {
-            cycle_ms: default_cycle(),
-            aspects_km_h,
-            operate_ms: default_operate(),
-            recovery_ms: default_recovery(),
-            mask_ms: default_mask(),
-            interruption_ms: default_interruption(),
-            shortened_operate_ms: default_shortened_operate(),
-        }
+        Self::new(Millis(default_cycle()), aspects_km_h, TimesMs::default())
     }
 
     /// The times in the kernel's form.

@@ -37,6 +37,17 @@ pub(crate) const fn default_pass() -> u32 {
 }
 
 impl Config {
+    /// The parameters of a block in cycles of this length.
+    pub fn of(block: Block, cycle: Millis) -> Self {
+        Self {
+            sections: block.sections().into(),
+            max_trains: block.max_trains().0.into(),
+            tail_hold_sections: block.hold().sections().into(),
+            cycle_ms: cycle.0,
+            pass_ms: cycle.0 * u32::from(block.pass().0),
+        }
+    }
+
     /// The parameters in the kernel's form.
     ///
     /// # Errors

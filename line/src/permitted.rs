@@ -74,6 +74,26 @@ impl Default for Config {
 }
 
 impl Config {
+    /// The parameters of a device in cycles of this length.
+    pub fn of(permitted: &Permitted, cycle: Millis) -> Self {
+        let Settings { speeds, lowest, brake, worst, margin, fresh, life, fixed_life, sequence } = permitted.settings();
+        let ms = |time: Ticks| cycle.0 * u32::from(time.0);
+        Self {
+            cycle_ms: cycle.0,
+            speeds_km_h: speeds.speeds().iter().copied().map(Kmh::from).collect(),
+            lowest_limit_km_h: speeds.speed(*lowest).map(Kmh::from).unwrap_or_default(),
+            brake_mm_s2: brake.mm_s2().into(),
+            worst_gradient_permille: worst.0.into(),
+            margin_m: margin.0.into(),
+            fresh_ms: ms(*fresh),
+            life_ms: ms(*life),
+            fixed_life_ms: ms(*fixed_life),
+            window: sequence.window().into(),
+            run: sequence.run().into(),
+            memory_ms: ms(sequence.memory()),
+        }
+    }
+
     /// The parameters in the kernel's form.
     ///
     /// # Errors

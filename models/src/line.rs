@@ -3,7 +3,7 @@
 //! The small lines keep every inequality between the times that the machine can tell apart, at a cycle that makes
 //! an exhaustive search short.
 
-use atc_kernel::aspect::{AspectSet, Display, Times, TimesMs};
+use atc_kernel::aspect::{Times, TimesMs};
 use atc_kernel::time::Millis;
 
 /// The permitted speeds of the modelled aspects in km/h, the lowest first. A model of `N` aspects has the first `N`.
@@ -79,16 +79,6 @@ impl Line {
 /// min(T4, T2+T3−T5).
 pub fn credited_gap(times: Times) -> u16 {
     times.interruption().0.min(times.expiry().0.saturating_sub(times.shortened_operate().0))
-}
-
-/// The speeds of `set` in km/h, the lowest first.
-pub fn speeds(set: AspectSet) -> Vec<u16> {
-    ASPECTS_KM_H.iter().enumerate().filter(|(rank, _)| set.bits() >> rank & 1 == 1).map(|(_, speed)| *speed).collect()
-}
-
-/// The speed that `display` permits, in km/h.
-pub fn speed(display: Display) -> Option<u16> {
-    display.aspect().and_then(|aspect| ASPECTS_KM_H.get(usize::from(aspect.rank())).copied())
 }
 
 const fn ms(operate: u32, recovery: u32, mask: u32, interruption: u32, shortened_operate: u32) -> TimesMs {

@@ -1,7 +1,9 @@
 //! What a check says: verdicts, figures and traces, for people, for the safety case and for the oracle.
 
+use atc_protocol::form::Line;
+use atc_protocol::machine::Machine;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// What is expected of a property.
@@ -142,6 +144,14 @@ pub struct Step {
     pub words: BTreeMap<String, Value>,
 }
 
+/// A cycle in the messages of the oracle's machine: what it reads, what the kernel answers, and what else the model knows, by name.
+pub(crate) type Cycle<M, W> = (<M as Machine>::Step, <M as Machine>::Output, W);
+
+/// A message as JSON.
+fn written(message: &impl Serialize) -> Value {
+    serde_json::to_value(message).expect("a message is plain data")
+}
+
 /// A run of a machine from its initial state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trace {
@@ -157,14 +167,22 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// A run of the machine that the oracle calls `M`, in its messages.
+    pub(crate) fn of<M: Machine, W: Serialize>(config: &M::Config, cycles: &[Cycle<M, W>]) -> Self {
+        let step = |(input, output, words): &Cycle<M, W>| Step {
+            input: written(input),
+            output: written(output),
+            words: serde_json::from_value(written(words)).expect("words have names"),
+        };
+        let steps = cycles.iter().map(step).collect();
+        Self { machine: M::NAME.to_owned(), config: written(config), steps, loop_start: None }
+    }
+
     /// The trace in the oracle's protocol 1: a start, then a step and the output it must get, in turn. One JSON value a line.
     pub fn trace_jsonl(&self) -> String {
-        let start = json!({"start": {"protocol": 1, "machine": self.machine, "config": self.config}});
-        let mut text = format!("{start}\n");
-        for step in &self.steps {
-            text.extend([json!({"step": step.input}), json!({"output": step.output})].map(|line| format!("{line}\n")));
-        }
-        text
+        let steps = self.steps.iter().flat_map(|step| [Line::Step(&step.input), Line::Output(&step.output)]);
+        let lines = std::iter::once(Line::start(&self.machine, &self.config)).chain(steps);
+        lines.map(|line| line.text() + "\n").collect()
     }
 }
 

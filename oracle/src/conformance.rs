@@ -11,6 +11,7 @@ use atc_oracle::conform::report::{self, Past, Report};
 use atc_oracle::conform::run::{self, Options, Run, Verdict};
 use atc_oracle::conform::vectors::{self, Set, Vector};
 use atc_oracle::conform::walk;
+use atc_protocol::form::Line;
 use atc_protocol::machine::{self, KINDS};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -210,7 +211,7 @@ pub(crate) fn config(path: &Path, machines: &[String]) -> Result<Value, Failure>
     } else {
         serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?
     };
-    let line = json!({"start": {"protocol": 1, "machine": machine, "config": config}}).to_string();
+    let line = Line::start(machine, &config).text();
     let mut reply = Vec::new();
     atc_protocol::Session::new().answer(line.as_bytes(), &mut reply);
     let reply: Value = serde_json::from_slice(&reply).unwrap_or_default();

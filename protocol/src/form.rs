@@ -91,6 +91,40 @@ fn version<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> 
     deserializer.deserialize_u32(Version)
 }
 
+/// A line of a record, as it is written: a request, or the reply to a step.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Line<'a, T> {
+    /// Begins a case.
+    Start {
+        /// The version of the protocol.
+        protocol: u32,
+        /// The machine's name.
+        machine: &'a str,
+        /// The machine's configuration.
+        config: &'a T,
+    },
+    /// One logic cycle.
+    Step(&'a T),
+    /// What came of it.
+    Output(&'a T),
+}
+
+impl<'a, T: Serialize> Line<'a, T> {
+    /// A start in this version of the protocol.
+    pub const fn start(machine: &'a str, config: &'a T) -> Self {
+        Self::Start { protocol: PROTOCOL, machine, config }
+    }
+
+    /// The line without its newline.
+    ///
+    /// # Panics
+    /// If the body is no JSON; the messages of the machines are.
+    pub fn text(&self) -> String {
+        serde_json::to_string(self).expect("a message is plain data")
+    }
+}
+
 /// The body of a stop: no field.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

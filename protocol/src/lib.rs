@@ -1,7 +1,7 @@
 //! Protocol 1: the machines of the kernel as values on a wire.
 //!
 //! * [`form`]: the forms of a line, requests and replies.
-//! * [`machine`]: what each machine reads and puts out, and how that becomes the kernel's own types.
+//! * [`machine`]: what each machine reads and puts out, how that becomes the kernel's own types, and the other way round.
 //! * [`Session`]: request lines in, reply lines out, one for one.
 //! * [`schema`]: the JSON Schema of all of it, generated from the types.
 //!
@@ -10,7 +10,7 @@
 //! # In the house
 //!
 //! Uses `atc-kernel`, `atc-layout`, `atc-line`. Used by `atc-adversary`, `atc-commands`, `atc-evidence`, `atc-fmi`,
-//! `atc-oracle`, `atc-python`, `atc-tests`, `atc-wasm`. Begin with [`Session`] and [`machine`].
+//! `atc-models`, `atc-oracle`, `atc-python`, `atc-tests`, `atc-wasm`. Begin with [`Session`] and [`machine`].
 
 pub mod form;
 pub mod machine;

@@ -117,7 +117,7 @@ fn the_parts_have_everything_and_what_they_need() {
 
 /// The programs whose tests are of tools that the case does not rest on: `ci/test` runs them. A new program is named in the
 /// argument, or here.
-const OF_TOOLS: [&str; 17] = [
+const OF_TOOLS: [&str; 18] = [
     "c_abi",
     "command",
     "conform",
@@ -135,6 +135,7 @@ const OF_TOOLS: [&str; 17] = [
     "second",
     "shards",
     "signal_wav",
+    "wire",
 ];
 
 #[test]

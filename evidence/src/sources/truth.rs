@@ -1,6 +1,7 @@
 //! What a model knows and the machine does not: where the heads really are, and what fails. For the captions of charts.
 
 use atc_models::Trace;
+use atc_protocol::form::Line;
 use serde_json::Value;
 
 /// The faults and the heads of a trace in a sentence; nothing if the model does not tell.
@@ -75,7 +76,7 @@ pub fn one_more(trace: &Trace) -> String {
                 *given = Value::Null;
             }
         }
-        record.extend([serde_json::json!({ "step": input }).to_string(), "\n".to_owned()]);
+        record.extend([Line::Step(&input).text().as_str(), "\n"]);
     }
     record
 }

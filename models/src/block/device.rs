@@ -1,6 +1,9 @@
 //! The machine in a model of block counting: the kernel's, or a wrong one to compare with.
 
-use atc_kernel::block::{Block, Input, Output, State, step};
+use atc_kernel::block::{Block, Detection, Input, Output, State, step};
+use atc_kernel::time::Millis;
+use atc_protocol::Sections;
+use serde::Serialize;
 
 /// A machine that may stand in the place of the kernel's.
 pub trait Counting: Clone + std::fmt::Debug + Send + Sync + 'static {
@@ -50,53 +53,30 @@ impl Counting for WithoutComparison {
     }
 }
 
-/// A block's inputs and outputs in the words of the oracle's machine `block-count`.
-pub(super) mod words {
-    use atc_kernel::block::{Block, Fault, Input, Output, SectionSet, Status};
-    use serde_json::{Value, json};
+/// The length of a logic cycle in a trace.
+pub(super) const CYCLE: Millis = Millis(10);
 
-    /// The length of a logic cycle in a trace, in milliseconds.
-    const CYCLE_MS: u32 = 10;
+/// What a block read of its line, and how it counts after that: further words of a trace.
+#[derive(Serialize)]
+pub(crate) struct Counts {
+    check_in: bool,
+    check_out: bool,
+    present: Sections,
+    reset: Option<u8>,
+    count: u8,
+    agree: bool,
+}
 
-    pub(in crate::block) fn sections(set: SectionSet) -> Vec<u8> {
-        (0..16).filter(|section| set.contains(*section)).collect()
-    }
-
-    pub(in crate::block) fn config(block: Block) -> Value {
-        json!({
-            "sections": block.sections(),
-            "max_trains": block.max_trains().0,
-            "tail_hold_sections": block.hold().sections(),
-            "cycle_ms": CYCLE_MS,
-            "pass_ms": CYCLE_MS * u32::from(block.pass().0),
-        })
-    }
-
-    pub(in crate::block) fn input(block: Block, input: Input) -> Value {
-        json!({
-            "check_in": input.check_in,
-            "check_out": input.check_out,
-            "present": sections(input.present.and(block.all())),
-            "reset": input.reset.map(|number| number.0),
-            "ahead_hold_sections": input.ahead_hold.sections(),
-            "ahead_entered": input.ahead_entered,
-        })
-    }
-
-    pub(in crate::block) fn output(block: Block, output: Output) -> Value {
-        let fault = match output.status {
-            Status::Unverified | Status::Counting => None,
-            Status::Fault(Fault::CheckOutAtZero) => Some("check-out-at-zero"),
-            Status::Fault(Fault::CheckInAtMaximum) => Some("check-in-at-maximum"),
-            Status::Fault(Fault::CheckInStaysOn) => Some("check-in-stays-on"),
-        };
-        json!({
-            "occupied": sections(output.occupied.and(block.all())),
-            "behind_hold_sections": output.behind_hold.sections(),
-            "agree": output.agree,
-            "count": output.count.0,
-            "fault": fault,
-            "counting": output.status == Status::Counting,
-        })
+impl Counts {
+    /// Of a block whose state after the cycle is `after`.
+    pub(crate) fn of(read: Detection, after: State, agree: bool) -> Self {
+        Self {
+            check_in: read.low_check,
+            check_out: read.high_check,
+            present: Sections(read.present),
+            reset: read.reset.map(|number| number.0),
+            count: after.parts().count,
+            agree,
+        }
     }
 }

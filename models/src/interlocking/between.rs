@@ -26,7 +26,6 @@ use atc_kernel::interlocking::{
 use atc_kernel::time::Ticks;
 use known::Known;
 use serde_json::json;
-use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A train. Its places count from the platform where it begins: 0 the platform, 1 the throat there, then the line, then the throat of the
@@ -366,21 +365,21 @@ impl Subject for Between {
         let started = path.iter().rposition(|(_, cycle)| cycle.is_some_and(|cycle| cycle.outcomes[0].started));
         if started.is_none() {
             for input in self.prelude() {
-                run.step(&input, BTreeMap::from([("hazard".to_owned(), json!(false))]));
+                run.step(&input, json!({"hazard": false}));
             }
         }
         for (place, (_, cycle)) in path.iter().enumerate().skip(started.unwrap_or(0)) {
             let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
             let train =
                 |train: Train| json!({"front": train.front, "rear": train.rear, "reported": train.unheard == 0});
-            let words = BTreeMap::from([
-                ("trains".to_owned(), json!(cycle.trains.map(train))),
-                ("direction".to_owned(), json!(direction_word(&self.device(after.devices[0]).directions))),
-                ("neighbour_direction".to_owned(), json!(direction_word(&self.device(after.devices[1]).directions))),
-                ("neighbour_starts".to_owned(), json!(cycle.outcomes[1].started)),
-                ("neighbour_proceed".to_owned(), json!(cycle.outcomes[1].proceed)),
-                ("hazard".to_owned(), json!(after.met)),
-            ]);
+            let words = json!({
+                "trains": cycle.trains.map(train),
+                "direction": direction_word(&self.device(after.devices[0]).directions),
+                "neighbour_direction": direction_word(&self.device(after.devices[1]).directions),
+                "neighbour_starts": cycle.outcomes[1].started,
+                "neighbour_proceed": cycle.outcomes[1].proceed,
+                "hazard": after.met,
+            });
             let read = self.known().inputs[cycle.outcomes[0].read];
             run.step(&read, words);
         }

@@ -13,10 +13,11 @@ use super::state::{Cycle as YardCycle, Harm, State as YardState};
 use super::stations::counted;
 use super::train::{Place, Train};
 use super::yard::{Yard, mask};
+use crate::block::device::Counts;
 use crate::block::fault::Faults;
 use crate::outcome::Trace;
 use crate::subject::{Claim, Subject};
-use atc_kernel::block::{Block, Hold, Input, SectionSet, State as Kernel, Status, TrainCount, step};
+use atc_kernel::block::{Block, Detection, Hold, Input, SectionSet, State as Kernel, Status, TrainCount, step};
 use atc_kernel::interlocking::{self as kernel, CircuitSet};
 use atc_kernel::time::Ticks;
 use serde_json::json;
@@ -258,16 +259,9 @@ impl Subject for Counted {
         for (place, step) in trace.steps.iter_mut().skip(begins).enumerate() {
             let (Some(cycle), Some((after, _))) = (path[place].1, path.get(place + 1)) else { continue };
             let Input { check_in, check_out, present, reset, .. } = cycle.block;
-            let sections: Vec<_> = (0..SECTIONS).filter(|section| present.contains(*section)).collect();
-            let block = json!({
-                "check_in": check_in,
-                "check_out": check_out,
-                "present": sections,
-                "reset": reset.map(|number| number.0),
-                "count": after.block.parts().count,
-                "agree": after.agree,
-            });
-            step.words.insert("block".to_owned(), block);
+            let read = Detection { low_check: check_in, high_check: check_out, present, reset };
+            let block = Counts::of(read, after.block, after.agree);
+            step.words.insert("block".to_owned(), json!(block));
             step.words.insert("faults".to_owned(), json!(after.faults.words()));
         }
         trace

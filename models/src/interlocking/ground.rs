@@ -5,9 +5,11 @@
 
 use super::sizes::{POINTS, Small};
 use atc_kernel::interlocking::{self as kernel, Position};
+use serde::Serialize;
 
 /// The way that a train goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Heading {
     /// From left to right in the drawings.
     Up,
@@ -87,15 +89,19 @@ pub struct Ground {
 }
 
 /// Where a point's blades are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 pub enum Blade {
     /// At rest in normal position.
+    #[serde(rename = "normal")]
     Normal,
     /// At rest in reverse position.
+    #[serde(rename = "reverse")]
     Reverse,
     /// Between, on the way to normal.
+    #[serde(rename = "to normal")]
     ToNormal,
     /// Between, on the way to reverse.
+    #[serde(rename = "to reverse")]
     ToReverse,
 }
 

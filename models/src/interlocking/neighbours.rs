@@ -16,7 +16,6 @@ use atc_kernel::interlocking::{
 };
 use atc_kernel::time::Ticks;
 use serde_json::json;
-use std::collections::BTreeMap;
 
 /// The longest life of a telegram in a model.
 pub const LONGEST_LIFE: u8 = 4;
@@ -334,23 +333,17 @@ impl Subject for Pair {
     fn trace(&self, path: &[(State, Option<Cycle>)]) -> Trace {
         let layout = self.layout();
         let mut run = Run::begin("line", &["line", "way in", "beyond"], &layout);
-        run.step(
-            &self.unblocking(path.first().and_then(|(state, _)| state.train)),
-            BTreeMap::from([("hazard".to_owned(), json!(false))]),
-        );
+        run.step(&self.unblocking(path.first().and_then(|(state, _)| state.train)), json!({"hazard": false}));
         for (place, (_, cycle)) in path.iter().enumerate() {
             let (Some(cycle), Some((after, _))) = (cycle, path.get(place + 1)) else { break };
-            let travel = |command: Option<Travel>| {
-                command
-                    .map(|travel| json!({"turn": "S0", "to": if travel == Travel::Toward { "toward" } else { "away" }}))
-            };
-            let words = BTreeMap::from([
-                ("direction".to_owned(), json!(direction_word(&after.directions[0]))),
-                ("neighbour_command".to_owned(), json!(travel(cycle.commands[1]))),
-                ("neighbour_consent".to_owned(), json!(cycle.consent[1])),
-                ("neighbour_direction".to_owned(), json!(direction_word(&after.directions[1]))),
-                ("hazard".to_owned(), json!(after.against)),
-            ]);
+            let turn = |travel| run.request(Request::Turn(SegmentId::ZERO, travel));
+            let words = json!({
+                "direction": direction_word(&after.directions[0]),
+                "neighbour_command": cycle.commands[1].map(turn),
+                "neighbour_consent": cycle.consent[1],
+                "neighbour_direction": direction_word(&after.directions[1]),
+                "hazard": after.against,
+            });
             run.step(&self.input(*cycle, 0), words);
         }
         run.trace()

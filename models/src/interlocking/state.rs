@@ -9,6 +9,7 @@ use atc_kernel::interlocking::{
     Unswept, Works,
 };
 use atc_kernel::time::Ticks;
+use serde::Serialize;
 
 /// The machine's state, without what never changes in a model and without the number of the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -104,7 +105,8 @@ pub struct Shown {
 }
 
 /// What has gone wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Harm {
     /// Nothing.
     None,

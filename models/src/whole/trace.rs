@@ -4,12 +4,11 @@ use super::devices::CIRCUITS;
 use super::faults::{Event, Fault};
 use super::ground::Harm;
 use super::{State, Train, Whole};
-use crate::interlocking::trace::{Run, names};
+use crate::interlocking::trace::Run;
 use crate::outcome::Trace;
-use atc_kernel::heading::Heading;
 use atc_kernel::supervision::Brake;
+use atc_protocol::machine::interlocking::Heading;
 use serde_json::json;
-use std::collections::BTreeMap;
 
 /// The eastern station.
 const EAST: usize = 1;
@@ -30,18 +29,18 @@ impl<const T: usize> Whole<T> {
                 json!({
                     "front_m": train.body.front,
                     "speed_m_s": train.body.speed,
-                    "heading": if train.body.heading == Heading::Right { "right" } else { "left" },
+                    "heading": Heading(train.body.heading),
                     "brake": device.brake != Brake::Release,
                 })
             };
             let fault = |fault: &Fault| json!({"kind": fault.kind.name(), "at": fault.at});
-            let words = BTreeMap::from([
-                ("trains".to_owned(), made.after.trains.iter().map(train).collect()),
-                ("faults".to_owned(), event.faults.iter().flatten().map(fault).collect()),
-                ("proceed_by_the_model".to_owned(), json!(names(put.proceed))),
-                ("staff_ask".to_owned(), json!(event.asked)),
-                ("hazard".to_owned(), json!(made.after.harm != Harm::None)),
-            ]);
+            let words = json!({
+                "trains": made.after.trains.iter().map(train).collect::<Vec<_>>(),
+                "faults": event.faults.iter().flatten().map(fault).collect::<Vec<_>>(),
+                "proceed_by_the_model": run.routes(put.proceed),
+                "staff_ask": event.asked,
+                "hazard": made.after.harm != Harm::None,
+            });
             let (_, reading) = self.ground(EAST).read(made.begun[EAST], made.read[EAST].input());
             run.step(&reading.input, words);
         }

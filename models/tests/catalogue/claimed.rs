@@ -1,8 +1,8 @@
 //! The machine as claimed, on charts.
 
-use atc_kernel::aspect::AspectSet;
+use atc_kernel::aspect::{AspectId, AspectSet};
 use atc_models::claimed::{State, step};
-use atc_models::line::{COARSE, speed};
+use atc_models::line::COARSE;
 
 /// Runs the machine on a chart, a column a cycle of 100 ms, and draws what is displayed. `#`: detected.
 fn displayed(low: &str, high: &str) -> String {
@@ -13,9 +13,9 @@ fn displayed(low: &str, high: &str) -> String {
             let detected = AspectSet::from_bits(u16::from(low == '#') | u16::from(high == '#') << 1);
             let (next, display) = step(COARSE.ticks(), state, detected);
             state = next;
-            match speed(display) {
+            match display.aspect().map(AspectId::rank) {
                 None => '.',
-                Some(25) => 'l',
+                Some(0) => 'l',
                 Some(_) => 'h',
             }
         })

@@ -3,8 +3,7 @@
 use crate::OUTCOMES;
 use crate::large::LARGE;
 use crate::unique_states::UNIQUE_STATES;
-use atc_kernel::aspect::{Acceptance, AspectSet, State, Times, TimesMs, step};
-use atc_kernel::time::Millis;
+use atc_kernel::aspect::{Acceptance, AspectSet, State, Times, step};
 use atc_models::assumptions::ASSUMPTIONS;
 use atc_models::bursts::{Bursts, duty_cycle};
 use atc_models::comparison::{Comparison, Extra};
@@ -12,8 +11,10 @@ use atc_models::interruption::Interruption;
 use atc_models::line::{ASPECTS_KM_H, COARSE, DEFAULT, EARLY, LATE};
 use atc_models::reception::claims::{Bound, Purpose};
 use atc_models::reception::{Environment, Ground, Longest, Reception};
-use atc_models::replay::Config;
 use atc_models::{Expectation, Limits, Subject, Trace, Verdict, catalogue, check, check_within};
+use atc_protocol::machine::aspect::Config;
+use atc_protocol::{Kmh, Session};
+use serde_json::Value;
 use std::collections::{BTreeSet, HashSet};
 use std::hash::Hash;
 use std::time::Duration;
@@ -161,19 +162,12 @@ fn a_plain_search_counts_the_same_states() {
     }
 }
 
-fn times(config: &Config) -> Times {
-    let ms = TimesMs {
-        operate: Millis(config.operate_ms),
-        recovery: Millis(config.recovery_ms),
-        mask: Millis(config.mask_ms),
-        interruption: Millis(config.interruption_ms),
-        shortened_operate: Millis(config.shortened_operate_ms),
-    };
-    Times::from_millis(Millis(config.cycle_ms), ms).expect("the configuration of a trace is valid")
+fn config(trace: &Trace) -> Config {
+    serde_json::from_str(&trace.config.to_string()).expect("a configuration")
 }
 
-fn config(trace: &Trace) -> Config {
-    serde_json::from_value(trace.config.clone()).expect("a configuration")
+fn times(config: &Config) -> Times {
+    config.times().expect("the configuration of a trace is valid")
 }
 
 fn km_h(value: &serde_json::Value) -> Vec<u16> {
@@ -235,12 +229,13 @@ fn a_trace_is_a_case_for_the_oracle() {
         let start = lines.next().expect("a start");
         assert_eq!(start["start"]["protocol"], 1);
         assert_eq!(start["start"]["machine"], "aspect-acceptance");
-        let config: Config = serde_json::from_value(start["start"]["config"].clone()).expect("a configuration");
+        assert_eq!(start["start"]["config"], trace.config);
+        let config = config(trace);
         let mut state = State::<16>::INITIAL;
         for _ in &trace.steps {
             let input = lines.next().expect("a step");
             let km_h = km_h(&input["step"]["detected_km_h"]);
-            assert!(km_h.iter().all(|speed| config.aspects_km_h.contains(speed)));
+            assert!(km_h.iter().all(|speed| config.aspects_km_h.contains(&Kmh(i32::from(*speed) * 10))));
             let (next, display) = step(times(&config), state, detected(&km_h));
             state = next;
             let expected = display.aspect().map(|aspect| ASPECTS_KM_H[usize::from(aspect.rank())]);
@@ -253,4 +248,33 @@ fn a_trace_is_a_case_for_the_oracle() {
             *trace
         );
     }
+}
+
+/// The protocol's machine reads what the model's kernel read, and answers as it did: in every field that the trace has.
+#[test]
+fn the_oracle_agrees_with_every_trace() {
+    let mut steps = 0;
+    for outcome in OUTCOMES.iter() {
+        let found = outcome.properties.iter().filter_map(|property| property.trace.as_ref());
+        for trace in found.chain(outcome.cut_sets.iter().map(|cut| &cut.trace)) {
+            let mut session = Session::new();
+            let mut answer = |line: &str| {
+                let mut reply = Vec::new();
+                session.answer(line.as_bytes(), &mut reply);
+                serde_json::from_slice::<Value>(&reply).expect("JSON")
+            };
+            let text = trace.trace_jsonl();
+            let (asked, told): (Vec<_>, Vec<_>) = text.lines().partition(|line| !line.starts_with("{\"output\""));
+            assert_eq!((asked.len(), told.len()), (trace.steps.len() + 1, trace.steps.len()), "{}", outcome.model);
+            let replies: Vec<_> = asked.into_iter().map(&mut answer).collect();
+            assert!(replies[0]["started"].is_object(), "{}: {}", outcome.model, replies[0]);
+            for (reply, step) in replies[1..].iter().zip(&trace.steps) {
+                for (field, told) in step.output.as_object().expect("an output") {
+                    assert_eq!(&reply["output"][field], told, "{}: {field}", outcome.model);
+                }
+                steps += 1;
+            }
+        }
+    }
+    assert!(steps > 5000, "{steps} steps");
 }

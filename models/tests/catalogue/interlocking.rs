@@ -12,11 +12,14 @@ use atc_models::interlocking::device::{Device, Real};
 use atc_models::interlocking::environment::{Environment, Obey, Start};
 use atc_models::interlocking::ground::{Ahead, Blade, Heading};
 use atc_models::interlocking::stations::{
-    Overlaps, circuits, crossing, junction, passing, passing_loop, rest, siding, terminus,
+    Overlaps, PLACES, POINTS, ROUTES, SEGMENTS, circuits, counted_line, crossing, halt, junction, passing,
+    passing_loop, rest, siding, terminus,
 };
 use atc_models::interlocking::yard::{self, Yard};
 use atc_models::interlocking::{Purpose, Sight};
 use atc_models::{Expectation, Subject, Verdict};
+use atc_protocol::machine::Machine as _;
+use atc_protocol::machine::interlocking::{Config, Interlocked};
 use std::collections::{BTreeSet, HashSet};
 
 #[test]
@@ -245,4 +248,18 @@ fn a_model_starts_from_the_kernels_initial_state() {
     };
     let (after, _) = layout.cycle(layout.initial(), quiet);
     assert_eq!(yard::Kept::of(&after), state.kept);
+}
+
+#[test]
+fn the_plan_in_a_trace_is_that_of_the_station() {
+    let loops = [Overlaps::Throat, Overlaps::None].map(passing_loop);
+    let others = [junction(), crossing(), terminus(), siding(), counted_line(), halt()];
+    for station in loops.into_iter().chain(others) {
+        let plan = *station.layout.plan();
+        let trace = Yard::new(Real, station, meeting(), Purpose::Safe(&[])).trace(&[]);
+        let config: Config = serde_json::from_str(&trace.config.to_string()).expect("a configuration");
+        let machine: Interlocked<ROUTES, PLACES, POINTS, SEGMENTS> =
+            Interlocked::open(&config).expect("it keeps the rules");
+        assert_eq!(machine.layout().plan(), &plan, "{}", trace.config["plan"]["station"]);
+    }
 }

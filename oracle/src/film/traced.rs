@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use atc_protocol::form::Line;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::take::Words;
 use crate::trace::{Trace, TraceError};
@@ -128,13 +129,10 @@ pub fn read(text: &str, wanted: Option<&str>) -> Result<Traced, TracedError> {
 
 /// The trace as the session that it is.
 fn session(trace: ModelTrace, title: Option<String>) -> Result<Traced, TracedError> {
-    let start =
-        json!({"start": {"protocol": atc_protocol::form::PROTOCOL, "machine": trace.machine, "config": trace.config}});
-    let mut lines = vec![start.to_string()];
+    let mut lines = vec![Line::start(&trace.machine, &trace.config).text()];
     let mut words = Vec::new();
     for step in trace.steps {
-        lines.push(json!({"step": step.input}).to_string());
-        lines.push(json!({"output": step.output}).to_string());
+        lines.extend([Line::Step(&step.input), Line::Output(&step.output)].map(|line| line.text()));
         words.push(step.words);
     }
     let trace = Trace::parse(&lines.join("\n")).map_err(TracedError::Trace)?;

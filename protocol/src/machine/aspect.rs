@@ -1,7 +1,7 @@
 //! `aspect-acceptance`: [`atc_kernel::aspect`] behind the protocol.
 
 use atc_kernel::Machine as _;
-use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Display, MAX_ASPECTS, State, Times};
+use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, AspectTable, Display, MAX_ASPECTS, State, Times};
 use atc_kernel::speed::KmhTenths;
 pub use atc_line::aspect::Config;
 use schemars::JsonSchema;
@@ -76,16 +76,27 @@ impl Aspect {
         }
         Ok(set)
     }
+}
 
-    /// The output that says what is on display.
-    pub fn output(&self, display: Display) -> Output {
-        let speed = display.aspect().and_then(|aspect| self.table.speed(aspect));
-        Output { display_km_h: speed.map(|speed| Kmh(speed.0.into())) }
+impl Step {
+    /// The step in which these aspects of a line are heard; [`Aspect::detected`] reads it again. Others are left out.
+    pub fn of(table: &AspectTable, detected: AspectSet) -> Self {
+        let heard = |rank| AspectId::new(rank).is_some_and(|aspect| detected.contains(aspect));
+        let heard = (0..).zip(table.speeds()).filter(|(rank, _)| heard(*rank));
+        Self { detected_km_h: heard.map(|(_, speed)| Kmh::from(*speed)).collect() }
+    }
+}
+
+impl Output {
+    /// The output that says what is on display, on a line with these aspects.
+    pub fn of(table: &AspectTable, display: Display) -> Self {
+        let speed = display.aspect().and_then(|aspect| table.speed(aspect));
+        Self { display_km_h: speed.map(Kmh::from) }
     }
 }
 
 fn list(table: &AspectTable) -> String {
-    let speeds: Vec<_> = table.speeds().iter().map(|speed| Kmh(speed.0.into()).to_string()).collect();
+    let speeds: Vec<_> = table.speeds().iter().map(|speed| Kmh::from(*speed).to_string()).collect();
     format!("{} km/h", speeds.join(", "))
 }
 
@@ -108,7 +119,7 @@ impl Machine for Aspect {
         let detected = self.detected(step)?;
         let (state, display) = self.acceptance.step(self.state, detected);
         self.state = state;
-        Ok(self.output(display))
+        Ok(Output::of(&self.table, display))
     }
 
     fn cycles(&self) -> Vec<(&'static str, u16)> {

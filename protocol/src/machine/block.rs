@@ -39,6 +39,20 @@ pub struct Step {
     pub ahead_entered: bool,
 }
 
+impl Step {
+    /// The input of a block as a step; [`Counted::input`] reads it again. Sections that the block does not have are left out.
+    pub fn of(block: Block, input: Input) -> Self {
+        Self {
+            check_in: input.check_in,
+            check_out: input.check_out,
+            present: Sections(input.present.and(block.all())),
+            reset: input.reset.map(|number| number.0.into()),
+            ahead_hold_sections: input.ahead_hold.sections().into(),
+            ahead_entered: input.ahead_entered,
+        }
+    }
+}
+
 /// What contradicted the count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -19,7 +19,7 @@ pub trait Machine: Sized + Send + Sync + 'static {
     /// The body of `config`. Unknown fields must be denied.
     type Config: DeserializeOwned + Serialize + JsonSchema;
     /// The body of a step. Unknown fields must be denied.
-    type Step: DeserializeOwned + JsonSchema;
+    type Step: DeserializeOwned + Serialize + JsonSchema;
     /// The body of an output. Unknown fields are let pass: another implementation may say more.
     type Output: DeserializeOwned + Serialize + JsonSchema + Clone + PartialEq;
 

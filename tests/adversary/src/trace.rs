@@ -1,7 +1,9 @@
 //! A find as a trace for `oracle explore --as-recorded`, in the form of the models' traces: what the device read and
 //! said in each cycle, and what was true on the ground.
 
+use atc_kernel::interlocking::Refusal;
 use atc_layout::Description;
+use atc_protocol::machine::interlocking::{Phase, Reason};
 use serde_json::{Map, Value, json};
 
 use super::device::{Ask, Device, Read, Said};
@@ -102,22 +104,10 @@ fn input(ground: &Ground, read: &Read) -> Value {
     })
 }
 
-/// A name of the kernel as the protocol has it: `InUse` is in-use.
-fn kebab(name: &str) -> String {
-    let mut word = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_uppercase() && !word.is_empty() {
-            word.push('-');
-        }
-        word.push(letter.to_ascii_lowercase());
-    }
-    word
-}
-
 fn output(device: &dyn Device, ground: &Ground, read: &Read, said: &Said) -> Value {
     let phases = device.phases().into_iter();
     let phases: Map<String, Value> =
-        phases.map(|(route, phase)| (ground.routes[route].name.clone(), json!(kebab(&format!("{phase:?}"))))).collect();
+        phases.map(|(route, phase)| (ground.routes[route].name.clone(), json!(Phase(phase)))).collect();
     let routes = ground.routes.iter().enumerate();
     let proceed: Vec<&str> =
         routes.filter(|(number, _)| said.proceed >> number & 1 == 1).map(|(_, route)| route.name.as_str()).collect();
@@ -136,7 +126,7 @@ fn output(device: &dyn Device, ground: &Ground, read: &Read, said: &Said) -> Val
         (None, ..) => Value::Null,
         (Some(_), true, _) => json!("accepted"),
         (Some(_), false, refusal) => {
-            json!({"refused": refusal.map_or_else(|| "unknown".to_owned(), |refusal| kebab(&format!("{refusal:?}")))})
+            json!({"refused": Reason(refusal.unwrap_or(Refusal::Unknown))})
         }
     };
     json!({

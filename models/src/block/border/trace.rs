@@ -1,12 +1,24 @@
 //! A path of a model of a border as a run of one of its blocks.
 
-use super::{CHECKED_IN, CHECKED_OUT, Cycle, DETECTED, Pair, SECTIONS, State};
-use crate::block::device::words;
+use super::{CHECKED_IN, CHECKED_OUT, Cycle, DETECTED, Pair, SECTIONS, SLOTS, State};
+use crate::block::device::CYCLE;
 use crate::block::lines::Lining;
-use crate::outcome::{Step, Trace};
+use crate::outcome::{self, Trace};
 use atc_kernel::block::{Detection, Input, step};
-use serde_json::json;
-use std::collections::BTreeMap;
+use atc_protocol::machine::block::{Config, Counted, Output, Step};
+use serde::Serialize;
+
+/// What the model knows of a cycle besides.
+#[derive(Serialize)]
+struct Words {
+    heads: [i16; SLOTS],
+    crossing: Vec<&'static str>,
+    faults: Vec<String>,
+    hazard: bool,
+    block: &'static str,
+    other_block_reads: Step,
+    other_block_reports: Output,
+}
 
 /// The run of the block in which a section is reported free at the end; if none is, of the block behind. The words have
 /// the other one.
@@ -17,7 +29,7 @@ pub(super) fn of<L: Lining>(pair: &Pair<L>, path: &[(State, Option<Cycle>)]) -> 
     let ahead =
         last.is_some_and(|trains| Pair::<L>::sections(trains).iter().all(|head| *head == 0 || *head > SECTIONS));
     let (subject, other) = if ahead { (1, 0) } else { (0, 1) };
-    let mut steps = Vec::new();
+    let mut cycles: Vec<outcome::Cycle<Counted, _>> = Vec::new();
     let mut alone = atc_kernel::block::State::INITIAL;
     for (place, (before, cycle)) in path.iter().enumerate() {
         let Some(cycle) = cycle else { break };
@@ -36,22 +48,18 @@ pub(super) fn of<L: Lining>(pair: &Pair<L>, path: &[(State, Option<Cycle>)]) -> 
         let input = read(subject);
         let (after, output) = step(blocks[subject], alone, input);
         alone = after;
-        let more = BTreeMap::from([
-            ("heads".to_owned(), json!(cycle.trains.heads.map(|head| i16::from(head) - 1))),
-            ("crossing".to_owned(), json!(crossing(cycle.trains.crossing))),
-            ("faults".to_owned(), json!(before.faults.words())),
-            ("hazard".to_owned(), json!(path.get(place + 1).is_some_and(|(after, _)| after.hazard))),
-            ("block".to_owned(), json!(["behind", "ahead"][subject])),
-            ("other_block_reads".to_owned(), words::input(blocks[other], read(other))),
-            ("other_block_reports".to_owned(), words::output(blocks[other], reported.blocks[other])),
-        ]);
-        steps.push(Step {
-            input: words::input(blocks[subject], input),
-            output: words::output(blocks[subject], output),
-            words: more,
-        });
+        let words = Words {
+            heads: cycle.trains.heads.map(|head| i16::from(head) - 1),
+            crossing: crossing(cycle.trains.crossing),
+            faults: before.faults.words(),
+            hazard: path.get(place + 1).is_some_and(|(after, _)| after.hazard),
+            block: ["behind", "ahead"][subject],
+            other_block_reads: Step::of(blocks[other], read(other)),
+            other_block_reports: reported.blocks[other].into(),
+        };
+        cycles.push((Step::of(blocks[subject], input), output.into(), words));
     }
-    Trace { machine: "block-count".to_owned(), config: words::config(blocks[subject]), steps, loop_start: None }
+    Trace::of::<Counted, _>(&Config::of(blocks[subject], CYCLE), &cycles)
 }
 
 fn crossing(passed: u8) -> Vec<&'static str> {

@@ -1,11 +1,10 @@
 //! The run of a model, as it is drawn.
 
 use super::{COMING, CountedBetween, Cycle, Outcome, RECEIVER, SENDER, State, Train, wrong};
+use crate::block::device::Counts;
 use crate::interlocking::trace::Run;
 use crate::outcome::Trace;
-use atc_kernel::block::Detection;
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use serde_json::json;
 
 impl<const B: usize> CountedBetween<B> {
     /// The run of the sender's interlocking since its last start. The further words of a step: where the trains are, what both devices count, and
@@ -22,7 +21,7 @@ impl<const B: usize> CountedBetween<B> {
             for read in end.prelude() {
                 let made = end.step(device, read, self.wiring);
                 device = made.device;
-                run.step(&made.told, BTreeMap::from([("hazard".to_owned(), json!(false))]));
+                run.step(&made.told, json!({"hazard": false}));
             }
         }
         for (place, (before, cycle)) in path.iter().enumerate().skip(started.unwrap_or(0)) {
@@ -33,38 +32,27 @@ impl<const B: usize> CountedBetween<B> {
                 _ => json!({"front": train.front, "rear": train.rear, "lost": train.lost}),
             };
             let trains: Vec<_> = cycle.trains[..usize::from(self.trains)].iter().map(train).collect();
-            let words = BTreeMap::from([
-                ("trains".to_owned(), json!(trains)),
-                ("faults".to_owned(), json!(before.faults.words())),
-                ("counted_by_the_sender".to_owned(), self.counted(&cycle.outcomes[SENDER])),
-                ("counted_by_the_receiver".to_owned(), self.counted(&cycle.outcomes[RECEIVER])),
-                ("receiver_proceed".to_owned(), json!(self.proceeds(RECEIVER, &cycle.outcomes[RECEIVER]))),
-                ("receiver_permits".to_owned(), json!(cycle.outcomes[RECEIVER].permits)),
-                ("receiver_starts".to_owned(), json!(cycle.outcomes[RECEIVER].started)),
-                ("hazard".to_owned(), json!(after.wrong & wrong::MET != 0)),
-            ]);
+            let words = json!({
+                "trains": trains,
+                "faults": before.faults.words(),
+                "counted_by_the_sender": self.counted(&cycle.outcomes[SENDER]),
+                "counted_by_the_receiver": self.counted(&cycle.outcomes[RECEIVER]),
+                "receiver_proceed": self.proceeds(RECEIVER, &cycle.outcomes[RECEIVER]),
+                "receiver_permits": cycle.outcomes[RECEIVER].permits,
+                "receiver_starts": cycle.outcomes[RECEIVER].started,
+                "hazard": after.wrong & wrong::MET != 0,
+            });
             run.step(&taken.told, words);
         }
         run.trace()
     }
 
     /// What a device read of the line, and how it counts after that.
-    fn counted(&self, outcome: &Outcome) -> Value {
+    fn counted(&self, outcome: &Outcome) -> Vec<Counts> {
         let known = self.known();
         let taken = known.taken[outcome.read as usize];
         let after = known.device(outcome.device);
-        let block = |block: usize| {
-            let Detection { low_check, high_check, present, reset } = taken.read.blocks[block];
-            let sections: Vec<_> = (0..self.sections).filter(|section| present.contains(*section)).collect();
-            json!({
-                "check_in": low_check,
-                "check_out": high_check,
-                "present": sections,
-                "reset": reset.map(|number| number.0),
-                "count": after.line.blocks[block].parts().count,
-                "agree": taken.agree[block],
-            })
-        };
-        (0..B).map(block).collect()
+        let counts = |block: usize| Counts::of(taken.read.blocks[block], after.line.blocks[block], taken.agree[block]);
+        (0..B).map(counts).collect()
     }
 }

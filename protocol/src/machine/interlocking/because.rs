@@ -74,7 +74,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             Refusal::Direction => self.in_the_way(request, occupied),
             Refusal::Waiting => {
                 // A segment with a block waits for its end; otherwise for time, or for the neighbour.
-                let blocked = self.circuits_of(self.line(asked.out).and(self.state().works.blocked));
+                let blocked: BTreeSet<_> = self.circuits_of(self.line(asked.out).and(self.state().works.blocked));
                 if blocked.is_empty() { self.segments_of(asked.out) } else { blocked }
             }
         }
@@ -147,7 +147,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             }
             Request::Turn(segment, travel) => {
                 let plan = &self.layout.plan().segments[usize::from(segment.number())];
-                let mut names = self.circuits_of(plan.all().or(plan.throat).and(occupied));
+                let mut names: BTreeSet<_> = self.circuits_of(plan.all().or(plan.throat).and(occupied));
                 names.extend(self.held_where(|_, route, state| match travel {
                     Travel::Toward => route.to.has(segment),
                     Travel::Away => route.from.has(segment) && state.tail == 0,

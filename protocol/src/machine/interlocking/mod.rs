@@ -11,12 +11,13 @@ mod words;
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitId, CircuitSet, Combined, Layout, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
-    SegmentSet, Size, Small, SpeedCode,
+    self as kernel, CircuitSet, Combined, Layout, Memory, PointId, PointSet, Positions, RouteId, SegmentId, SegmentSet,
+    Size, Small, SpeedCode,
 };
 use atc_layout::Names;
 
 use config::Opened;
+use plan::PlanConfig;
 
 pub use config::{Config, Found, Said};
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
@@ -58,6 +59,11 @@ fn place(names: &[String], name: &str, field: &str, kind: &str) -> Result<u8, St
     })
 }
 
+/// The name of a number; empty if it has none.
+fn name(names: &[String], number: u8) -> String {
+    names.get(usize::from(number)).cloned().unwrap_or_default()
+}
+
 /// The places of a list of names, each at most once.
 fn places(names: &[String], list: &[String], field: &str, kind: &str) -> Result<Vec<u8>, String> {
     let mut found = Vec::with_capacity(list.len());
@@ -83,12 +89,28 @@ fn set<T>(
     Ok(places(names, list, field, kind)?.into_iter().map(usize::from).fold(empty, or))
 }
 
-/// The names of those numbers that are in the set.
-fn named(names: &[String], is_in: impl Fn(usize) -> bool) -> BTreeSet<String> {
+/// The names of those numbers that are in the set, in the order of the numbers.
+fn named<C: FromIterator<String>>(names: &[String], is_in: impl Fn(usize) -> bool) -> C {
     names.iter().enumerate().filter(|(number, _)| is_in(*number)).map(|(_, name)| name.clone()).collect()
 }
 
 impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Interlocked<R, P, N, S, Z> {
+    /// The machine in its initial state, on a layout whose numbers have these names. The speeds are those of the codes,
+    /// in km/h: 0, and then rising; 0 where there is no such code.
+    pub fn new(
+        layout: Box<Layout<R, P, N, S, Z>>,
+        names: Names,
+        speeds_kmh: [u16; kernel::MAX_CODES],
+        cycle_ms: u32,
+    ) -> Self {
+        Self { layout, names, speeds_kmh, cycle_ms, said: None, memory: Box::new(Memory::INITIAL) }
+    }
+
+    /// The layout as a configuration in the kernel's own terms, whose rules of engineering are not checked.
+    pub fn plan_config(&self) -> Config {
+        Config::Plan(Box::new(PlanConfig::of(self)))
+    }
+
     /// The layout.
     pub fn layout(&self) -> &Layout<R, P, N, S, Z> {
         &self.layout
@@ -119,7 +141,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
         set(&self.names.circuits, list, field, "circuit", CircuitSet::EMPTY, or)
     }
 
-    fn circuits_of(&self, set: CircuitSet<Z>) -> BTreeSet<String> {
+    /// The names of circuits.
+    pub(in crate::machine) fn circuits_of<C: FromIterator<String>>(&self, set: CircuitSet<Z>) -> C {
         named(&self.names.circuits, |number| set.meets(CircuitSet::nth(number)))
     }
 
@@ -127,7 +150,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
         named(&self.names.points, |number| set.meets(PointSet::nth(number)))
     }
 
-    fn segments_of(&self, set: SegmentSet<Z>) -> BTreeSet<String> {
+    fn segments_of<C: FromIterator<String>>(&self, set: SegmentSet<Z>) -> C {
         named(&self.names.segments, |number| set.meets(SegmentSet::nth(number)))
     }
 
@@ -152,6 +175,37 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             orders: self.orders(&step.orders)?,
             consent,
         })
+    }
+
+    /// The kernel's input as a step; [`Interlocked::input`] reads it again, but for a speed that restricts no circuit.
+    pub fn step_of(&self, input: &kernel::Input<Z>) -> Step {
+        let kernel::Orders { block, unblock, restrict, speed, lift } = input.orders;
+        let restricted: Vec<_> = self.circuits_of(restrict);
+        Step {
+            occupied: self.circuits_of(input.occupied),
+            detected: ByName(self.sides(input.detected).into_iter().map(|(name, side)| (name, Some(side))).collect()),
+            request: input.request.map(|request| self.request_of(request)),
+            orders: Orders {
+                block: self.circuits_of(block),
+                unblock: self.circuits_of(unblock),
+                restrict: ByName(restricted.into_iter().map(|name| (name, self.speed(speed))).collect()),
+                lift: self.circuits_of(lift),
+            },
+            consent: self.segments_of(input.consent),
+            all_telegrams: false,
+        }
+    }
+
+    /// The kernel's request by its names.
+    pub fn request_of(&self, request: kernel::Request) -> Request {
+        use kernel::Request::{Drive, Set, Turn, Withdraw};
+        let Names { routes, points, segments, .. } = &self.names;
+        match request {
+            Set(route) => Request::Set { set: name(routes, route.number()) },
+            Withdraw(route) => Request::Withdraw { withdraw: name(routes, route.number()) },
+            Drive(point, to) => Request::Drive { drive: name(points, point.number()), to: Side(to) },
+            Turn(segment, to) => Request::Turn { turn: name(segments, segment.number()), to: Travel(to) },
+        }
     }
 
     fn request(&self, request: &Request) -> Result<kernel::Request, String> {
@@ -209,20 +263,20 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
         self.speeds_kmh.iter().take(usize::from(code.0) + 1).copied().max().unwrap_or(0)
     }
 
-    fn output(&self, input: kernel::Input<Z>, commands: &kernel::Commands<R, Z>, all_telegrams: bool) -> Output {
+    /// What the kernel put out in the cycle after which its memory is the one here.
+    pub fn output(&self, input: kernel::Input<Z>, commands: &kernel::Commands<R, Z>, all_telegrams: bool) -> Output {
         let (output, movements) = (&commands.interlocking, &commands.telegrams);
-        let circuit = |id: CircuitId| self.names.circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
         let silent = named(&self.names.circuits, |number| movements[number].is_none());
-        let telegrams = self.names.circuits.iter().zip(movements).filter_map(|(name, movement)| {
+        let telegrams = self.names.circuits.iter().zip(movements).filter_map(|(circuit, movement)| {
             let movement = movement.filter(|movement| movement.is_open() || all_telegrams)?;
-            let (stop, speed_km_h) = (circuit(movement.stop), self.speed(movement.speed));
+            let (stop, speed_km_h) = (name(&self.names.circuits, movement.stop.number()), self.speed(movement.speed));
             let heading = movement.heading.map(Heading);
-            Some((name.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
+            Some((circuit.clone(), Telegram { stop, speed_km_h, open: movement.is_open(), heading }))
         });
         Output {
             silent,
             routes: self.phases(),
-            proceed: self.names_of_routes(output.proceed),
+            proceed: self.routes_of(output.proceed),
             drives: self.sides(output.drives),
             telegrams: telegrams.collect::<BTreeMap<_, _>>(),
             permits: self.segments_of(output.permits),
@@ -243,7 +297,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Ma
 
     fn open(config: &Config) -> Result<Self, String> {
         let Opened { layout, names, speeds_kmh, cycle_ms, said } = config.opened()?;
-        Ok(Self { layout, names, speeds_kmh, cycle_ms, said, memory: Box::new(Memory::INITIAL) })
+        Ok(Self { said, ..Self::new(layout, names, speeds_kmh, cycle_ms) })
     }
 
     fn step(&mut self, step: &Step) -> Result<Output, String> {

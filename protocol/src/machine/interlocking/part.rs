@@ -1,6 +1,6 @@
 //! The interlocking as a part of the ground's device: its names, and what is remembered there.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use atc_kernel::interlocking::{
     self as kernel, CircuitId, CircuitSet, Input, Memory, PointSet, Position, Positions, Refusal, RouteSet, SegmentId,
@@ -17,8 +17,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
         self.speeds_kmh
     }
 
-    /// Goes on from this memory.
-    pub(in crate::machine) fn remember(&mut self, memory: &Memory<R, S, Z>) {
+    /// Goes on from this memory: that of a device which is stepped elsewhere.
+    pub fn remember(&mut self, memory: &Memory<R, S, Z>) {
         *self.memory = *memory;
     }
 
@@ -39,11 +39,6 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
         self.circuits(list, field)
     }
 
-    /// The names of circuits.
-    pub(in crate::machine) fn names_of_circuits(&self, set: CircuitSet<Z>) -> BTreeSet<String> {
-        self.circuits_of(set)
-    }
-
     /// The phase of every route that is not idle.
     pub(in crate::machine) fn phases(&self) -> BTreeMap<String, Phase> {
         let held = self.names.routes.iter().zip(&self.memory.interlocking.routes).filter(|(_, route)| route.is_held());
@@ -51,7 +46,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
     }
 
     /// The names of routes.
-    pub(in crate::machine) fn names_of_routes(&self, set: RouteSet<Z>) -> BTreeSet<String> {
+    pub fn routes_of<C: FromIterator<String>>(&self, set: RouteSet<Z>) -> C {
         named(&self.names.routes, |number| set.meets(RouteSet::nth(number)))
     }
 

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::config::Opened;
-use super::{ByName, Heading, Side, place, set};
+use super::{ByName, Heading, Interlocked, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
 /// engineering are checked if `rules` is true, and else not, so that a trace on a bad layout, which ends in an accident, can be replayed.
@@ -161,6 +161,72 @@ pub struct RouteForm {
 }
 
 impl PlanConfig {
+    /// The plan of a machine's layout, as far as it has names: [`PlanConfig::opened`] reads it again.
+    pub(super) fn of<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        machine: &Interlocked<R, P, N, S, Z>,
+    ) -> Self {
+        let Interlocked { layout, names, speeds_kmh, cycle_ms, .. } = machine;
+        let plan = layout.plan();
+        let limits = plan.line.parts();
+        let circuits = names.circuits.iter().zip(&plan.lengths).enumerate().map(|(number, (name, length))| {
+            let limit = (0..).zip(&limits).find(|(_, limited)| limited.meets(CircuitSet::nth(number)));
+            CircuitForm { name: name.clone(), length_m: length.0, speed_code: limit.map(|(code, _)| code) }
+        });
+        let listed = |each: &[CircuitSet<Z>]| each.iter().flat_map(|one| machine.circuits_of::<Vec<_>>(*one)).collect();
+        let points = names.points.iter().zip(&plan.points);
+        let points = points
+            .map(|(name, point)| PointForm { name: name.clone(), detectors: machine.circuits_of(point.detectors) });
+        let segments = names.segments.iter().zip(&plan.segments).map(|(name, segment)| SegmentForm {
+            name: name.clone(),
+            circuits: listed(&segment.circuits[..usize::from(segment.length)]),
+            throat: machine.circuits_of(segment.throat),
+            outward: Heading(segment.outward),
+            shared: segment.shared,
+        });
+        let element = |element: &Element<Z>| ElementForm {
+            circuits: machine.circuits_of(element.circuits),
+            points: ByName(machine.sides(element.positions)),
+        };
+        let routes = names.routes.iter().zip(&plan.routes).map(|(name, route)| RouteForm {
+            name: name.clone(),
+            heading: Heading(route.heading),
+            entry: machine.circuits_of(route.entry),
+            approach: machine.circuits_of(route.approach),
+            path: route.path[..usize::from(route.length)].iter().map(element).collect(),
+            overlap: element(&route.overlap),
+            beyond: machine.circuits_of(route.beyond),
+            continuing: machine.routes_of(route.continuing),
+            conflicts: machine.routes_of(route.conflicts),
+            from: machine.segments_of(route.from),
+            to: machine.segments_of(route.to),
+            drive_cycles: route.drive.0,
+            release_cycles: route.release.0,
+            stay_cycles: route.stay.0,
+            speed_code: route.speed.0,
+            overlap_speed_code: Some(route.overlap_speed.0),
+            cab_signalled: route.cab_signalled,
+        });
+        let codes = 1 + speeds_kmh.iter().skip(1).take_while(|speed| **speed > 0).count();
+        Self {
+            station: names.station.clone(),
+            cycle_ms: *cycle_ms,
+            clear_cycles: plan.clear,
+            turn_cycles: plan.turn.0,
+            start_cycles: plan.start.0,
+            settle_cycles: plan.settle,
+            loss_cycles: plan.loss,
+            residual_cycles: plan.residual.0,
+            standstill_cycles: plan.standstill.0,
+            rules: false,
+            speeds_km_h: speeds_kmh[..codes].to_vec(),
+            braking_m: plan.braking.map(|braking| braking.0).to_vec(),
+            circuits: circuits.collect(),
+            points: points.collect(),
+            segments: segments.collect(),
+            routes: routes.collect(),
+        }
+    }
+
     /// How much there is in it.
     pub(super) fn extent(&self) -> Extent {
         let paths = self.routes.iter().map(|route| route.path.len());

@@ -4,7 +4,7 @@ use atc_line::kmh::tenths;
 pub use atc_line::permitted::Config;
 
 use atc_kernel::distance::Millimetres;
-use atc_kernel::permitted::{self, Heard, Permitted, State};
+use atc_kernel::permitted::{self, Heard, Permission, Permitted, State};
 use atc_kernel::time::Ticks;
 use schemars::JsonSchema;
 use serde::de::Deserializer;
@@ -86,6 +86,15 @@ impl From<LineKind> for permitted::LineKind {
         match line {
             LineKind::Analog => Self::Analog,
             LineKind::Digital => Self::Digital,
+        }
+    }
+}
+
+impl From<permitted::LineKind> for LineKind {
+    fn from(line: permitted::LineKind) -> Self {
+        match line {
+            permitted::LineKind::Analog => Self::Analog,
+            permitted::LineKind::Digital => Self::Digital,
         }
     }
 }
@@ -212,6 +221,28 @@ impl Step {
     }
 }
 
+impl From<Heard> for Step {
+    /// What is heard as a step; [`Step::heard`] reads it again. It has no true speed of the train.
+    fn from(heard: Heard) -> Self {
+        Self {
+            line: heard.line.map(Into::into),
+            analog_km_h: heard.analog.map(Into::into),
+            main: heard.main.map(Into::into),
+            sub: heard.sub.map(Into::into),
+            to_exit_m: heard.to_exit.map(|length| Metres(length.0.into())),
+            moved_m: Metres(heard.moved.0.into()),
+            speed_km_h: None,
+        }
+    }
+}
+
+impl From<Permission> for Output {
+    /// The permission without what is remembered.
+    fn from(permission: Permission) -> Self {
+        Self { speed_km_h: permission.speed.map(Into::into), basis: permission.basis.into(), state: None }
+    }
+}
+
 /// The machine with its state.
 #[derive(Clone, Debug)]
 pub struct Permitting {
@@ -236,10 +267,7 @@ impl Permitting {
         let target = self.state.target;
         let fixed = self.state.fixed.iter().flatten();
         Remembered {
-            line: match self.state.line {
-                permitted::LineKind::Analog => LineKind::Analog,
-                permitted::LineKind::Digital => LineKind::Digital,
-            },
+            line: self.state.line.into(),
             section: target.map(|target| target.section.0),
             to_stop_m: target.map(|target| Metres(target.to_stop.0.into())),
             main_age_ms: target.map(|target| age(target.age)),
@@ -264,11 +292,7 @@ impl Machine for Permitting {
     fn step(&mut self, step: &Step) -> Result<Output, String> {
         let (state, permission) = permitted::step(&self.permitted, self.state, step.heard()?);
         self.state = state;
-        Ok(Output {
-            speed_km_h: permission.speed.map(|speed| Kmh(speed.0.into())),
-            basis: permission.basis.into(),
-            state: Some(self.remembered()),
-        })
+        Ok(Output { state: Some(self.remembered()), ..permission.into() })
     }
 
     fn cycles(&self) -> Vec<(&'static str, u16)> {

@@ -111,9 +111,9 @@ impl Ground {
         });
         Ok(Output {
             routes: self.station.phases(),
-            proceed: self.station.names_of_routes(done.proceed),
+            proceed: self.station.routes_of(done.proceed),
             drives: self.station.sides(done.drives),
-            confirmed: self.station.names_of_circuits(done.confirmed),
+            confirmed: self.station.circuits_of(done.confirmed),
             answer: self.station.answer(done.told, self.station.counted(), done.answer),
             messages: told.filter_map(|(name, message)| Some((name.clone(), (*message)?.into()))).collect(),
             line,
@@ -131,7 +131,7 @@ impl Ground {
         let consent = self.station.names().segments.iter().enumerate();
         let consent = consent.filter(|(number, _)| done.told.consent.meets(SegmentSet::nth(*number)));
         let consent = consent.map(|(_, name)| name.clone()).collect();
-        let occupied = self.station.names_of_circuits(done.told.occupied);
+        let occupied = self.station.circuits_of(done.told.occupied);
         Ok((self.output(&done, step.all_telegrams)?, occupied, consent))
     }
 
