@@ -22,7 +22,8 @@
 //!
 //! # In the house
 //!
-//! Uses `atc-kernel`, `atc-layout`, `atc-protocol`. Used by `atc-evidence`. Begin with [`comparison`] and [`catalogue`].
+//! Uses `atc-kernel`, `atc-layout`, `atc-protocol`. Used by `atc-evidence`. Begin with [`comparison`] and
+//! [`catalogue`].
 #![forbid(unsafe_code)]
 
 pub mod assumptions;

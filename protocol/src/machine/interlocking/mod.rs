@@ -3,6 +3,7 @@
 mod because;
 mod config;
 mod forms;
+mod opened;
 mod part;
 mod plan;
 mod sizes;
@@ -16,11 +17,12 @@ use atc_kernel::interlocking::{
 };
 use atc_layout::Names;
 
-use config::Opened;
+use opened::Opened;
 use plan::PlanConfig;
 
-pub use config::{Config, Found, Said};
+pub use config::Config;
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
+pub use opened::{Found, Said};
 pub use sizes::Sizes;
 pub use words::{Heading, Phase, Reason, Side, Travel};
 

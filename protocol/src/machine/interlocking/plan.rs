@@ -9,7 +9,7 @@ use atc_layout::{Extent, Names, Rule};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::config::Opened;
+use super::opened::Opened;
 use super::{ByName, Heading, Interlocked, Side, place, set};
 
 /// A plan in the kernel's own terms: nothing is derived, and only the rules that the theorems rest on are checked. The rules of
