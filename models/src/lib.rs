@@ -26,7 +26,6 @@
 //! [`catalogue`].
 #![forbid(unsafe_code)]
 
-pub mod assumptions;
 pub mod bench;
 pub mod block;
 pub mod bursts;

@@ -12,10 +12,6 @@ use std::collections::BTreeMap;
 fn harness(name: &str, verdict: Verdict) -> HarnessResult {
     HarnessResult {
         name: name.to_owned(),
-        theorem: String::new(),
-        statement: String::new(),
-        requirements: vec![],
-        assumptions: vec![],
         bound: String::new(),
         engine: "cbmc".to_owned(),
         verdict,

@@ -19,16 +19,12 @@ fn harness() -> HarnessInfo {
 }
 
 fn point(name: &str) -> ClaimResult {
-    ClaimResult { name: name.to_owned(), text: String::new(), verdict: Said::Proved }
+    ClaimResult { name: name.to_owned(), verdict: Said::Proved }
 }
 
 fn good() -> HarnessResult {
     HarnessResult {
         name: "t".to_owned(),
-        theorem: "T".to_owned(),
-        statement: String::new(),
-        requirements: vec![],
-        assumptions: vec![],
         bound: String::new(),
         engine: "cbmc".to_owned(),
         verdict: Said::Proved,
@@ -37,7 +33,7 @@ fn good() -> HarnessResult {
         solver: String::new(),
         unwound: 0,
         claims: vec![point("A"), point("B")],
-        covers: vec![CoverResult { name: "C".to_owned(), text: String::new(), hit: true }],
+        covers: vec![CoverResult { name: "C".to_owned(), hit: true }],
         counterexample: None,
     }
 }

@@ -1,9 +1,9 @@
 //! A case: a configuration and steps, and what the kernel answers to them.
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use atc_protocol::Session;
-use atc_protocol::form::PROTOCOL;
+use atc_protocol::form::Line;
 
 /// A case of one machine, as it goes over the wire.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,13 +32,13 @@ pub const STOP: &str = r#"{"stop":{}}"#;
 
 /// The line of a step.
 pub fn step_line(step: &Value) -> String {
-    format!(r#"{{"step":{step}}}"#)
+    Line::Step(step).text()
 }
 
 impl Case {
     /// The line of the start.
     pub fn start_line(&self) -> String {
-        json!({"start": {"protocol": PROTOCOL, "machine": self.machine, "config": self.config}}).to_string()
+        Line::start(&self.machine, &self.config).text()
     }
 
     /// The request lines, from the start to the stop. A case that is to be rejected has its start alone.

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use sha2::{Digest as _, Sha256};
 
+use atc_protocol::form::Line;
+
 use super::case::{Case, Expected};
 use super::fields::{self, Level};
 
@@ -88,7 +90,7 @@ impl Vector {
         } else {
             json!({"started": {"protocol": 1, "machine": self.machine, "config": self.config, "cycles": self.cycles}})
         };
-        let outputs = self.outputs.iter().map(|output| json!({"output": output}).to_string()).collect();
+        let outputs = self.outputs.iter().map(|output| Line::Output(output).text()).collect();
         Expected { case, start: start.to_string(), outputs }
     }
 }

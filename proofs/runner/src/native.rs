@@ -187,7 +187,6 @@ pub fn test(harness: &Harness, accepted: usize) -> HarnessResult {
         .zip(made.iter().zip(&failed))
         .map(|(point, (made, failed))| ClaimResult {
             name: point.name.to_owned(),
-            text: point.text.to_owned(),
             verdict: match (failed, made) {
                 (Some(_), _) => Verdict::Failed,
                 (None, true) => Verdict::Tested,
@@ -195,12 +194,8 @@ pub fn test(harness: &Harness, accepted: usize) -> HarnessResult {
             },
         })
         .collect();
-    let covers: Vec<_> = harness
-        .covers
-        .iter()
-        .zip(hit)
-        .map(|(point, hit)| CoverResult { name: point.name.to_owned(), text: point.text.to_owned(), hit })
-        .collect();
+    let covers: Vec<_> =
+        harness.covers.iter().zip(hit).map(|(point, hit)| CoverResult { name: point.name.to_owned(), hit }).collect();
     let verdict = claims.iter().map(|claim| claim.verdict).max().unwrap_or(Verdict::Vacuous);
     HarnessResult {
         verdict,
@@ -220,13 +215,8 @@ pub fn test(harness: &Harness, accepted: usize) -> HarnessResult {
 
 /// A result with nothing found out yet.
 pub(crate) fn blank(harness: &Harness, engine: &str) -> HarnessResult {
-    let owned = |texts: &[&str]| texts.iter().map(ToString::to_string).collect();
     HarnessResult {
         name: harness.name.to_owned(),
-        theorem: harness.theorem.to_owned(),
-        statement: harness.statement.trim().to_owned(),
-        requirements: owned(harness.requirements),
-        assumptions: owned(harness.assumptions),
         bound: harness.bound.to_owned(),
         engine: engine.to_owned(),
         verdict: Verdict::NotRun,
@@ -237,17 +227,9 @@ pub(crate) fn blank(harness: &Harness, engine: &str) -> HarnessResult {
         claims: harness
             .claims
             .iter()
-            .map(|point| ClaimResult {
-                name: point.name.to_owned(),
-                text: point.text.to_owned(),
-                verdict: Verdict::NotRun,
-            })
+            .map(|point| ClaimResult { name: point.name.to_owned(), verdict: Verdict::NotRun })
             .collect(),
-        covers: harness
-            .covers
-            .iter()
-            .map(|point| CoverResult { name: point.name.to_owned(), text: point.text.to_owned(), hit: false })
-            .collect(),
+        covers: harness.covers.iter().map(|point| CoverResult { name: point.name.to_owned(), hit: false }).collect(),
         counterexample: None,
     }
 }

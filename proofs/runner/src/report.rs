@@ -80,17 +80,9 @@ pub struct Campaign {
 /// One harness under one engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HarnessResult {
-    /// As in `atc_proofs`.
+    /// As in `atc_proofs`, which says what it is.
     pub name: String,
-    /// The theorem that it is part of.
-    pub theorem: String,
-    /// The theorem in plain English.
-    pub statement: String,
-    /// The requirements that it proves.
-    pub requirements: Vec<String>,
-    /// The assumptions that it makes, by id.
-    pub assumptions: Vec<String>,
-    /// The bound in words; empty if there is none.
+    /// The bound of this run in words, as engines prove different sizes; empty if there is none.
     pub bound: String,
     /// The engine.
     pub engine: String,
@@ -116,10 +108,8 @@ pub struct HarnessResult {
 /// One claim.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClaimResult {
-    /// Its name in the source.
+    /// Its name in the source, which says what it is.
     pub name: String,
-    /// What it says.
-    pub text: String,
     /// What was found out.
     pub verdict: Verdict,
 }
@@ -127,10 +117,8 @@ pub struct ClaimResult {
 /// One cover point.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CoverResult {
-    /// Its name in the source.
+    /// Its name in the source, which says what it is.
     pub name: String,
-    /// What it says.
-    pub text: String,
     /// Whether some values reach it.
     pub hit: bool,
 }
