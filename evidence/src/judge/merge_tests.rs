@@ -6,7 +6,9 @@ use crate::judge::build::Results;
 use crate::judge::scope::{Scope, Shard};
 use crate::sources::proofs::Campaigned;
 use crate::sources::tests::Run;
-use atc_prover::report::{Campaign, HarnessResult, MutantResult, MutantVerdict, Mutants, Provenance as Said, Verdict};
+use atc_prover::report::{
+    Campaign, HarnessResult, MutantResult, MutantVerdict, Mutants, Provenance as Said, SCHEMA, Verdict,
+};
 use std::collections::BTreeMap;
 
 fn harness(name: &str, verdict: Verdict) -> HarnessResult {
@@ -46,7 +48,7 @@ pub(crate) fn shard(
     mutants: &[(&str, MutantVerdict)],
 ) -> (String, Results) {
     let harnesses = harnesses.iter().map(|(name, verdict)| harness(name, *verdict)).collect();
-    let campaign = Campaign { schema: 1, engine: "cbmc".to_owned(), provenance: Said::default(), harnesses };
+    let campaign = Campaign { schema: SCHEMA, engine: "cbmc".to_owned(), provenance: Said::default(), harnesses };
     let mutants = mutants.iter().map(|(name, verdict)| mutant(name, *verdict)).collect();
     let provenance = Provenance {
         commit: Some("c".to_owned()),
@@ -61,7 +63,7 @@ pub(crate) fn shard(
         running: false,
         joined: vec![],
         campaigns: vec![Campaigned { campaign, source: "run here".to_owned(), stale: false }],
-        mutants: Some((Mutants { schema: 1, provenance: Said::default(), mutants, controls: vec![] }, false)),
+        mutants: Some((Mutants { schema: SCHEMA, provenance: Said::default(), mutants, controls: vec![] }, false)),
         outcomes: vec![],
         no_outcome: "no outcome".to_owned(),
         opinions: vec![],

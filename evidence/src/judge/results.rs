@@ -8,7 +8,7 @@ use std::path::Path;
 /// The file in the folder of a case.
 pub const FILE: &str = "results.json";
 /// The version of its shape.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 struct Written<'a> {

@@ -13,7 +13,9 @@ fn touches(folder: &str, kind: Kind) -> bool {
         "proofs" => matches!(kind, Kind::Harness | Kind::Mutant | Kind::Test),
         "models" => matches!(kind, Kind::Model | Kind::Test),
         "waveform" => matches!(kind, Kind::Measured | Kind::Test),
-        "protocol" | "oracle" | "tests" | "evidence" | "layout" | "line" => kind == Kind::Test,
+        // A trace of a model is in the protocol's messages, which know layouts and lines.
+        "protocol" | "layout" | "line" => matches!(kind, Kind::Model | Kind::Test),
+        "oracle" | "tests" | "evidence" => kind == Kind::Test,
         _ => false,
     }
 }

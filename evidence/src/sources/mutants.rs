@@ -143,7 +143,7 @@ mod tests {
     use super::{Kill, MutantInfo, evidence, killed, only_by_what_holds};
     use crate::case::{Evidence, Kind};
     use crate::judge::verdict::Verdict;
-    use atc_prover::report::{MutantResult, MutantVerdict, Mutants, Provenance};
+    use atc_prover::report::{MutantResult, MutantVerdict, Mutants, Provenance, SCHEMA};
 
     fn kill(harness: &str, asked: bool) -> Kill {
         Kill { harness: harness.to_owned(), claims: vec![], case: 0, counterexample: None, asked }
@@ -171,7 +171,7 @@ mod tests {
             seconds: 0.0,
         };
         let provenance = Provenance { aspects: 4, ..Provenance::default() };
-        let mutants = Mutants { schema: 1, provenance, mutants: vec![result], controls: Vec::new() };
+        let mutants = Mutants { schema: SCHEMA, provenance, mutants: vec![result], controls: Vec::new() };
         evidence(&[catalogue], Some(&mutants), stale)[0].verdict
     }
 

@@ -52,7 +52,7 @@ pub fn catalogue() -> Vec<HarnessInfo> {
             bound: harness.bound.to_owned(),
             claims: points(harness.claims),
             covers: points(harness.covers),
-            at: Some(format!("{}:{}", harness.file, harness.line)),
+            at: Some(format!("{}:{}", harness.file.replace('\\', "/"), harness.line)),
         })
         .collect()
 }

@@ -2,7 +2,7 @@
 
 use super::{Campaigned, HarnessInfo, catalogue, evidence};
 use crate::judge::verdict::Verdict;
-use atc_prover::report::{Campaign, ClaimResult, CoverResult, HarnessResult, Provenance, Verdict as Said};
+use atc_prover::report::{Campaign, ClaimResult, CoverResult, HarnessResult, Provenance, SCHEMA, Verdict as Said};
 
 fn harness() -> HarnessInfo {
     HarnessInfo {
@@ -43,7 +43,7 @@ fn provenance() -> Provenance {
 }
 
 fn campaign(engine: &str, results: Vec<HarnessResult>) -> Campaigned {
-    let campaign = Campaign { schema: 1, engine: engine.to_owned(), provenance: provenance(), harnesses: results };
+    let campaign = Campaign { schema: SCHEMA, engine: engine.to_owned(), provenance: provenance(), harnesses: results };
     Campaigned { campaign, source: "run".to_owned(), stale: false }
 }
 
@@ -202,4 +202,18 @@ fn what_a_tester_misses_is_no_proof_that_it_cannot_be_reached() {
     let refuted = HarnessResult { verdict: Said::Failed, counterexample: Some(vec![3]), ..good() };
     let (both, _) = evidence(&[harness()], &[campaign("native", vec![refuted]), campaign("cbmc", vec![good()])]);
     assert_eq!((both[0].verdict, both[0].counterexample.clone()), (Verdict::Failed, Some(vec![3])));
+}
+
+#[test]
+fn a_harness_stands_where_it_says() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    for harness in catalogue() {
+        let at = harness.at.expect("a place");
+        let (file, line) = at.rsplit_once(':').expect("file and line");
+        let source = std::fs::read_to_string(root.join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let mut lines = source.lines().skip(line.parse::<usize>().expect("a line") - 1);
+        assert_eq!(lines.next(), Some("harness! {"), "{at}");
+        let name = lines.map(str::trim).find(|line| !line.starts_with("///")).expect("a name");
+        assert!(name.starts_with(&format!("{}(", harness.name)), "{at}: {name}");
+    }
 }

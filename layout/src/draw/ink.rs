@@ -32,9 +32,13 @@ pub struct Drawn<'a> {
     pub leg: Option<(&'a str, bool)>,
 }
 
-/// How far a label is moved at a time that would stand on another one, and how often.
+/// How far a label is moved at a time that would stand on another one.
 const STEP: i32 = 12;
-const STEPS: i32 = 3;
+
+/// How often it may be moved before it reaches the next row of tracks.
+fn steps(class: &str) -> i32 {
+    if class == "signal" || class == "name" { 2 } else { 3 }
+}
 
 /// Where a label stands: left, top, right, bottom.
 type Covered = (i32, i32, i32, i32);
@@ -69,13 +73,14 @@ impl Ink {
     /// An empty sheet of `size` with a title.
     pub fn new(title: &str, size: (i32, i32), origin: (i32, i32)) -> Self {
         let (width, height) = size;
+        let letters = i32::try_from(title.chars().count()).unwrap_or(i32::MAX / 20);
         let title = escape(title);
         let mut text = String::new();
         let _ = write!(
             text,
             "<svg class=\"plan\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">\n<title>Track plan: {title}</title>\n<style>{STYLE}</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n<text class=\"title\" x=\"20\" y=\"28\">{title}</text>\n"
         );
-        Self { text, origin, covered: Vec::new() }
+        Self { text, origin, covered: vec![(20, 12, 20 + 10 * letters, 32)] }
     }
 
     fn at(&self, (x, y): (i32, i32)) -> (i32, i32) {
@@ -89,7 +94,7 @@ impl Ink {
             let its = covers(class, (x, *y), text);
             !self.covered.iter().any(|other| overlap(its, *other))
         };
-        let place = (0..=STEPS).map(|step| y + away * step * STEP).find(is_free).unwrap_or(y);
+        let place = (0..=steps(class)).map(|step| y + away * step * STEP).find(is_free).unwrap_or(y);
         self.covered.push(covers(class, (x, place), text));
         if place != y {
             let (from, to) = if away > 0 { (y - 6, place - 9) } else { (y, place + 2) };
