@@ -164,14 +164,14 @@ fn a_case_is_rendered_for_a_station_as_it_is_run_for_it() {
     assert!(text(&in_place).contains("name another folder") && !Path::new(plain).join("station.html").exists());
 }
 
-/// Where a result of `case.sarif` says that something stands: the line's text, or nothing without a place.
-fn line(result: &serde_json::Value) -> Option<String> {
+/// The lines from where a result of `case.sarif` says that something stands, or nothing without a place.
+fn lines(result: &serde_json::Value) -> Option<Vec<String>> {
     let place = &result["locations"][0]["physicalLocation"];
     let file = place["artifactLocation"]["uri"].as_str()?;
     assert_eq!(place["artifactLocation"]["uriBaseId"], "SRCROOT");
     let number = usize::try_from(place["region"]["startLine"].as_u64().expect("a line")).expect("small");
     let text = std::fs::read_to_string(root().join(file)).expect("relative to the checkout");
-    Some(text.lines().nth(number - 1).expect("a line of the file").to_owned())
+    Some(text.lines().skip(number - 1).map(ToOwned::to_owned).collect())
 }
 
 #[test]
@@ -195,12 +195,16 @@ fn the_sarif_names_all_evidence_that_was_not_run_and_where_it_stands() {
         assert_eq!((&result["ruleId"], &result["level"]), (&"not-run".into(), &"warning".into()));
         let id = one["id"].as_str().expect("an id");
         if let Some(name) = id.strip_prefix("harness:") {
-            assert_eq!(line(result).expect("a place").trim(), format!("{name}(e)"));
+            // The statement stands between the beginning of a harness and its name.
+            let lines = lines(result).expect("a place");
+            assert_eq!(lines[0], "harness! {", "{id}");
+            let first = lines[1..].iter().map(|line| line.trim()).find(|line| !line.starts_with("///"));
+            assert_eq!(first, Some(format!("{name}(e)").as_str()));
         } else if let Some(name) = id.strip_prefix("mutant:") {
             let all = mutants["mutant"].as_array().expect("a list");
             let mutant = all.iter().find(|one| one["name"].as_str() == Some(name)).expect("there");
             let find = mutant["find"].as_str().and_then(|text| text.lines().next()).expect("a text");
-            assert!(line(result).expect("a place").contains(find), "{id}");
+            assert!(lines(result).expect("a place")[0].contains(find), "{id}");
         }
     }
     // The open items have a result each, but those that only group the evidence.
@@ -282,7 +286,7 @@ fn an_import_of_other_sources_is_stale_and_one_of_no_engine_is_refused() {
     let (out, file) = (folder.path().join("case"), folder.path().join("kani.json"));
     let campaign = |engine: &str| {
         serde_json::json!({
-            "schema": 1,
+            "schema": atc_prover::report::SCHEMA,
             "engine": engine,
             "provenance": {
                 "commit": null, "dirty": null, "cargo_lock_sha256": "", "sources_sha256": "0000", "tools": {},
