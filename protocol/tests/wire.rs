@@ -16,9 +16,10 @@ use atc_kernel::time::{Millis, Ticks};
 use atc_protocol::Kmh;
 use atc_protocol::machine::aspect::{self, Aspect};
 use atc_protocol::machine::block::{self, Counted};
-use atc_protocol::machine::interlocking::{Config, Interlocked};
+use atc_protocol::machine::interlocking::{Config, Heading, Interlocked, Phase, Reason, Side, Travel as Direction};
 use atc_protocol::machine::permitted::{self, Permitting};
 use atc_protocol::machine::{Machine, config_of, step_of};
+use atc_protocol::names::Named;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
@@ -259,4 +260,30 @@ proptest! {
         prop_assert_eq!(machine.permitted(), &device);
         prop_assert_eq!(sent::<Permitting>(&heard.into()).heard(), Ok(heard));
     }
+}
+
+/// The kernel's own name of a value, as the wire writes names.
+fn kebab(value: &impl std::fmt::Debug) -> String {
+    let name = format!("{value:?}");
+    let letters = name.char_indices().flat_map(|(place, letter)| {
+        let dash = (place > 0 && letter.is_uppercase()).then_some('-');
+        dash.into_iter().chain(letter.to_lowercase())
+    });
+    letters.collect()
+}
+
+/// The models write their traces by the same words as the oracle: so nothing else would see that two are mixed up.
+#[test]
+fn every_word_of_the_interlocking_is_the_kernels_name() {
+    fn same<W: Named, K: std::fmt::Debug>(kernel: impl Fn(W) -> K, words: usize) {
+        assert_eq!(W::EVERY.len(), words, "{}", W::WHAT);
+        for word in W::EVERY {
+            assert_eq!(word.name(), kebab(&kernel(*word)), "{}", W::WHAT);
+        }
+    }
+    same(|word: Phase| word.0, 6);
+    same(|word: Reason| word.0, 14);
+    same(|word: Heading| word.0, 2);
+    same(|word: Direction| word.0, 2);
+    same(|word: Side| word.0, 2);
 }
