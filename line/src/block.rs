@@ -44,7 +44,7 @@ impl Config {
             max_trains: block.max_trains().0.into(),
             tail_hold_sections: block.hold().sections().into(),
             cycle_ms: cycle.0,
-            pass_ms: cycle.0 * u32::from(block.pass().0),
+            pass_ms: cycle.0.saturating_mul(block.pass().0.into()),
         }
     }
 

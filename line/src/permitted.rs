@@ -77,7 +77,7 @@ impl Config {
     /// The parameters of a device in cycles of this length.
     pub fn of(permitted: &Permitted, cycle: Millis) -> Self {
         let Settings { speeds, lowest, brake, worst, margin, fresh, life, fixed_life, sequence } = permitted.settings();
-        let ms = |time: Ticks| cycle.0 * u32::from(time.0);
+        let ms = |time: Ticks| cycle.0.saturating_mul(time.0.into());
         Self {
             cycle_ms: cycle.0,
             speeds_km_h: speeds.speeds().iter().copied().map(Kmh::from).collect(),
