@@ -60,6 +60,13 @@ pub enum Rule {
     OpposingStarts,
     /// Needed: a route that continues another one enters at the other's last circuit.
     ContinuesElsewhere,
+    /// Needed: a calling-on route has a berth, ends there, and leads to no line.
+    CallingOnEnds,
+    /// Needed: a route that starts in a berth against the direction of travel of the calling-on route runs over the last circuit of its path, or
+    /// conflicts with it.
+    CallingOnAgainst,
+    /// Engineering: the berth adjoins the end of the path, and the calling-on aspect is seen by drivers.
+    CallingOnUnseen,
     /// Engineering: a route goes on in the direction of travel of the route that it continues, and of its segments.
     TurnsBack,
     /// Engineering: all routes out to a segment end at the segment's throat.
@@ -173,6 +180,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
             }
         }
         require(report, self.positioned(&route.overlap), Rule::PointNotPositioned, Place::Overlap(number));
+        let berth = route.overlap.circuits.only_if(route.calling_on);
+        let ends = !berth.is_empty() && route.continuing.is_empty() && route.to.is_empty();
+        require(report, !route.calling_on || ends, Rule::CallingOnEnds, place);
         let myself = RouteSet::nth(usize::from(number));
         let last = route.last();
         for (number_of_other, other) in self.routes.iter().enumerate() {
@@ -183,6 +193,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
             require(report, both, Rule::ConflictOneWay, pair);
             let together = !route.entry.meets(other.entry) || route.conflicts.meets(it) || !other.exists();
             require(report, together || route.heading == other.heading, Rule::OpposingStarts, pair);
+            let against = other.exists() && other.entry.meets(berth) && route.heading != other.heading;
+            let apart = other.held_from(0).circuits.meets(last) || route.conflicts.meets(it);
+            require(report, !against || apart, Rule::CallingOnAgainst, pair);
             let goes_on = !route.continuing.meets(it) || other.entry == last;
             require(report, goes_on, Rule::ContinuesElsewhere, pair);
         }
@@ -262,6 +275,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
         require(report, !route.overlap.circuits.meets(path.circuits), Rule::OverlapUnderOwnPath, place);
         let beyond = !route.beyond.is_empty() && !route.beyond.meets(route.last());
         require(report, beyond, Rule::NothingBeyond, place);
+        let seen = route.overlap.circuits.contains(route.beyond) && !route.cab_signalled;
+        require(report, !route.calling_on || seen, Rule::CallingOnUnseen, place);
         let myself = RouteSet::nth(usize::from(number));
         require(report, !route.conflicts.meets(myself), Rule::ConflictsWithItself, place);
         let named = route.conflicts.or(route.continuing);

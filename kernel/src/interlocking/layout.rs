@@ -36,7 +36,8 @@ pub struct Route<const P: usize, Z: Size = Small> {
     pub path: [Element<Z>; P],
     /// How many places the path has, 1 to `P`; 0 means that there is no route of this number.
     pub length: u8,
-    /// What is kept free beyond the end, in case the train does not stop in time.
+    /// What is kept free beyond the end, in case the train does not stop in time. Of a calling-on route it is the berth: the occupied track
+    /// behind the end, into which its train goes on.
     pub overlap: Element<Z>,
     /// The circuits that adjoin the end of the route: the train is there once it has left the path.
     pub beyond: CircuitSet<Z>,
@@ -60,6 +61,8 @@ pub struct Route<const P: usize, Z: Size = Small> {
     pub overlap_speed: SpeedCode,
     /// Whether every train that uses the route acts on telegrams alone, and not on what a driver sees of the signal.
     pub cab_signalled: bool,
+    /// Whether it is a calling-on route: its train waits at the signal, and goes on sight into a berth where another one stands.
+    pub calling_on: bool,
 }
 
 impl<const P: usize, Z: Size> Route<P, Z> {
@@ -82,6 +85,7 @@ impl<const P: usize, Z: Size> Route<P, Z> {
         speed: SpeedCode::STOP,
         overlap_speed: SpeedCode::STOP,
         cab_signalled: false,
+        calling_on: false,
     };
 
     /// Whether there is such a route.

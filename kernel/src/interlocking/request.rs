@@ -39,8 +39,10 @@ pub enum Refusal {
     OverlapHeld,
     /// A point is needed or locked in another position by a route.
     PointLocked,
-    /// A circuit of path or overlap is occupied.
+    /// A circuit of path or overlap is occupied; a berth may be.
     Occupied,
+    /// A calling-on route without a train that waits at its signal, or without one in its berth.
+    NotCalledFor,
     /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
     Unswept,
     /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked.
@@ -84,7 +86,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     sight: Sight<Z>,
 ) -> Option<Refusal> {
     //= spec/interlocking.md#ilk-1-request
-    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
+    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied (a berth may be) or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
     let route = &layout.plan().routes[asked];
     if !route.exists() {
         return Some(Refusal::Unknown);
@@ -101,6 +103,10 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
         }
     }
     let ahead = path.circuits.or(overlap.circuits);
+    let clear = path.circuits.or(overlap.circuits.only_if(!route.calling_on));
+    //= spec/interlocking.md#ilk-33-calling-on
+    //# A calling-on route MUST be refused unless its entry and its berth are occupied.
+    let called_for = route.entry.meets(sight.occupied) && overlap.circuits.meets(sight.occupied);
     let needed = path.positions.or(overlap.positions);
     let (toward, away) = sight.directions;
     let moves = needed.missing_in(sight.detected).points();
@@ -109,8 +115,10 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     //# A route MUST be refused if it meets what a route keeps, other than as the way on of that route's train, if a point that is kept would have to move, or if it shares nothing with a route that keeps anything and is declared to conflict with it.
     if refusal.is_some() {
         refusal
-    } else if ahead.meets(sight.occupied) {
+    } else if clear.meets(sight.occupied) {
         Some(Refusal::Occupied)
+    } else if route.calling_on && !called_for {
+        Some(Refusal::NotCalledFor)
     } else if sight.from_before.is_in_the_way(layout, asked, sight.occupied) || moves.meets(sight.ways.points) {
         Some(Refusal::Unswept)
     } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) || moves.meets(shut) {
@@ -131,7 +139,8 @@ pub fn refuse_again<const P: usize, Z: Size>(
     state: RouteState,
     sight: Sight<Z>,
 ) -> Option<Refusal> {
-    let blocked = state.path(route).circuits.meets(sight.blocked) || route.to.meets(sight.closed);
+    let ahead = state.path(route).circuits.or(state.overlap(route).circuits.only_if(route.calling_on));
+    let blocked = ahead.meets(sight.blocked) || route.to.meets(sight.closed);
     blocked.then_some(Refusal::Blocked)
 }
 
@@ -148,7 +157,10 @@ fn against<const P: usize, Z: Size>(
     //= spec/interlocking.md#ilk-2-overlaps
     //# A path and a held overlap MUST be held together over a common circuit only if the route of the path is listed as continuing at the end of the route of the overlap, and two overlaps never.
     let path_under_kept = path.circuits.meets(kept.circuits) && !other.continuing.meets(asked);
-    let held_over_mine = overlap.circuits.meets(held.circuits) && !route.continuing.meets(number);
+    //= spec/interlocking.md#ilk-34-who-is-in-the-berth
+    //# A berth MUST be held together with the path of another route over a common circuit only if that is the last one, and the overlap of that route was given up.
+    let beside = route.calling_on && state.stands(other) || route.continuing.meets(number);
+    let held_over_mine = overlap.circuits.meets(held.circuits) && !beside;
     if route.conflicts.meets(number) {
         Some(Refusal::Conflict)
     } else if path.circuits.meets(held.circuits) || path_under_kept {

@@ -102,6 +102,13 @@ impl RouteState {
         self.path(route).circuits.or(self.overlap(route).circuits)
     }
 
+    /// Whether the route has been left but for its last circuit, and its overlap was given up: whoever came by it stands there, or goes on by
+    /// another route.
+    #[inline]
+    pub fn stands<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> bool {
+        self.is_held() && !self.overlap && route.length.checked_sub(1) == Some(self.tail)
+    }
+
     /// The points that the route holds, flank and overlap included.
     #[inline]
     pub fn positions<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Positions<Z> {
@@ -114,8 +121,9 @@ impl RouteState {
         let unproved = untouched && !self.proved && self.rear == Rear::Entry;
         let ordered = self.tail <= self.head && self.head <= route.length && (self.tail < route.length || self.overlap);
         let swept = self.rear == Rear::Swept;
+        let berth = self.overlap || !route.calling_on;
         // Nothing is released before the rear is swept, and it is when the release time has passed.
-        let followed = ordered && self.proved && (swept || self.tail == 0 && self.time < route.release);
+        let followed = ordered && berth && self.proved && (swept || self.tail == 0 && self.time < route.release);
         let seen = self.rear == Rear::Approach || self.rear == Rear::Entry && route.cab_signalled;
         let timed = match self.phase {
             Phase::Idle => *self == Self::IDLE,
@@ -126,7 +134,8 @@ impl RouteState {
             Phase::Releasing => (unproved || followed) && self.time <= route.release,
         };
         let arrived = swept && self.head == route.length && route.length.checked_sub(1) == Some(self.tail);
-        let standing = self.stood.0 == 0 || self.overlap && arrived && self.stood <= route.stay;
+        let counted = self.overlap && arrived && self.stood <= route.stay && !route.calling_on;
+        let standing = self.stood.0 == 0 || counted;
         timed && standing && (route.exists() || self.phase == Phase::Idle)
     }
 
@@ -153,8 +162,12 @@ impl RouteState {
         }
         //= spec/interlocking.md#ilk-13-release-time
         //# A withdrawn route MUST grant nothing until it is requested anew, and be released as soon as all that it still holds is clear once its release time has passed.
+        //= spec/interlocking.md#ilk-35-berth
+        //# The berth of a calling-on route MUST be held until it is clear and the train has left the path, or the route was withdrawn and no place of it has been entered.
         let over = self.phase == Phase::Releasing && self.time >= route.release;
-        let expired = over && !self.circuits(route).meets(occupied);
+        let unused = route.calling_on && self.head == 0;
+        let all = if unused { self.path(route).circuits } else { self.circuits(route) };
+        let expired = over && !all.meets(occupied);
         //= spec/interlocking.md#ilk-11-idle
         //# A route MUST become idle when the last place of its path is released and its overlap is not held.
         let left = self.is_held() && self.tail >= route.length && !self.overlap;
@@ -193,9 +206,11 @@ impl RouteState {
     #[inline]
     fn enter<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-9-entering
-        //# A place of a path MUST count as entered only in the order of the path, while it is occupied and the one before it (before the first, the entry circuit) is occupied too.
+        //# A place of a path MUST count as entered only in the order of the path, while it is occupied and the one before it (before the first, the entry circuit, but on a calling-on route nothing) is occupied too.
         let before = if self.head == 0 { route.entry } else { route.circuit_at(self.head - 1) };
-        if self.head < route.length && route.circuit_at(self.head).meets(occupied) && before.meets(occupied) {
+        // Whether a train may be in the berth is remembered: then it must have been entered, even out of order.
+        let follows = before.meets(occupied) || self.head == 0 && route.calling_on;
+        if self.head < route.length && route.circuit_at(self.head).meets(occupied) && follows {
             self.head += 1;
         }
     }
@@ -218,7 +233,8 @@ impl RouteState {
     fn stand<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-14-overlap
         //# An overlap MUST be held until it is clear and the train has left the path, or the rear is swept, every place before the last is released, and the last, entered in order, has been occupied since without a break for the stay time.
-        let alone = self.rear == Rear::Swept && self.tail + 1 == route.length;
+        // In a berth two trains may stand: none of them says when the other does.
+        let alone = self.rear == Rear::Swept && self.tail + 1 == route.length && !route.calling_on;
         // Before the only place of a path is the entry: the train has come in once that is clear.
         let begun = self.tail > 0 || self.stood.0 > 0 || !route.entry.meets(occupied);
         let arrived = alone && begun && self.head == route.length && route.last().meets(occupied);

@@ -62,7 +62,9 @@ pub fn shows_proceed<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteS
 #[inline]
 pub fn ready<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     let circuits = state.circuits(route);
-    !circuits.meets(view.occupied.or(view.blocked))
+    let clear = if route.calling_on { state.path(route).circuits } else { circuits };
+    !clear.meets(view.occupied)
+        && !circuits.meets(view.blocked)
         && !route.to.meets(view.closed)
         && state.positions(route).missing_in(view.firm).is_empty()
 }

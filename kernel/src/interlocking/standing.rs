@@ -41,7 +41,10 @@ impl<const R: usize, Z: Size> Standing<R, Z> {
         for ((route, state), body) in plan.routes.iter().zip(routes).zip(&mut bodies) {
             let path = state.path(route).circuits;
             held = held.or(path);
-            limits = limits.and_at_most(route.speed, path);
+            //= spec/interlocking.md#atc-17-shared-berth
+            //# The limit of a berth MUST NOT be above the speed of the calling-on route that holds it.
+            let berth = state.overlap(route).circuits.only_if(route.calling_on);
+            limits = limits.and_at_most(route.speed, path.or(berth));
             let within = path.and(occupied);
             let entering = state.tail == 0 && !within.is_empty();
             let arrived = within.meets(route.last());

@@ -75,8 +75,8 @@ impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
         self.started < layout.plan().start
     }
 
-    /// Whether two routes hold what they may hold together: no common circuit but an overlap under a continuing route, no point both ways,
-    /// no declared conflict.
+    /// Whether two routes hold what they may hold together: no common circuit but an overlap under a continuing route, or a berth with the train of
+    /// the other one at a stand; no point both ways, no declared conflict.
     pub fn compatible<const P: usize, const N: usize>(
         &self,
         layout: &Layout<R, P, N, S, Z>,
@@ -88,10 +88,14 @@ impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
         let numbers = (RouteSet::nth(one), RouteSet::nth(other));
         let paths = (states.0.path(pair.0).circuits, states.1.path(pair.1).circuits);
         let overlaps = (states.0.overlap(pair.0).circuits, states.1.overlap(pair.1).circuits);
+        let beside = (
+            pair.0.calling_on && states.1.stands(pair.1) || pair.0.continuing.meets(numbers.1),
+            pair.1.calling_on && states.0.stands(pair.0) || pair.1.continuing.meets(numbers.0),
+        );
         let apart = !paths.0.meets(paths.1)
             && !overlaps.0.meets(overlaps.1)
-            && (!paths.0.meets(overlaps.1) || pair.1.continuing.meets(numbers.0))
-            && (!paths.1.meets(overlaps.0) || pair.0.continuing.meets(numbers.1));
+            && (!paths.0.meets(overlaps.1) || beside.1)
+            && (!paths.1.meets(overlaps.0) || beside.0);
         let agree = !states.0.positions(pair.0).opposes(states.1.positions(pair.1));
         let both = states.0.is_held() && states.1.is_held();
         let declared = pair.0.conflicts.meets(numbers.1) || pair.1.conflicts.meets(numbers.0);

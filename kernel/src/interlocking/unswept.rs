@@ -89,7 +89,8 @@ impl<Z: Size> Unswept<Z> {
                 // Whoever is before a place that is swept is none of these trains.
                 kept = if unswept { kept } else { Kept::default() };
                 seen = unswept && (seen || element.circuits.meets(occupied));
-                if place + 1 < route.length {
+                // Behind the last place of a calling-on route the way goes on into the berth.
+                if place + 1 < route.length || route.calling_on {
                     kept.running |= seen;
                     kept.held.circuits = kept.held.circuits.or(element.circuits.only_if(seen));
                     kept.held.positions = kept.held.positions.or(element.positions.only_if(seen));
@@ -137,7 +138,8 @@ impl<Z: Size> Unswept<Z> {
                     in_the_way |= meets && !own && kept.meets(element.circuits);
                     let begins = other.heading == route.heading && element.circuits == route.entry;
                     shares |= meets || begins;
-                    own = begins || own && meets;
+                    // A berth need not be clear: the train that is called may not be the one that is there.
+                    own = (begins || own && meets) && !route.calling_on;
                 }
             }
             let beyond = other.overlap.circuits;

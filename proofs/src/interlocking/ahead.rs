@@ -25,7 +25,7 @@ const POINTS_BUILT_IN: &[(&str, &str)] = &[
 ];
 
 /// What the route has prepared for the train that is still ahead of it, or under it.
-fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train) -> Element {
+pub(super) fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train) -> Element {
     let (mut circuits, mut normal, mut reverse) = (0, 0, 0);
     let passed = train.tail.saturating_sub(FIRST);
     for (place, element) in (0..).zip(&scene.route.path) {
@@ -36,7 +36,9 @@ fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train)
         }
     }
     let ground = &scene.ground;
-    let stands = train.tail == ground.last && train.front == ground.last && train.moving == 0;
+    // On a calling-on route who stands there goes on into the berth.
+    let whole = train.tail == ground.last && train.front == ground.last && train.moving == 0;
+    let stands = whole && !ground.calling_on;
     let goes_on = train.front >= ground.over && !train.slid;
     if train.counts() && !stands && !goes_on {
         let overlap = scene.route.overlap;

@@ -1,6 +1,6 @@
 //! The whole cycle (T-ILK-1): that it is made of the parts that the other theorems are about, and that a refusal leaves no trace.
 
-use super::any::{any_cycle, any_input, any_layout, any_state, bit, held};
+use super::any::{any_cycle, any_input, any_layout, any_state, bit, held, kept};
 use crate::Engine;
 use crate::engine::any_u32;
 use atc_kernel::Machine;
@@ -102,7 +102,9 @@ fn follow<const P: usize>(state: RouteState, route: &Route<P>, occupied: Circuit
 
 /// Whether what the route still holds of its path is blocked, or the line that it leads to.
 fn is_blocked<const P: usize>(route: &Route<P>, state: RouteState, sight: Sight) -> bool {
-    held(route, state).circuits.bits() & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0
+    let berth = if route.calling_on { kept(route, state).circuits.bits() } else { 0 };
+    let ahead = held(route, state).circuits.bits() | berth;
+    ahead & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0
 }
 
 /// One cycle of any layout in any valid state, as route `it` sees it. None if nothing is assumed to be so.

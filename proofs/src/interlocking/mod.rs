@@ -6,6 +6,7 @@
 mod ahead;
 mod any;
 mod atc;
+mod berth;
 mod border;
 mod cycle;
 mod device;
@@ -36,7 +37,8 @@ pub use any::{PATH, PLACES, POINTS};
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 9] = [
+pub const SMALLER: [&str; 10] = [
+    berth::BOUND,
     direction::BOUND,
     pair::BOUND,
     point::BOUND,
@@ -101,6 +103,8 @@ pub const ALL: &[Harness] = &[
     train::t_ilk_train_body::HARNESS,
     ahead::t_ilk_train_points::HARNESS,
     ahead::t_ilk_train_worker::HARNESS,
+    berth::t_ilk_train_stands::HARNESS,
+    berth::t_ilk_train_called::HARNESS,
     meeting::t_ilk_train_line::HARNESS,
     start::t_ilk_train_start::HARNESS,
     unswept::t_ilk_train_unswept::HARNESS,

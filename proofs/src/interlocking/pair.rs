@@ -64,12 +64,14 @@ fn together<const P: usize>(
         needs(its.0.positions.reverse, its.1.positions.reverse),
     );
     let held = state.phase != Phase::Idle;
+    let stands = held && !state.overlap && other.length.checked_sub(1) == Some(state.tail);
     Together {
         paths: !(is_in(mine.0.circuits) && is_in(its.0.circuits)),
         overlaps: !(is_in(mine.1.circuits) && is_in(its.1.circuits)),
         continuing: (!(is_in(mine.0.circuits) && is_in(its.1.circuits)) || other.continuing.bits() & number != 0)
             && (!(is_in(mine.1.circuits) && is_in(its.0.circuits))
-                || reserved.continuing.bits() & number_of_other != 0),
+                || reserved.continuing.bits() & number_of_other != 0
+                || reserved.calling_on && stands),
         points: !(normal.0 && reverse.1 || reverse.0 && normal.1),
         conflicts: !held || reserved.conflicts.bits() & number_of_other == 0 && other.conflicts.bits() & number == 0,
     }
@@ -91,16 +93,17 @@ harness! {
     claims {
         Paths: "no circuit is in the held paths of both",
         Overlaps: "no circuit is in the held overlaps of both",
-        Continuing: "a circuit is in the path of one and the overlap of the other only where the first continues the second",
+        Continuing: "a circuit is in the path of one and the overlap of the other only where the first continues the second, or has nothing left but its last circuit, with its overlap given up, and the second is a calling-on route that is asked for",
         Points: "no point is needed in normal position by one and in reverse by the other",
         Conflicts: "neither is declared to conflict with the other while both are held, and if they start from one circuit they lead the same way",
-        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
+        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked; but the berth of a calling-on route is occupied, and its entry",
         Direction: "every segment that the route needs has the direction that it needs",
         Moves: "a point that is not detected in position has no train on it, and is in no blocked circuit",
     }
     covers {
         Both: "a route is reserved while the other is held",
         Under: "a route is reserved over the overlap that another holds",
+        Berth: "a calling-on route is reserved into a circuit that another still holds",
     }
     {
         // One point has detectors; the others are positions only.
@@ -130,7 +133,10 @@ harness! {
         let mine = (held(route, RouteState::RESERVED), kept(route, RouteState::RESERVED));
         let ahead = (mine.0.circuits.bits() | mine.1.circuits.bits()) & circuit;
         let blocked = ahead & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0;
-        e.claim(Claim::Clear as u32, !reserved || ahead & sight.occupied.bits() == 0 && !blocked);
+        let clear = if route.calling_on { mine.0.circuits.bits() & circuit } else { ahead };
+        let called = route.entry.bits() & sight.occupied.bits() != 0 && mine.1.circuits.bits() & sight.occupied.bits() != 0;
+        let may = clear & sight.occupied.bits() == 0 && !blocked && (called || !route.calling_on);
+        e.claim(Claim::Clear as u32, !reserved || may);
         let missing = route.from.bits() & !sight.directions.0.bits() | route.to.bits() & !sight.directions.1.bits();
         e.claim(Claim::Direction as u32, !reserved || missing == 0);
         let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
@@ -144,6 +150,8 @@ harness! {
         let both = reserved && state.phase != Phase::Idle;
         e.cover(Cover::Both as u32, both);
         e.cover(Cover::Under as u32, both && mine.0.circuits.bits() & kept(&routes[other], state).circuits.bits() & circuit != 0);
+        let shared = mine.1.circuits.bits() & held(&routes[other], state).circuits.bits() & circuit != 0;
+        e.cover(Cover::Berth as u32, both && route.calling_on && shared);
     }
 }
 

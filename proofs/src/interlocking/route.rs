@@ -87,10 +87,10 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     under_kani "1 route of up to 8 circuits, 32 circuits, 16 points";
     claims {
-        Entered: "the head goes on by at most one place, and only to an occupied one with the one before it (or the entry) occupied",
+        Entered: "the head goes on by at most one place, and only to an occupied one with the one before it (or the entry, but on a calling-on route nothing) occupied",
         Released: "the tail goes on by at most one place: one that was entered, is clear, and behind one that was entered or, at the end, a circuit beyond that is occupied; and only once the rear is swept",
         Unproved: "a route that was never set follows no train",
-        Idle: "a route becomes idle only when its whole path and its overlap are released, or its release time is over and all that it held is clear",
+        Idle: "a route becomes idle only when its whole path and its overlap are released, or its release time is over and all that it held is clear, but the berth of a calling-on route that nobody has entered",
         Only: "nothing is held after the cycle that was not held before it",
         Valid: "the state stays valid",
     }
@@ -107,7 +107,7 @@ harness! {
         let idle = after.phase == Phase::Idle;
         let was_held = before.phase != Phase::Idle;
         let previous = if before.head == 0 {
-            route.entry.bits() & scene.occupied.bits() != 0
+            route.calling_on || route.entry.bits() & scene.occupied.bits() != 0
         } else {
             scene.is_occupied(before.head - 1)
         };
@@ -124,7 +124,8 @@ harness! {
         let still = after.head == 0 && after.tail == 0 && after.overlap;
         e.claim(Claim::Unproved as u32, before.proved || idle || still);
         let over = before.phase == Phase::Releasing && u32::from(before.time.0) + 1 >= u32::from(route.release.0);
-        let all_clear = !scene.path_occupied(before) && !scene.overlap_occupied(before);
+        let unused = route.calling_on && (head == 0 || !before.proved);
+        let all_clear = !scene.path_occupied(before) && (!scene.overlap_occupied(before) || unused);
         // The last place may be released in this very cycle, and the overlap with it.
         let last = before.tail + 1 >= route.length && released || before.tail == route.length;
         let kept_clear = route.overlap.circuits.bits() & scene.occupied.bits() == 0;
@@ -214,13 +215,13 @@ harness! {
         let follows = before.proved && before.phase != Phase::Idle;
         let last_occupied = scene.is_occupied(route.length.wrapping_sub(1));
         let previous = if before.head == 0 {
-            route.entry.bits() & scene.occupied.bits() != 0
+            route.calling_on || route.entry.bits() & scene.occupied.bits() != 0
         } else {
             scene.is_occupied(before.head - 1)
         };
         let arrived = before.head == route.length || before.head + 1 == route.length && last_occupied && previous;
         let begun = after.tail > 0 || before.stood.0 > 0 || !scene.entry_occupied();
-        let alone = after.tail == route.length.wrapping_sub(1) && scene.is_swept() && begun;
+        let alone = after.tail == route.length.wrapping_sub(1) && scene.is_swept() && begun && !route.calling_on;
         let stands = follows && before.overlap && arrived && alone && last_occupied;
         let given = before.overlap && !after.overlap && !idle;
         let long = stands && before.stood.0 >= route.stay.0.wrapping_sub(1);

@@ -62,7 +62,7 @@ pub struct Train {
     pub(super) late: u8,
     /// For how many cycles more it may slide out of the last circuit.
     pub moving: u16,
-    /// Whether it slid into the overlap.
+    /// Whether it slid into the overlap, or went on into the berth.
     pub slid: bool,
 }
 
@@ -76,6 +76,8 @@ pub struct Ground {
     pub(super) path: [CircuitSet; LENGTH],
     pub(super) overlap: CircuitSet,
     pub(super) cab: bool,
+    /// Whether it goes on into a berth: its overlap.
+    pub(super) calling_on: bool,
     pub(super) loss: u8,
     pub(super) residual: u16,
     pub(super) standstill: u16,
@@ -92,6 +94,7 @@ impl Ground {
             path: core::array::from_fn(|place| route.path[place].circuits),
             overlap: route.overlap.circuits,
             cab: route.cab_signalled,
+            calling_on: route.calling_on,
             loss: plan.loss,
             residual: plan.residual.0,
             standstill: plan.standstill.0,
@@ -101,6 +104,11 @@ impl Ground {
 }
 
 impl Ground {
+    /// The berth of a calling-on route, or the overlap.
+    pub const fn berth(&self) -> CircuitSet {
+        self.overlap
+    }
+
     /// The circuit at a position in the path; none elsewhere.
     pub fn at(&self, position: u8) -> CircuitSet {
         let mut circuit = CircuitSet::EMPTY;
@@ -177,13 +185,13 @@ impl Train {
         let onward = any_flag(e, "it has authority beyond the route (odd: yes)");
         let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
         e.suppose("loss-of-shunt-within-clear", late <= ground.loss);
-        let slides = (self.tail < ground.last || self.moving > 0) && !ground.overlap.is_empty();
+        let slides = (self.tail < ground.last || self.moving > 0 || ground.calling_on) && !ground.overlap.is_empty();
         e.suppose("trains-obey-signals", !on || self.front != ENTRY || self.is_live());
         e.suppose("overlap-covers-sliding", !on || self.front != ground.last || onward || slides);
         e.suppose("loss-of-shunt-within-clear", !on || self.late == 0);
         let whole = self.tail == ground.last && self.front == ground.last;
         if on && self.front <= ground.over {
-            self.slid |= self.front == ground.last && !onward;
+            self.slid |= self.front == ground.last && (!onward || ground.calling_on);
             self.front += 1;
             self.late = late;
             self.moving = 0;
@@ -253,8 +261,11 @@ pub(super) fn holds(train: &Train, ground: &Ground, state: &RouteState) -> bool 
         let running = !train.authority && (train.run == 0 || run + time <= residual);
         holds &= !train.is_live() || running;
         holds &= train.front != FIRST || late == 0 || late + time <= residual + loss;
-        let stands = first == ground.last && !train.slid && (train.front > ground.last || train.moving == 0);
+        let ahead = train.front > ground.last || train.moving == 0 && !ground.calling_on;
+        let stands = first == ground.last && !train.slid && ahead;
         holds &= state.overlap || gone || stands;
+        // Whether anybody may be in the berth is remembered.
+        holds &= !ground.calling_on || last < FIRST || gone && !train.slid || state.head > 0;
         let stood = u32::from(state.stood.0);
         let standstill = u32::from(ground.standstill);
         let whole = train.tail == ground.last && train.front == ground.last;

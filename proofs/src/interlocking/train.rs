@@ -88,7 +88,8 @@ harness! {
         let Scene { ground, route, before, after, train, informed, .. } = &scene;
         let had = before.phase != Phase::Idle && before.overlap;
         let given = had && !(after.phase != Phase::Idle && after.overlap);
-        let stands = train.tail == ground.last && train.front == ground.last && train.moving == 0;
+        let whole = train.tail == ground.last && train.front == ground.last && train.moving == 0;
+        let stands = whole && !ground.calling_on;
         let goes_on = train.front >= ground.over && !train.slid;
         e.claim(Claim::Stands as u32, !given || !informed.counts() || stands || goes_on);
         e.cover(Cover::Stands as u32, given && stands && !kept(route, *before).circuits.is_empty());

@@ -52,6 +52,8 @@ struct Ground {
     /// The last place, and where the train is that has left the path.
     last: u8,
     over: u8,
+    /// Where it comes to a stand: in the last place, or behind it in the berth.
+    end: u8,
     line: CircuitSet,
     /// Whether the route leads out to the line.
     out: bool,
@@ -78,7 +80,7 @@ impl Train {
             && (self.front < ground.over || beyond)
             && self.late <= ground.loss
             && self.moving <= ground.standstill
-            && (self.tail >= ground.last || self.moving == 0)
+            && (self.tail >= ground.end || self.moving == 0)
     }
 
     /// The first and the last position where it is reported.
@@ -107,10 +109,10 @@ impl Train {
         let (on, up) = (any_flag(e, "its front goes on (odd: yes)"), any_flag(e, "its tail goes on (odd: yes)"));
         let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
         e.suppose("loss-of-shunt-within-clear", late <= ground.loss);
-        let slides = (self.tail < ground.last || self.moving > 0) && !ground.route.overlap.circuits.is_empty();
+        let slides = (self.tail < ground.end || self.moving > 0) && !ground.route.overlap.circuits.is_empty();
         e.suppose("overlap-covers-sliding", !on || self.front != ground.last || ground.out || slides);
         e.suppose("loss-of-shunt-within-clear", !on || self.late == 0);
-        let whole = self.tail >= ground.last;
+        let whole = self.tail >= ground.end;
         if on && self.front < ground.over {
             self.front += 1;
             self.late = late;
@@ -122,7 +124,7 @@ impl Train {
         if up && self.tail < self.front {
             self.tail += 1;
         }
-        if !whole && self.tail >= ground.last {
+        if !whole && self.tail >= ground.end {
             self.moving = ground.standstill;
         }
         self
@@ -131,7 +133,7 @@ impl Train {
     /// Whether it may still come to a place of its path, or slide beyond it, or has and is not reported there yet.
     const fn goes(self, ground: &Ground) -> bool {
         let unseen = self.late > 0 && (!ground.out || self.front < ground.over);
-        self.tail < ground.last || unseen || self.moving > 0 && !ground.out
+        self.tail < ground.end || unseen || self.moving > 0 && !ground.out
     }
 }
 
@@ -146,6 +148,7 @@ impl Ground {
             route,
             last: route.length,
             over: route.length.wrapping_add(1),
+            end: route.length.wrapping_add(u8::from(route.calling_on)),
             line: CircuitSet::from_bits(line),
             out: route.to.bits() & 1 == 1,
             loss: plan.loss,
@@ -203,7 +206,7 @@ fn holds<const S: usize>(train: Train, ground: &Ground, device: &State<ROUTES, S
     }
     let runs = unswept.running.bits() & 1 == 1;
     let (still, standstill) = (u32::from(unswept.still.0), u32::from(ground.standstill));
-    holds &= first >= ground.last || runs;
+    holds &= first >= ground.end || runs;
     holds &= runs || ground.out || moving == 0 || still + moving <= standstill;
     holds & (runs || ground.out || train.late == 0 || still + late <= standstill + u32::from(ground.loss))
 }
