@@ -176,6 +176,12 @@ pub enum atc_status {
     PlanCodeOutOfTable = 125,
     /// A route comes from more than one segment, or goes to more than one.
     PlanManySegments = 126,
+    /// A calling-on route has no berth, is continued by another route, or leads to a segment.
+    PlanCallingOnEnds = 127,
+    /// A route that starts in a berth against the called train can be held together with the calling-on route.
+    PlanCallingOnAgainst = 128,
+    /// A circuit beyond the end of a calling-on route is not of its berth, or its trains act on telegrams alone.
+    PlanCallingOnUnseen = 129,
 }
 
 impl atc_status {
@@ -260,6 +266,9 @@ impl atc_status {
         (Self::PlanNoLength, c"a circuit of a path or of a segment must have a length"),
         (Self::PlanCodeOutOfTable, c"the speed code of a route must be above 0 and have a braking distance"),
         (Self::PlanManySegments, c"a route must come from one segment at most, and go to one at most"),
+        (Self::PlanCallingOnEnds, c"a calling-on route must have a berth, no continuing route and no segment out"),
+        (Self::PlanCallingOnAgainst, c"a route from a berth against the called train must run over its last circuit"),
+        (Self::PlanCallingOnUnseen, c"a calling-on route must adjoin its berth, and not be cab-signalled"),
     ];
 
     /// The sentence of the status with this number.

@@ -264,6 +264,7 @@ fn route_of<const P: usize, Z: Size>(route: &model::Route) -> Route<P, Z> {
         stay: route.stay,
         speed: route.speed,
         overlap_speed: route.overlap_speed,
+        calling_on: route.calling_on,
         ..Route::NONE
     };
     for (element, place) in made.path.iter_mut().zip(&route.path) {

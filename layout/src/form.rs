@@ -257,6 +257,9 @@ pub struct Route {
     /// What is kept free beyond the end, in order of travel.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub overlap: Vec<At<Element>>,
+    /// A calling-on route: the occupied track behind the end, in order of travel, into which its train goes on sight. Such a route has no overlap.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub berth: Vec<At<Element>>,
     /// Why the overlap may be shorter than the least one, or missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short_overlap: Option<At<String>>,
@@ -281,7 +284,7 @@ pub struct Route {
     /// The segment that the train goes out to [default: that of the circuit beyond the end].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<At<String>>,
-    /// The highest speed on the route, in km/h [default: that of `[speed]`].
+    /// The highest speed on the route, in km/h [default: that of `[speed]`]; of a calling-on route at most `calling_on_kmh`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_kmh: Option<At<u16>>,
     /// How long the points may take to arrive, in ms [default: that of `[times]`].

@@ -45,9 +45,10 @@ impl Model {
     }
 
     /// In how many ms a train can stand at the end of a route at the soonest, once it has come into the last circuit: it runs at the speed of the route
-    /// as far as it may, and brakes. One that runs slower takes longer. None where nothing is held beyond the end, or no train may run.
+    /// as far as it may, and brakes. One that runs slower takes longer. None where nothing is held beyond the end, a berth is, or no train may run.
     pub fn least_standstill_ms(&self, route: &Route) -> Option<u32> {
-        let last = self.circuits.get(route.last().filter(|_| !route.overlap.is_empty())?)?;
+        let last = route.last().filter(|_| !route.overlap.is_empty() && !route.calling_on)?;
+        let last = self.circuits.get(last)?;
         let way = u64::from(last.length.0) * 1000;
         let brake = u64::from(self.values.brake_mm_s2).max(1);
         // km/h in mm/s is 1e6 / 3600; and no faster than a train that brakes from the first metre on.
@@ -233,6 +234,8 @@ pub struct Route {
     pub path: Vec<Place>,
     /// The joint at its end.
     pub exit: usize,
+    /// Whether it is a calling-on route: then its overlap is the berth.
+    pub calling_on: bool,
     /// The circuits of the overlap, in order of travel.
     pub overlap: Vec<usize>,
     /// The positions of points in the overlap.
@@ -283,6 +286,7 @@ impl Default for Route {
             start: 0,
             path: Vec::new(),
             exit: 0,
+            calling_on: false,
             overlap: Vec::new(),
             overlap_positions: Positions::new(),
             overlap_passed: Vec::new(),

@@ -175,6 +175,13 @@ const fn of_plan(rule: Kernel) -> &'static str {
             "a route goes on in the direction of travel of the route that it continues, and of its segments"
         }
         Kernel::ContinuesElsewhere => "a route that continues another one enters at its last circuit",
+        Kernel::CallingOnEnds => "a calling-on route has a berth, ends there, and leads to no line",
+        Kernel::CallingOnAgainst => {
+            "a route that starts in a berth against the direction of travel of the calling-on route runs over its last circuit"
+        }
+        Kernel::CallingOnUnseen => {
+            "a berth adjoins the end of its calling-on route, and drivers see the calling-on aspect"
+        }
         Kernel::ThroatsDiffer => "all routes out to a segment end at the segment's throat",
         Kernel::SegmentShared => "a segment shares no circuit with a path, an overlap or another segment",
         Kernel::PointInSegment => "no circuit of a segment is a detector of a point",
@@ -222,6 +229,11 @@ pub const fn remedy(rule: Kernel) -> &'static str {
             "let a route come in from its segment, go out to it, and be continued by routes ahead of it"
         }
         Kernel::ContinuesElsewhere => "name only routes whose entry is the last circuit",
+        Kernel::CallingOnEnds => "end the path before the occupied track, name that as berth, and no continuing route",
+        Kernel::CallingOnAgainst => "let it start at the other end of the berth, or name each among the conflicts of the other",
+        Kernel::CallingOnUnseen => {
+            "name the circuit behind the end as berth, beyond only there, and no cab_signalled"
+        }
         Kernel::ThroatsDiffer => "let all routes out to the segment end at one circuit next to it",
         Kernel::SegmentShared => "end routes and overlaps where the segment begins",
         Kernel::PointInSegment => "end the segment before the point, and let routes run over it",

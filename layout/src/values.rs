@@ -116,6 +116,10 @@ pub struct Speeds {
     /// The highest speed on a route, in km/h [default: `line_kmh`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub route_kmh: Option<At<u16>>,
+    /// The highest speed on a calling-on route and in its berth, in km/h: one at which a driver stops short of what he sees [default: that of the
+    /// lowest code].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub calling_on_kmh: Option<At<u16>>,
 }
 
 /// What is asked of overlaps.

@@ -17,7 +17,7 @@ struct needs {
 
 struct route {
     char name[NAME];
-    bool right, cab; // heading; every train acts on telegrams alone
+    bool right, cab, calling; // heading; every train acts on telegrams alone; a calling-on route, whose overlap is the berth
     int entry, length, from, to; // circuit; places; segments or -1
     set approach, path, overlap, beyond, continuing, conflicts;
     int place[PLACES];
@@ -144,6 +144,7 @@ static bool read_route(const struct json *value, struct route *route) {
     int64_t code = 0, beyond = -1;
     const struct json *beside = json_field(value, "overlap_speed_code");
     const struct json *path = json_field(value, "path"), *overlap = json_field(value, "overlap"), *cab = json_field(value, "cab_signalled");
+    const struct json *calling = json_field(value, "calling_on");
     if (!one_of(json_field(value, "heading"), "left", "right", &route->right) ||
         !names(json_field(value, "entry"), find_circuit, &entry) || !names(json_field(value, "approach"), find_circuit, &route->approach) ||
         !names(json_field(value, "beyond"), find_circuit, &route->beyond) ||
@@ -153,7 +154,7 @@ static bool read_route(const struct json *value, struct route *route) {
         !json_whole(json_field(value, "release_cycles"), 65535, &route->release) ||
         !json_whole(json_field(value, "stay_cycles"), 65535, &route->stay) || !json_whole(json_field(value, "speed_code"), 7, &code) ||
         (beside && beside->kind != J_NULL && !json_whole(beside, 7, &beyond)) ||
-        (cab && !json_bool(cab, &route->cab)) || !path || path->kind != J_ARRAY || path->size < 1 || path->size > PLACES || !overlap ||
+        (cab && !json_bool(cab, &route->cab)) || (calling && !json_bool(calling, &route->calling)) || !path || path->kind != J_ARRAY || path->size < 1 || path->size > PLACES || !overlap ||
         !element(overlap, &route->overlap, &route->overlap_needs) || !entry)
         return false;
     route->entry = lowest(entry);
@@ -318,7 +319,7 @@ static void follow(int r) {
         follow_rear(r, false);
         if (state->head < route->length) {
             int before = state->head > 0 ? route->place[state->head - 1] : route->entry;
-            if ((now.occupied & one(route->place[state->head])) && ((now.occupied & one(before)) || FAULTY(6))) state->head++;
+            if ((now.occupied & one(route->place[state->head])) && ((now.occupied & one(before)) || (route->calling && !state->head) || FAULTY(6))) state->head++;
         }
         int last = route->length - 1;
         bool last_occupied = last >= 0 && (now.occupied & one(route->place[last]));
@@ -330,20 +331,21 @@ static void follow(int r) {
             if (FAULTY(36) && further && state->tail < state->head && !(now.occupied & one(route->place[state->tail]))) state->tail++;
         }
         // The overlap.
-        if (state->tail == last && state->head == route->length && (state->rear == SWEPT || FAULTY(32)) && last_occupied &&
+        if (state->tail == last && !route->calling && state->head == route->length && (state->rear == SWEPT || FAULTY(32)) && last_occupied &&
             (route->length > 1 || state->stood > 0 || !(now.occupied & one(route->entry)) || FAULTY(23))) {
             if (state->stood < route->stay) state->stood++;
         } else {
             state->stood = 0;
         }
-        bool stands = state->tail == last && state->stood + (FAULTY(31) ? 1 : 0) >= route->stay;
+        bool stands = state->tail == last && !route->calling && state->stood + (FAULTY(31) ? 1 : 0) >= route->stay;
         if (state->overlap && overlap_clear && (state->tail == route->length || stands)) state->overlap = false;
         if (state->tail == route->length && !state->overlap) {
             idle(r);
             return;
         }
     }
-    if (state->phase == RELEASING && state->since >= route->release && (!((held_path(r) | held_overlap(r)) & now.occupied) || FAULTY(9))) idle(r);
+    set all = held_path(r) | (route->calling && !state->head ? 0 : held_overlap(r));
+    if (state->phase == RELEASING && state->since >= route->release && (!(all & now.occupied) || FAULTY(9))) idle(r);
 }
 
 // ---- what a start leaves unswept ----------------------------------------------------------------------------------
@@ -357,7 +359,7 @@ static void keep(int r, set *circuits) {
         else if (first < 0 && (now.occupied & one(route->place[i]))) first = i;
     }
     bool alone = route->length == 1 && (now.occupied & one(route->entry));
-    bool runs = first >= 0 && (first < route->length - 1 || alone);
+    bool runs = first >= 0 && (first < route->length - 1 || alone || route->calling);
     bool stops = (now.ran & one(r)) || now.still < route->stay;
     if (!runs && !(stops && (first >= 0 || (route->overlap & now.occupied)))) return;
     if (runs) running |= one(r);
@@ -401,6 +403,7 @@ static bool in_the_way(int r) {
             own = own && meets;
             if (meets && !own && (kept[other] & one(its->place[i]))) return true;
             if (its->place[i] == route->entry && its->right == route->right) own = begins = true;
+            own = own && !route->calling;
         }
         if ((needed & its->overlap & kept[other]) && (!own || (its->overlap & now.occupied))) return true;
         if (kept[other] && (route->conflicts & one(other)) && !begins && !(needed & (its->path | its->overlap))) return true;
@@ -414,7 +417,7 @@ static const char *set_route(int r) {
     const struct route *route = &plan.route[r];
     struct route_state *state = &now.route[r];
     if (state->phase == RELEASING && state->head > 0) {
-        if ((held_path(r) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
+        if (((held_path(r) | (route->calling ? held_overlap(r) : 0)) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
         state->phase = IN_USE;
         return NULL;
     }
@@ -423,15 +426,18 @@ static const char *set_route(int r) {
         if (now.route[other].phase == IDLE) continue;
         set path = held_path(other), overlap = held_overlap(other);
         if ((route->conflicts & one(other)) && !FAULTY(11)) return "conflict";
+        bool stands = !now.route[other].overlap && now.route[other].tail == plan.route[other].length - 1;
+        bool beside = (route->continuing & one(other)) || (route->calling && stands);
         if ((route->path & path) || ((route->path & overlap) && !(plan.route[other].continuing & one(r)))) return "path-held";
-        if (((route->overlap & overlap) && !FAULTY(12)) || ((route->overlap & path) && !(route->continuing & one(other)))) return "overlap-held";
+        if (((route->overlap & overlap) && !FAULTY(12)) || ((route->overlap & path) && !beside)) return "overlap-held";
         for (int p = 0; p < plan.points; p++) {
             enum position want = wanted_point(r, p), held = held_point(other, p);
             if (want && held && want != held && !FAULTY(13)) return "point-locked";
         }
     }
     if (FAULTY(14) && ((route->path | route->overlap) & now.blocked)) return "blocked";
-    if ((route->path | route->overlap) & now.occupied) return "occupied";
+    if ((route->path | (route->calling ? 0 : route->overlap)) & now.occupied) return "occupied";
+    if (route->calling && (!(now.occupied & one(route->entry)) || !(now.occupied & route->overlap))) return "not-called-for";
     if (in_the_way(r)) return "unswept";
     for (int p = 0; p < plan.points; p++) {
         enum position want = wanted_point(r, p);
@@ -450,7 +456,7 @@ static const char *set_route(int r) {
     }
     memset(state, 0, sizeof *state);
     state->phase = PROVISIONAL;
-    state->overlap = route->overlap != 0;
+    state->overlap = true;
     return NULL;
 }
 
@@ -525,7 +531,10 @@ static bool all_points_sound(int r) {
     return true;
 }
 
-static bool clear_and_unblocked(int r) { return !((held_path(r) | held_overlap(r)) & (now.occupied | now.blocked)); }
+static bool clear_and_unblocked(int r) {
+    set clear = held_path(r) | (plan.route[r].calling ? 0 : held_overlap(r));
+    return !(clear & now.occupied) && !((held_path(r) | held_overlap(r)) & now.blocked);
+}
 
 static struct grant grants[ROUTES + CIRCUITS];
 static int granted;
@@ -590,6 +599,7 @@ static int circuit_limit(int circuit) {
     int limit = now.limit[circuit], over = plan.codes - 1, held = plan.codes - 1;
     bool is_held = false;
     for (int r = 0; r < plan.routes; r++) {
+        if (plan.route[r].calling && (held_overlap(r) & one(circuit)) && plan.route[r].code < limit) limit = plan.route[r].code;
         if (plan.route[r].path & one(circuit) && plan.route[r].code < over && !FAULTY(26)) over = plan.route[r].code;
         if (plan.route[r].overlap & one(circuit) && plan.route[r].overlap_code < over && !FAULTY(39)) over = plan.route[r].overlap_code;
         if (held_path(r) & one(circuit)) {

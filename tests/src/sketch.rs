@@ -69,6 +69,8 @@ pub struct Way {
     pub overlap_speed: u8,
     /// Whether its trains act on telegrams alone.
     pub cab: bool,
+    /// Whether it is a calling-on route: its overlap is the berth.
+    pub calling_on: bool,
 }
 
 /// A segment of plain line.
@@ -136,6 +138,13 @@ impl Sketch {
                 let opposed = way.entry == against.entry && way.leftward != against.leftward;
                 if opposed && !way.conflicts.contains(&other) {
                     self.routes[one].conflicts.push(other);
+                }
+                let (way, against) = (&self.routes[one], &self.routes[other]);
+                let berth = way.calling_on && way.leftward != against.leftward && way.overlap.0.contains(&against.entry);
+                let meets = against.path.iter().any(|place| place.0 == way.last());
+                if berth && !meets && !way.conflicts.contains(&other) {
+                    self.routes[one].conflicts.push(other);
+                    self.routes[other].conflicts.push(one);
                 }
             }
         }
@@ -206,5 +215,6 @@ fn route<const P: usize, Z: Size>(way: &Way) -> Route<P, Z> {
         speed: SpeedCode(way.speed),
         overlap_speed: SpeedCode(way.overlap_speed),
         cab_signalled: way.cab,
+        calling_on: way.calling_on,
     }
 }

@@ -195,6 +195,7 @@ const fn refused(refusal: Refusal) -> char {
         Refusal::OverlapHeld => 'v',
         Refusal::PointLocked => 'l',
         Refusal::Occupied => 'o',
+        Refusal::NotCalledFor => 'x',
         Refusal::Unswept => 's',
         Refusal::Blocked => 'b',
         Refusal::PointUnderTrain => 'u',

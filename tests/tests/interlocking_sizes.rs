@@ -80,6 +80,7 @@ fn renumbered(small: &Plan<64, 16, 32, 8>) -> LargeStation {
             speed: given.speed,
             overlap_speed: given.overlap_speed,
             cab_signalled: given.cab_signalled,
+            calling_on: given.calling_on,
             ..Route::NONE
         };
         for (place, given) in made.path.iter_mut().zip(given.path) {

@@ -91,6 +91,7 @@ fn put_route(route: &Route<16>, to: &mut Writer<'_>) {
     to.u8(route.speed.0);
     to.u8(route.overlap_speed.0);
     to.flag(route.cab_signalled);
+    to.flag(route.calling_on);
 }
 
 fn take_route(route: &mut Route<16>, from: &mut Reader<'_>) -> Option<()> {
@@ -107,6 +108,7 @@ fn take_route(route: &mut Route<16>, from: &mut Reader<'_>) -> Option<()> {
     route.speed = SpeedCode(from.u8()?);
     route.overlap_speed = SpeedCode(from.u8()?);
     route.cab_signalled = from.flag()?;
+    route.calling_on = from.flag()?;
     Some(())
 }
 

@@ -76,6 +76,8 @@ pub const ATC_ANSWER_POINT_UNDER_TRAIN: u32 = 13;
 pub const ATC_ANSWER_DIRECTION: u32 = 14;
 /// Refused: the permission to the neighbour is withdrawn, and the segment cannot be turned away yet.
 pub const ATC_ANSWER_WAITING: u32 = 15;
+/// Refused: a calling-on route without a train that waits at its signal, or without one in its berth.
+pub const ATC_ANSWER_NOT_CALLED_FOR: u32 = 16;
 
 /// Nothing is held.
 pub const ATC_PHASE_IDLE: u8 = 0;
@@ -167,6 +169,8 @@ pub struct atc_route {
     pub overlap_speed_code: u8,
     /// 1: every train that uses the route acts on telegrams alone, and not on what a driver sees. 0: some do not.
     pub cab_signalled: u8,
+    /// 1: a calling-on route, whose train goes on sight into the overlap, the berth, where another one stands. 0: any other.
+    pub calling_on: u8,
 }
 
 /// A stretch of plain line to a neighbouring station.

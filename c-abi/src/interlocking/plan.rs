@@ -152,6 +152,7 @@ fn route(counts: Counts, given: &atc_route, elements: &[atc_element], kept: &mut
     kept.speed = code_of(given.speed_code)?;
     kept.overlap_speed = code_of(given.overlap_speed_code)?;
     kept.cab_signalled = flag(given.cab_signalled)?;
+    kept.calling_on = flag(given.calling_on)?;
     Ok(())
 }
 
@@ -196,6 +197,9 @@ fn fault(broken: Broken) -> Fault {
         Rule::NoLength => atc_status::PlanNoLength,
         Rule::CodeOutOfTable => atc_status::PlanCodeOutOfTable,
         Rule::ManySegments => atc_status::PlanManySegments,
+        Rule::CallingOnEnds => atc_status::PlanCallingOnEnds,
+        Rule::CallingOnAgainst => atc_status::PlanCallingOnAgainst,
+        Rule::CallingOnUnseen => atc_status::PlanCallingOnUnseen,
     };
     (status, atc_place { kind, first: first.into(), second: second.into() })
 }

@@ -58,6 +58,7 @@ impl Arrays {
                 speed_code: route.speed.0,
                 overlap_speed_code: route.overlap_speed.0,
                 cab_signalled: route.cab_signalled.into(),
+                calling_on: route.calling_on.into(),
             });
         }
         let mut segments = Vec::new();

@@ -129,5 +129,6 @@ const fn refused(refusal: Refusal) -> u64 {
         Refusal::PointUnderTrain => 11,
         Refusal::Direction => 12,
         Refusal::Waiting => 13,
+        Refusal::NotCalledFor => 14,
     }
 }

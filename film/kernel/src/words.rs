@@ -109,7 +109,7 @@ fn route_words(words: &mut Vec<u64>, route: &Route<16>) {
     words.extend([u64::from(route.from.bits()), u64::from(route.to.bits())]);
     words.extend([route.drive, route.release, route.stay].map(|ticks| u64::from(ticks.0)));
     words.extend([route.speed, route.overlap_speed].map(|code| u64::from(code.0)));
-    words.push(u64::from(route.cab_signalled));
+    words.extend([route.cab_signalled, route.calling_on].map(u64::from));
 }
 
 /// The plan of these words.
@@ -175,6 +175,7 @@ fn route_of(reader: &mut Reader<'_>, length: u8) -> Route<16> {
     route.speed = SpeedCode(reader.byte());
     route.overlap_speed = SpeedCode(reader.byte());
     route.cab_signalled = reader.word() == 1;
+    route.calling_on = reader.word() == 1;
     route
 }
 

@@ -62,8 +62,7 @@ pub enum Rule {
     ContinuesElsewhere,
     /// Needed: a calling-on route has a berth, ends there, and leads to no line.
     CallingOnEnds,
-    /// Needed: a route that starts in a berth against the direction of travel of the calling-on route runs over the last circuit of its path, or
-    /// conflicts with it.
+    /// Needed: a route that starts in a berth against the called train runs over the last circuit of its path, or conflicts with its route.
     CallingOnAgainst,
     /// Engineering: the berth adjoins the end of the path, and the calling-on aspect is seen by drivers.
     CallingOnUnseen,

@@ -105,6 +105,9 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
 }
 
 fn overlap(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    if route.calling_on {
+        return;
+    }
     if let Some(reason) = &given.short_overlap {
         if reason.trim().is_empty() {
             let what = format!("route {} lacks the reason for its short overlap", route.name);

@@ -33,13 +33,16 @@ pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut 
             circuits.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join(", ")
         };
         let beyond = beyond.unwrap_or_else(|| {
-            let beyond = beyond_of(model, route, ahead);
+            let beyond =
+                if route.calling_on { ahead.into_iter().collect() } else { beyond_of(model, route, ahead) };
             note(format!("beyond the end: {}", listed(&beyond)));
             beyond
         });
         let continuing = continuing.unwrap_or_else(|| {
-            let go_on =
-                |other: &Route| other.is_sound() && other.start == route.exit && Some(other.entry) == route.last();
+            let go_on = |other: &Route| {
+                let there = other.start == route.exit && Some(other.entry) == route.last();
+                other.is_sound() && there && !route.calling_on
+            };
             let continuing: BTreeSet<usize> =
                 (0..model.routes.len()).filter(|other| go_on(&model.routes[*other])).collect();
             if !continuing.is_empty() {

@@ -40,7 +40,13 @@ pub fn route(
     };
     let entry = names.circuit(&given.entry, problems);
     let path = steps(&given.path, names, problems);
-    let overlap = steps(&given.overlap, names, problems);
+    route.calling_on = !given.berth.is_empty();
+    if let (Some(berth), false) = (given.berth.first(), given.overlap.is_empty()) {
+        let rule = Rule::Plan(atc_kernel::interlocking::Rule::CallingOnEnds);
+        let what = format!("route {name} has an overlap and a berth");
+        problems.push(Problem::new(rule, &berth.span, what, "leave one of them out"));
+    }
+    let overlap = steps(if route.calling_on { &given.berth } else { &given.overlap }, names, problems);
     if given.path.is_empty() {
         let what = format!("route {name} has no path");
         problems.push(Problem::new(
@@ -181,10 +187,17 @@ fn route_speed(station: &Station, given: &form::Route, model: &Model, route: &mu
     let straight = station.speed.route_kmh.as_ref().unwrap_or(&line);
     // What nobody has said costs speed.
     let slowest = At::derived(model.values.speeds_kmh[1]);
+    let on_sight = station.speed.calling_on_kmh.as_ref().unwrap_or(&slowest);
     let over_reverse =
         route.path.iter().flat_map(|place| &place.passed).any(|passed| passed.position == form::Position::Reverse);
     let default = if over_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(&slowest) } else { straight };
+    let default = if route.calling_on && on_sight.value < default.value { on_sight } else { default };
     route.speed = values::code(&model.values, given.speed_kmh.as_ref().unwrap_or(default), problems);
+    if let Some(faster) = given.speed_kmh.as_ref().filter(|own| route.calling_on && own.value > on_sight.value) {
+        let what = format!("calling-on route {}: {faster} km/h, and trains run on sight at {on_sight}", given.name);
+        let right = format!("give at most {on_sight} km/h, or raise calling_on_kmh in [speed]");
+        problems.push(Problem::new(Rule::Range, &faster.span, what, right));
+    }
     // A speed of the route's own is one of its path.
     let beyond_reverse = route.overlap_passed.iter().any(|passed| passed.position == form::Position::Reverse);
     let beyond = if beyond_reverse { station.speed.reverse_kmh.as_ref().unwrap_or(&slowest) } else { straight };

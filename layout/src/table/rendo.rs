@@ -47,13 +47,15 @@ fn cells(model: &Model, number: usize) -> [String; 7] {
     });
     let locking: Vec<String> =
         positions.iter().copied().map(point).chain(excluded.map(|(_, other)| other.name.clone())).collect();
+    // A berth is not proved clear.
+    let clear = route.overlap.iter().copied().filter(|_| !route.calling_on);
     let seconds = f64::from(model.values.ms(route.release)) / 1000.0;
     let approach = names(&mut route.approach.iter().copied());
     [
         route.name.clone(),
         route.signal.clone(),
         locking.join(" "),
-        names(&mut route.circuits().chain(route.overlap.iter().copied())),
+        names(&mut route.circuits().chain(clear)),
         over.into_iter().map(point).collect::<Vec<_>>().join(" "),
         names(&mut route.circuits()),
         format!("{approach} {seconds}秒"),

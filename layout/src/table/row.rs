@@ -62,6 +62,7 @@ impl<'a> Row<'a> {
         let overlap = match &route.short_overlap {
             Some(reason) if route.overlap.is_empty() => format!("none: {reason}"),
             Some(reason) => format!("{} (short: {reason})", self.circuits(route.overlap.iter().copied())),
+            None if route.calling_on => format!("berth: {}", self.circuits(route.overlap.iter().copied())),
             None => self.circuits(route.overlap.iter().copied()),
         };
         vec![
@@ -140,7 +141,9 @@ impl<'a> Row<'a> {
             let beyond: Vec<&str> =
                 self.route.beyond.iter().map(|circuit| self.model.circuits[*circuit].name.as_str()).collect();
             parts.push(format!("{last}: clear with {} occupied", beyond.join(" or ")));
-            if !self.route.overlap.is_empty() {
+            if self.route.calling_on {
+                parts.push("berth: clear".to_owned());
+            } else if !self.route.overlap.is_empty() {
                 parts.push(format!("overlap: {last} occupied for the stay time"));
             }
         }

@@ -91,6 +91,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Si
             ("stay_ms", ms(route.stay) < least(&given.stay_ms, stay)),
             ("drive_ms", ms(route.drive) > least(&given.drive_ms, times.drive_ms.value)),
             ("cab_signalled", route.cab_signalled && !self.station.cab_signalled),
+            ("berth", route.calling_on == given.berth.is_empty()),
         ] {
             if wrong {
                 found.push(self.differs(number, &format!("{what} of the plan lets more happen than the file")));
@@ -110,6 +111,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Si
             let straight = speed.route_kmh.as_ref().or(speed.line_kmh.as_ref()).map_or(u16::MAX, |speed| speed.value);
             let over_points = speed.reverse_kmh.as_ref().map_or(slowest, |speed| speed.value);
             let most = given.speed_kmh.as_ref().map_or(if reverse { over_points } else { straight }, |own| own.value);
+            let on_sight = speed.calling_on_kmh.as_ref().map_or(slowest, |speed| speed.value);
+            let most = if given.berth.is_empty() { most } else { most.min(on_sight) };
             if self.kmh(route.speed) > most {
                 let what = format!("its trains run at {} km/h, and the file allows {most}", self.kmh(route.speed));
                 found.push(self.differs(number, &what));

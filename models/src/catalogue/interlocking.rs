@@ -3,6 +3,7 @@
 use crate::check::Entry;
 
 mod between;
+mod called;
 mod counted;
 mod counted_between;
 mod line;
@@ -15,6 +16,7 @@ mod wrong;
 pub(super) fn entries() -> Vec<Entry> {
     let mut entries = passing_loop::entries();
     entries.extend(others::entries());
+    entries.extend(called::entries());
     entries.extend(line::entries());
     entries.extend(between::entries());
     entries.extend(counted::entries());

@@ -46,7 +46,7 @@ impl<D: Device> Yard<D> {
 
     fn safe(&self) -> Vec<Claim<Self>> {
         let mut claims = vec![
-            Claim::<Self>::always("no-collision", "no two trains are in one circuit, or touch", |_, s| {
+            Claim::<Self>::always("no-collision", "no two trains are in one circuit, or touch, but one that is called on and one that stands there or goes on ahead of it", |_, s| {
                 s.harm != Harm::Collision
             }),
             Claim::<Self>::always(
@@ -183,6 +183,9 @@ impl<D: Device> Yard<D> {
                 };
                 let mut starts = m.environment.trains.iter().zip(&s.trains);
                 starts.any(|(start, train)| start.segment.is_some_and(none) && train.occupies() >> start.at & 1 == 1)
+            }),
+            Sight::Shared => ("shared", "a train that was called on is in a circuit with another one", |_, s| {
+                s.trains.iter().any(|train| s.trains.iter().any(|other| train != other && train.called && train.is_behind(other)))
             }),
         };
         Claim::<Self>::sometimes(name, text, condition)

@@ -87,6 +87,8 @@ pub struct Environment {
     /// Whether the neighbours may end their consent in any cycle: for how many cycles their staff wait after that, and until the line is clear,
     /// before they step onto it. None: they consent wherever this station does not permit.
     pub staff_beyond: Option<u8>,
+    /// Whether who is called on runs on sight, and heeds no signal that is for the train ahead of it.
+    pub on_sight: bool,
     /// Whether the device has just started and finds the trains there, on their way on a signal that showed proceed before.
     pub found: bool,
 }
@@ -111,6 +113,7 @@ impl Environment {
             restricts: 0,
             falsely: 0,
             staff_beyond: None,
+            on_sight: true,
             found: false,
         }
     }

@@ -48,4 +48,6 @@ pub enum Sight {
     Filled,
     /// A train is on plain line that has no direction.
     NoDirection,
+    /// A train that was called on is in a circuit with another one.
+    Shared,
 }

@@ -12,6 +12,7 @@
 //! halt        L ──▷ throat ◁── platform
 //! counted     far ─── near ──▷ throat ═══ one          point 0 in throat; normal leads to one
 //!                                     ╲══ two
+//! berth       W ──▷ west ◁═ berth ═▷ east ◁── E        a train from W may be called on into the berth
 //! ```
 //!
 //! W, E, M, B, A, X, Y and L are plain line of one circuit each.
@@ -19,7 +20,7 @@
 mod others;
 
 pub use others::{
-    BRANCH, IN, MAIN, OUT, counted, counted_line, crossing, diamond, end, fork, halt, junction, rest, siding, stop,
+    BRANCH, IN, MAIN, OUT, berth, berth_route, called, counted, counted_line, crossing, diamond, end, fork, halt, junction, rest, siding, stop,
     terminus,
 };
 

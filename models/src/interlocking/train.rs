@@ -39,6 +39,8 @@ pub struct Train {
     pub since_fewer: u8,
     /// For how many cycles in a row the circuits of its front and its rear have not been reported.
     pub unheard: [u8; 2],
+    /// Whether the aspect that it saw last is that of a calling-on route: it runs on sight.
+    pub called: bool,
 }
 
 /// What became of a train by its move.
@@ -64,6 +66,7 @@ impl Train {
             granted: 0,
             since_fewer: 0,
             unheard: [0; 2],
+            called: false,
         }
     }
 
@@ -84,6 +87,20 @@ impl Train {
             Place::Here { front, .. } => Some(front),
             Place::Coming | Place::Gone => None,
         }
+    }
+
+    /// Whether this train, which runs on sight, does not run into another one in a circuit of its own: that stands there, or goes away from it.
+    pub fn sees(&self, other: &Self, environment: &Environment) -> bool {
+        let Place::Here { front, rear } = other.place else { return true };
+        let stands = front == rear && other.arrived >= environment.slides_for;
+        let goes_on = front != rear && self.occupies() >> front & 1 == 0 && other.heading == self.heading;
+        self.called && (stands || goes_on)
+    }
+
+    /// Whether the signal at the end of its circuit is for the other train there: the one that was called came second.
+    pub fn is_behind(&self, other: &Self) -> bool {
+        let together = self.occupies() & other.occupies() != 0;
+        together && (self.called || other.called && other.heading != self.heading)
     }
 
     /// Every way in which it may move in one cycle, standing still included.
@@ -172,17 +189,28 @@ impl Train {
             return (true, None);
         }
         match signal {
-            Some(signal) if signal.slide > 0 && self.arrived < environment.slides_for => (true, Some(signal.slide - 1)),
+            // Who runs on sight does not slide.
+            Some(signal) if signal.slide > 0 && !self.called && self.arrived < environment.slides_for => (true, Some(signal.slide - 1)),
             _ => (false, None),
         }
     }
 
-    /// What it learns at the end of a cycle: whether the signal that it counts on shows proceed, and what its telegram grants.
+    /// What it learns at the end of a cycle: whether the signal that it counts on shows proceed, the aspect of a route to `call` on among them, and
+    /// what its telegram grants.
     #[must_use]
-    pub(super) fn informed(mut self, ground: &Ground, environment: &Environment, proceed: u8, granted: u8) -> Self {
+    pub(super) fn informed(
+        mut self,
+        ground: &Ground,
+        environment: &Environment,
+        (proceed, call): (u8, u8),
+        granted: u8,
+    ) -> Self {
         let Place::Here { front, .. } = self.place else { return self };
         let counts = ground.signals.iter().find(|s| s.heading == self.heading && s.counted_on >> front & 1 == 1);
         let shows = counts.is_some_and(|signal| signal.routes & proceed != 0);
+        if let Some(signal) = counts.filter(|_| shows) {
+            self.called = signal.routes & proceed & call != 0;
+        }
         let bound = environment.residual + 1;
         self.since_proceed = if shows { 0 } else { (self.since_proceed + 1).min(bound) };
         let read = match environment.obey {

@@ -69,6 +69,12 @@ impl<D: Device> Yard<D> {
         std::iter::repeat_n(Input { orders, ..quiet }, usize::from(cycles)).chain(requests).collect()
     }
 
+    /// The calling-on routes: a mask.
+    fn calls(&self) -> u8 {
+        let routes = (0..).zip(&self.station.layout.plan().routes);
+        routes.filter(|(_, route)| route.calling_on).fold(0, |all, (number, _)| all | 1 << number)
+    }
+
     /// What points may do in a cycle.
     fn blades(&self, state: &State) -> Vec<[Blade; POINTS]> {
         let mut ways = vec![state.blades];

@@ -37,7 +37,7 @@ fn any_scene<E: Engine + ?Sized, const P: usize>(e: &mut E) -> Option<Scene<P>> 
 }
 
 harness! {
-    /// A signal shows proceed exactly while its route is set, all that it holds is clear and unblocked, and every point that it needs, in
+    /// A signal shows proceed exactly while its route is set, all that it holds is clear, but for a berth, and unblocked, and every point that it needs, in
     /// path, flank and overlap, is detected in position and not being driven.
     t_ilk_3(e)
     theorem "T-ILK-3";
@@ -48,7 +48,7 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Set: "proceed is shown only for a set route: no train has entered it",
-        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked",
+        Clear: "no circuit of path or overlap is occupied, but one of a berth, or blocked, and no segment that the route leads to is blocked",
         Points: "every point of path, flank and overlap is detected in the position that it is needed in, and undriven",
         Shown: "and if all this is so, proceed is shown",
     }
@@ -64,7 +64,9 @@ harness! {
         let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
         let reverse = mine.0.positions.reverse.bits() | mine.1.positions.reverse.bits();
         let set = state.phase == Phase::Set && state.head == 0 && state.tail == 0 && state.proved;
-        let clear = circuits & (view.occupied.bits() | view.blocked.bits()) == 0 && route.to.bits() & view.closed.bits() == 0;
+        let clear = if route.calling_on { mine.0.circuits.bits() } else { circuits };
+        let unblocked = circuits & view.blocked.bits() == 0 && route.to.bits() & view.closed.bits() == 0;
+        let clear = clear & view.occupied.bits() == 0 && unblocked;
         let points = normal & !view.firm.normal.bits() == 0 && reverse & !view.firm.reverse.bits() == 0;
         e.claim(Claim::Set as u32, !proceed || set);
         e.claim(Claim::Clear as u32, !proceed || clear);

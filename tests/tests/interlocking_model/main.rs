@@ -237,6 +237,7 @@ fn the_sessions_are_lively() {
         Refusal::OverlapHeld,
         Refusal::PointLocked,
         Refusal::Occupied,
+        Refusal::NotCalledFor,
         Refusal::Unswept,
         Refusal::Blocked,
         Refusal::PointUnderTrain,

@@ -207,13 +207,14 @@ impl Station {
         }
         let behind = self.ahead(entry, !rightward).iter().take(2).copied();
         let cab = dice.below(2) == 0;
+        let calling_on = !overlap.0.is_empty() && !cab && dice.one_in(3);
         Way {
             leftward: !rightward,
             entry,
             approach: [entry].into_iter().chain(behind).collect(),
             path: places,
+            beyond: if calling_on { overlap.0.clone() } else { self.ahead(last, rightward).to_vec() },
             overlap,
-            beyond: self.ahead(last, rightward).to_vec(),
             from: (entry == *inner).then_some(near),
             to: goes_out.then_some(far),
             drive: dice.between(1, 6),
@@ -222,6 +223,7 @@ impl Station {
             speed: u8::try_from(1 + dice.below(self.sketch.braking.len() - 1)).expect("small"),
             overlap_speed: u8::try_from(1 + dice.below(self.sketch.braking.len() - 1)).expect("small"),
             cab,
+            calling_on,
             ..Way::default()
         }
     }
@@ -232,7 +234,7 @@ impl Station {
             for other in 0..self.sketch.routes.len() {
                 let (way, next) = (&self.sketch.routes[one], &self.sketch.routes[other]);
                 let follows = next.entry == way.last() && next.leftward == way.leftward;
-                if follows && !dice.one_in(4) {
+                if follows && !way.calling_on && !dice.one_in(4) {
                     self.sketch.routes[one].continuing.push(other);
                 }
                 if other < one && dice.one_in(10) {

@@ -286,9 +286,9 @@ impl Witness {
     /// All that the route holds is detected, clear and unblocked.
     fn sound(&self, sketch: &Sketch, route: usize, occupied: &Set, firm: &[Need]) -> bool {
         let (held, way) = (&self.routes[route], &sketch.routes[route]);
-        let circuits = held.circuits(way);
+        let (path, circuits) = (held.path(way), held.circuits(way));
         held.needs(way).iter().all(|need| firm.contains(need))
-            && !meets(&circuits, occupied)
+            && !meets(if way.calling_on { &path } else { &circuits }, occupied)
             && !meets(&circuits, &self.blocked)
             && way.to.is_none_or(|segment| !self.closed(sketch, segment) && self.sends.contains(&segment))
     }

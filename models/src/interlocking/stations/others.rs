@@ -1,10 +1,11 @@
-//! The junction, the crossing, the terminus, the siding and the station with a counted line.
+//! The junction, the crossing, the terminus, the siding, and the stations with a counted line and with a berth.
 
-use super::{alone, both, checked, circuits, edge, over, plan, positions, route, routes, segment, signal};
+use super::{PLACES, alone, both, checked, circuits, edge, over, plan, positions, route, routes, segment, signal};
 use crate::interlocking::ground::{Edge, Ground, Heading, Signal, Station};
 use Heading::{Down, Up};
 use Position::{Normal, Reverse};
-use atc_kernel::interlocking::{Point, Position, Positions, Route};
+use atc_kernel::interlocking::{Element, Point, Position, Positions, Route, SpeedCode};
+use atc_kernel::time::Ticks;
 
 /// Circuits of the junction.
 pub mod fork {
@@ -245,4 +246,72 @@ pub fn halt() -> Station {
     plan.routes[usize::from(OUT)] = Route { to: alone(0), ..route(PLATFORM, &throat, 1 << L) };
     plan.segments[0] = segment(L, 1 << THROAT);
     checked("halt", ground, &plan)
+}
+
+/// Circuits of the station with a berth.
+pub mod called {
+    /// Plain line in the west.
+    pub const W: u8 = 0;
+    /// The western throat.
+    pub const WEST: u8 = 1;
+    /// The berth.
+    pub const BERTH: u8 = 2;
+    /// The eastern throat.
+    pub const EAST: u8 = 3;
+    /// Plain line in the east.
+    pub const E: u8 = 4;
+}
+
+/// Numbers of the routes of the station with a berth.
+pub mod berth_route {
+    /// W into the berth, which must be clear.
+    pub const UP_IN: u8 = 0;
+    /// W to the berth, where a train stands: the calling-on route.
+    pub const CALL: u8 = 1;
+    /// The berth to E.
+    pub const UP_OUT: u8 = 2;
+    /// E into the berth.
+    pub const DOWN_IN: u8 = 3;
+    /// The berth to W.
+    pub const DOWN_OUT: u8 = 4;
+}
+
+/// A track between two signals, in which a train may be called on to another one. Who slides past either signal is caught by an overlap.
+pub fn berth() -> Station {
+    use berth_route::{CALL, DOWN_IN, DOWN_OUT, UP_IN, UP_OUT};
+    use called::{BERTH, E, EAST, W, WEST};
+    let ground = Ground {
+        circuits: &["W", "west", "berth", "east", "E"],
+        edges: both(&[edge(W, WEST, Up), edge(WEST, BERTH, Up), edge(BERTH, EAST, Up), edge(EAST, E, Up)]),
+        signals: vec![
+            signal(W, Up, 1 << UP_IN | 1 << CALL),
+            Signal { slide: 1, ..signal(BERTH, Up, 1 << UP_OUT) },
+            signal(E, Down, 1 << DOWN_IN),
+            Signal { slide: 1, ..signal(BERTH, Down, 1 << DOWN_OUT) },
+        ],
+        points_in: [WEST, WEST],
+        fouls: Vec::new(),
+        line: 1 << W | 1 << E,
+        ends: vec![(E, Up), (W, Down)],
+        turning: 0,
+        catching: 0,
+    };
+    let only = |circuit: u8| Element { circuits: circuits(1 << circuit), positions: Positions::NONE };
+    let at = |circuit: u8| (circuit, Positions::NONE);
+    let mut plan = plan(5);
+    let mut put = |number: u8, route: Route<PLACES>| {
+        plan.routes[usize::from(number)] = Route { stay: Ticks(2), ..route };
+    };
+    let (up, down) = (routes(1 << UP_OUT), routes(1 << DOWN_OUT));
+    let beside = 1 << WEST | 1 << EAST;
+    let up_in = route(W, &[at(WEST), at(BERTH)], beside);
+    put(UP_IN, Route { overlap: only(EAST), continuing: up, from: alone(0), ..up_in });
+    let call = Route { overlap: only(BERTH), calling_on: true, speed: SpeedCode(1), ..route(W, &[at(WEST)], 1 << BERTH) };
+    put(CALL, Route { from: alone(0), ..call });
+    put(UP_OUT, Route { to: alone(1), ..route(BERTH, &[at(EAST)], 1 << E) });
+    let down_in = route(E, &[at(EAST), at(BERTH)], beside);
+    put(DOWN_IN, Route { overlap: only(WEST), continuing: down, from: alone(1), ..down_in });
+    put(DOWN_OUT, Route { to: alone(0), ..route(BERTH, &[at(WEST)], 1 << W) });
+    plan.segments = [segment(W, 1 << WEST), segment(E, 1 << EAST)];
+    checked("station with a berth", ground, &plan)
 }

@@ -21,7 +21,11 @@ impl<D: Device> Yard<D> {
         let ground = &self.station.ground;
         let mut trains = cycle.trains.iter();
         while let Some(train) = trains.next() {
-            if trains.clone().any(|other| ground.touch(train.occupies(), other.occupies())) {
+            let on_sight = |other: &Train| {
+                let (sees, seen) = (train.sees(other, &self.environment), other.sees(train, &self.environment));
+                self.environment.on_sight && (sees || seen)
+            };
+            if trains.clone().any(|other| ground.touch(train.occupies(), other.occupies()) && !on_sight(other)) {
                 return Harm::Collision;
             }
         }
@@ -75,11 +79,11 @@ impl<D: Device> Yard<D> {
             return Harm::Staff;
         }
         let shows = |routes: u8| routes & after.shown.proceed != 0;
-        if ground
-            .signals
-            .iter()
-            .any(|signal| shows(signal.routes) && !self.clear_from(signal.at, signal.heading, after))
-        {
+        let calls = self.calls();
+        if ground.signals.iter().any(|signal| {
+            let clear = |berths: u8| self.clear_from(signal.at, signal.heading, berths, after);
+            shows(signal.routes & !calls) && !clear(0) || shows(signal.routes & calls) && !clear(self.berths())
+        }) {
             return Harm::Proceed;
         }
         let mut granted = 0;
@@ -94,10 +98,12 @@ impl<D: Device> Yard<D> {
             let reaches = |heading: Heading| {
                 telegram.heading == Some(heading.of_layout()) && self.reaches((front, stop), hold, heading, after)
             };
-            if granted & hold != 0 || !reaches(Heading::Up) && !reaches(Heading::Down) {
+            // Who was called on obeys no telegram that is for the train ahead of it.
+            let ahead = self.environment.on_sight && after.trains.iter().any(|other| train.is_behind(other) && other != train);
+            if granted & hold != 0 && !ahead || !reaches(Heading::Up) && !reaches(Heading::Down) {
                 return Harm::Authority;
             }
-            granted |= hold;
+            granted |= if ahead { 0 } else { hold };
             let under = train.occupies();
             if (hold | under) & after.kept.restricted != 0 && telegram.speed > RESTRICTED {
                 return Harm::Speed;
@@ -122,7 +128,10 @@ impl<D: Device> Yard<D> {
     /// The lowest speed of the routes that hold one of these circuits.
     fn limit_under(&self, under: u8, state: &State) -> SpeedCode {
         let routes = self.station.layout.plan().routes.iter().zip(&state.kept.routes);
-        let there = routes.filter(|(route, held)| mask(held.path(route).circuits) & under != 0);
+        let there = routes.filter(|(route, held)| {
+            let berth = held.overlap(route).circuits.only_if(route.calling_on);
+            mask(held.path(route).circuits.or(berth)) & under != 0
+        });
         there.map(|(route, _)| route.speed).min().unwrap_or(SpeedCode::MOST)
     }
 
@@ -141,13 +150,19 @@ impl<D: Device> Yard<D> {
         all
     }
 
-    /// Whether the way from a signal to the next one, or to plain line, is free and its points lie right.
-    fn clear_from(&self, at: u8, heading: Heading, state: &State) -> bool {
+    /// The berths of the calling-on routes: a mask.
+    fn berths(&self) -> u8 {
+        let routes = self.station.layout.plan().routes.iter().filter(|route| route.calling_on);
+        routes.fold(0, |all, route| all | mask(route.overlap.circuits))
+    }
+
+    /// Whether the way from a signal to the next one, to plain line or to one of the `berths`, is free and its points lie right.
+    fn clear_from(&self, at: u8, heading: Heading, berths: u8, state: &State) -> bool {
         let ground = &self.station.ground;
         let mut here = at;
         loop {
             match ground.ahead(here, heading, state.blades) {
-                Ahead::Circuit(next) if ground.line >> next & 1 == 1 => return here != at,
+                Ahead::Circuit(next) if (ground.line | berths) >> next & 1 == 1 => return here != at,
                 Ahead::Circuit(next) => here = next,
                 Ahead::Nothing => return here != at,
                 Ahead::Between(_) | Ahead::Trailing(_) => return false,

@@ -18,6 +18,8 @@ struct Asked<Z: Size> {
     number: RouteSet<Z>,
     conflicts: RouteSet<Z>,
     continuing: RouteSet<Z>,
+    calling_on: bool,
+    entry: CircuitSet<Z>,
     /// The segment that the route leads to, or that is to be turned.
     out: SegmentSet<Z>,
 }
@@ -45,8 +47,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             }),
             Refusal::OverlapHeld => self.held_where(|number, route, state| {
                 let path = state.path(route).circuits;
-                state.overlap(route).circuits.meets(asked.overlap)
-                    || path.meets(asked.overlap) && !asked.continuing.meets(number)
+                let beside = asked.continuing.meets(number) || asked.calling_on && state.stands(route);
+                state.overlap(route).circuits.meets(asked.overlap) || path.meets(asked.overlap) && !beside
             }),
             Refusal::PointLocked => self.held_where(|_, route, state| {
                 let held = state.positions(route);
@@ -55,7 +57,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
                     _ => held.opposes(asked.positions),
                 }
             }),
+            Refusal::Occupied if asked.calling_on => self.circuits_of(asked.path.and(occupied)),
             Refusal::Occupied => self.circuits_of(all.and(occupied)),
+            Refusal::NotCalledFor if asked.entry.meets(occupied) => self.circuits_of(asked.overlap),
+            Refusal::NotCalledFor => self.circuits_of(asked.entry),
             Refusal::Unswept => match request {
                 Request::Drive(point, _) => self.points_of(point.alone()),
                 _ if all.meets(self.state().unswept.circuits) => {
@@ -89,6 +94,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             number: RouteSet::EMPTY,
             conflicts: RouteSet::EMPTY,
             continuing: RouteSet::EMPTY,
+            calling_on: false,
+            entry: CircuitSet::EMPTY,
             out: SegmentSet::EMPTY,
         };
         match request {
@@ -103,6 +110,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
                     number,
                     conflicts: route.conflicts,
                     continuing: route.continuing,
+                    calling_on: route.calling_on,
+                    entry: route.entry,
                     out: route.to,
                 }
             }

@@ -158,6 +158,9 @@ pub struct RouteForm {
     /// Whether every train that uses it acts on telegrams alone, not on what a driver sees of the signal.
     #[serde(default)]
     pub cab_signalled: bool,
+    /// Whether it is a calling-on route: its train goes on sight into the overlap, the berth, where another one stands.
+    #[serde(default)]
+    pub calling_on: bool,
 }
 
 impl PlanConfig {
@@ -205,6 +208,7 @@ impl PlanConfig {
             speed_code: route.speed.0,
             overlap_speed_code: Some(route.overlap_speed.0),
             cab_signalled: route.cab_signalled,
+            calling_on: route.calling_on,
         });
         let codes = 1 + speeds_kmh.iter().skip(1).take_while(|speed| **speed > 0).count();
         Self {
@@ -389,6 +393,7 @@ fn route_of<const P: usize, Z: Size>(names: &Names, form: &RouteForm) -> Result<
         speed: speed_code("speed_code", form.speed_code)?,
         overlap_speed: speed_code("overlap_speed_code", overlap_speed)?,
         cab_signalled: form.cab_signalled,
+        calling_on: form.calling_on,
         ..kernel::Route::NONE
     };
     let path = form.path.iter().map(|at| element(names, at, "path")).collect::<Result<Vec<_>, _>>()?;

@@ -94,7 +94,8 @@ word! {
     PathHeld => "path-held", "A circuit of the path, or the point's detector, is held by another route.";
     OverlapHeld => "overlap-held", "A circuit of the overlap is held by another route.";
     PointLocked => "point-locked", "A point is needed or locked in another position by a route.";
-    Occupied => "occupied", "A circuit of path or overlap is occupied.";
+    Occupied => "occupied", "A circuit of path or overlap is occupied; a berth may be.";
+    NotCalledFor => "not-called-for", "A calling-on route without a train that waits at its signal, or without one in its berth.";
     Unswept => "unswept", "A train from before the start may still run over a circuit of path or overlap, or over the point.";
     Blocked => "blocked", "A circuit of path or overlap, or the point's detector, is blocked.";
     PointUnderTrain => "point-under-train", "A point must move, and a train stands on it.";

@@ -48,13 +48,16 @@ struct Route<'a> {
 }
 
 impl Route<'_> {
-    fn json(&self, draw: &mut Draw, cab: bool, overlaps: bool) -> Value {
+    /// In the protocol's form; it may be a calling-on route if what lies beyond its end can be a `berth`.
+    fn json(&self, draw: &mut Draw, (cab, overlaps, berth): (bool, bool, bool)) -> Value {
         let path: Vec<Value> = self.path.iter().map(|(circuit, points)| element((circuit, points))).collect();
         let overlap = if overlaps { element((self.overlap.0, &self.overlap.1)) } else { element(("", "")) };
+        let calling_on = overlaps && !cab && berth && draw.chance(200);
+        let continuing = if calling_on { Vec::new() } else { self.continuing.clone() };
         let mut route = json!({
             "name": self.name, "heading": self.heading, "entry": [self.approach[0]], "approach": self.approach,
-            "path": path, "overlap": overlap, "beyond": [self.beyond], "continuing": self.continuing,
-            "conflicts": self.conflicts, "from": self.from, "to": self.to, "cab_signalled": cab,
+            "path": path, "overlap": overlap, "beyond": [self.beyond], "continuing": continuing,
+            "conflicts": self.conflicts, "from": self.from, "to": self.to, "cab_signalled": cab, "calling_on": calling_on,
             "drive_cycles": draw.from(1, 7), "release_cycles": draw.one(&[1, 2, 4, 8, 20]), "stay_cycles": draw.from(1, 5),
             "speed_code": draw.one(&[1, 3, 5, 7, 7, 7]),
         });
@@ -336,7 +339,10 @@ fn whole(
             "circuits": lengths, "points": detectors, "segments": segments,
             "routes": routes.iter().map(|route| {
                 let own = draw.chance(500);
-                route.json(draw, cab == 1 || (cab == 2 && own), overlaps)
+                // No route starts there against it.
+                let starts = |other: &Route| other.heading != route.heading && other.approach[0] == route.overlap.0;
+                let berth = !route.overlap.0.is_empty() && route.to.is_empty() && !routes.iter().any(starts);
+                route.json(draw, (cab == 1 || (cab == 2 && own), overlaps, berth))
             }).collect::<Vec<_>>(),
         }),
         circuits: own(circuits),

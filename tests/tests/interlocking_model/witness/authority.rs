@@ -120,7 +120,9 @@ impl Witness {
         let over = sketch.routes.iter().filter(|way| way.circuits().contains(&circuit)).map(|way| way.speed).min();
         let slid = |way: &&Way| way.overlap.0.contains(&circuit);
         let over = over.into_iter().chain(sketch.routes.iter().filter(slid).map(|way| way.overlap_speed)).min();
-        holding.or(over).into_iter().chain([self.limits[circuit]]).min().unwrap_or(7)
+        let shared = routes().filter(|(held, way)| way.calling_on && held.overlap(way).contains(&circuit));
+        let shared = shared.map(|(_, way)| way.speed).min();
+        holding.or(over).into_iter().chain(shared).chain([self.limits[circuit]]).min().unwrap_or(7)
     }
 
     /// Where the train may stand whose front is in a circuit: on all that it may reach from there over what trains stand on together.

@@ -100,7 +100,9 @@ impl Held {
             self.look_back(way, occupied);
             self.follow_train(way, occupied);
         }
-        let over = self.stage == Stage::Releasing(way.release) && !meets(&self.circuits(way), occupied);
+        let never_used = self.places.iter().all(|place| *place == Place::Ahead);
+        let all = if way.calling_on && never_used { self.path(way) } else { self.circuits(way) };
+        let over = self.stage == Stage::Releasing(way.release) && !meets(&all, occupied);
         if over || self.is_behind() && !self.overlap {
             *self = Self::idle(way);
         }
@@ -134,7 +136,8 @@ impl Held {
     fn follow_train(&mut self, way: &Way, occupied: &Set) {
         if let Some(next) = self.places.iter().position(|place| *place == Place::Ahead) {
             let behind = if next == 0 { way.entry } else { way.path[next - 1].0 };
-            if occupied.contains(&way.path[next].0) && occupied.contains(&behind) {
+            let follows = occupied.contains(&behind) || way.calling_on && next == 0;
+            if occupied.contains(&way.path[next].0) && follows {
                 self.places[next] = Place::Entered;
             }
         }
@@ -152,7 +155,7 @@ impl Held {
         let only_last = self.places.iter().rev().skip(1).all(|place| *place == Place::Released);
         let came_in = way.path.len() > 1 || self.stood > 0 || !occupied.contains(&way.entry);
         let there = self.places.last() == Some(&Place::Entered) && occupied.contains(&way.last());
-        let standing = swept && only_last && came_in && there && self.overlap;
+        let standing = swept && only_last && came_in && there && self.overlap && !way.calling_on;
         self.stood = if standing { (self.stood + 1).min(way.stay) } else { 0 };
         if (self.stood >= way.stay || self.is_behind()) && !meets(&way.overlap.0, occupied) {
             self.overlap = false;

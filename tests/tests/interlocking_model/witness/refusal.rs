@@ -38,7 +38,8 @@ impl Witness {
         let mine = &self.routes[asked];
         if mine.may_go_on() {
             let closed = way.to.is_some_and(|segment| self.closed(sketch, segment));
-            return listed(&[(closed || meets(&mine.path(way), &self.blocked), Refusal::Blocked)]);
+            let berth = way.calling_on && meets(mine.overlap(way), &self.blocked);
+            return listed(&[(closed || berth || meets(&mine.path(way), &self.blocked), Refusal::Blocked)]);
         }
         if mine.is_held() {
             return vec![Refusal::AlreadyHeld];
@@ -49,7 +50,9 @@ impl Witness {
         {
             let (its_path, its_overlap) = (held.path(other), held.overlap(other));
             let i_continue = other.continuing.contains(&asked);
-            let it_continues = way.continuing.contains(&number);
+            // In a berth one may stand whose own route has nothing left but that circuit.
+            let it_stands = way.calling_on && !held.overlap && its_path == [other.last()];
+            let it_continues = way.continuing.contains(&number) || it_stands;
             reasons.extend(listed(&[
                 (way.conflicts.contains(&number), Refusal::Conflict),
                 (common(&path, &its_path) || common(&path, its_overlap) && !i_continue, Refusal::PathHeld),
@@ -61,7 +64,9 @@ impl Witness {
         let stuck = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], occupied);
         let shut = |need: &Need| !seen.contains(need) && meets(&sketch.points[need.0], &self.blocked);
         reasons.extend(listed(&[
-            (meets(&path, occupied) || meets(overlap, occupied), Refusal::Occupied),
+            (meets(&path, occupied) || meets(overlap, occupied) && !way.calling_on, Refusal::Occupied),
+            (way.calling_on && !meets(overlap, occupied), Refusal::NotCalledFor),
+            (way.calling_on && !occupied.contains(&way.entry), Refusal::NotCalledFor),
             (self.unswept.is_in_the_way(sketch, asked, occupied), Refusal::Unswept),
             (needs.iter().any(|need| !seen.contains(need) && self.unswept.needs(need.0)), Refusal::Unswept),
             (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),

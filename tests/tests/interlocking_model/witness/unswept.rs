@@ -61,7 +61,7 @@ impl Unswept {
         let from = way.path.iter().rposition(|place| swept(&place.0)).map_or(0, |place| place + 1);
         let first = (from..way.path.len()).find(|place| occupied.contains(&way.path[*place].0));
         let alone = way.path.len() == 1 && occupied.contains(&way.entry);
-        let runs = first.is_some_and(|first| first + 1 < way.path.len() || alone);
+        let runs = first.is_some_and(|first| first + 1 < way.path.len() || alone || way.calling_on);
         let stops = self.before.1.contains(&number) || self.before.2 < way.stay;
         if !(runs || stops && (first.is_some() || meets(&way.overlap.0, occupied))) {
             return Keep::default();
@@ -91,14 +91,14 @@ impl Unswept {
             let begins = path.iter().position(|circuit| *circuit == mine.entry);
             let begins = begins.filter(|_| mine.leftward == other.leftward);
             // The places that are the way on: from `on.0` up to `on.1`, that one not.
-            let on = begins.map_or((0, 0), |at| {
+            let on = begins.filter(|_| !mine.calling_on).map_or((0, 0), |at| {
                 let along = path[at + 1..].iter().take_while(|circuit| needed.contains(circuit)).count();
                 (at + 1, at + 1 + along)
             });
             let own = |place: usize| on.0 <= place && place < on.1;
             let kept = |circuit: &usize| needed.contains(circuit) && keep.circuits.contains(circuit);
             let in_path = path.iter().enumerate().any(|(place, circuit)| kept(circuit) && !own(place));
-            let waits = begins.is_some() && on.1 == path.len() && !meets(&other.overlap.0, occupied);
+            let waits = begins.is_some() && !mine.calling_on && on.1 == path.len() && !meets(&other.overlap.0, occupied);
             let in_overlap = other.overlap.0.iter().any(kept) && !waits;
             let shares = begins.is_some() || meets(&path, &needed) || meets(&other.overlap.0, &needed);
             let declared = mine.conflicts.contains(&number) && !keep.circuits.is_empty();
