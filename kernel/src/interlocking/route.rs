@@ -161,7 +161,7 @@ impl RouteState {
             self.stand(route, occupied);
         }
         //= spec/interlocking.md#ilk-13-release-time
-        //# A withdrawn route MUST grant nothing until it is requested anew, and be released as soon as all that it still holds is clear once its release time has passed.
+        //# A withdrawn route MUST grant nothing until it is requested anew, and be released as soon as all that it still holds, but for a berth that nobody may be in, is clear once its release time has passed.
         //= spec/interlocking.md#ilk-35-berth
         //# The berth of a calling-on route MUST be held until it is clear and the train has left the path, or the route was withdrawn and no place of it has been entered.
         let over = self.phase == Phase::Releasing && self.time >= route.release;
@@ -232,7 +232,7 @@ impl RouteState {
     #[inline]
     fn stand<const P: usize, Z: Size>(&mut self, route: &Route<P, Z>, occupied: CircuitSet<Z>) {
         //= spec/interlocking.md#ilk-14-overlap
-        //# An overlap MUST be held until it is clear and the train has left the path, or the rear is swept, every place before the last is released, and the last, entered in order, has been occupied since without a break for the stay time.
+        //# An overlap that is no berth MUST be held until it is clear and the train has left the path, or the rear is swept, every place before the last is released, and the last, entered in order, has been occupied since without a break for the stay time.
         // In a berth two trains may stand: none of them says when the other does.
         let alone = self.rear == Rear::Swept && self.tail + 1 == route.length && !route.calling_on;
         // Before the only place of a path is the entry: the train has come in once that is clear.
@@ -284,7 +284,7 @@ impl RouteState {
             return self;
         }
         //= spec/interlocking.md#ilk-5-reservation
-        //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear and unblocked, and failed when that has not come about within the drive time.
+        //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear (a berth need not be) and unblocked, and failed when that has not come about within the drive time.
         let time = Ticks(self.time.0.saturating_add(1));
         if ready {
             Self { phase: Phase::Set, proved: true, time: Ticks(0), rear: self.counted_on(route, occupied), ..self }

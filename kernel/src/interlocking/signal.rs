@@ -54,7 +54,7 @@ impl<Z: Size> Grant<Z> {
 #[inline]
 pub fn shows_proceed<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     //= spec/interlocking.md#ilk-7-aspect
-    //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear and unblocked, and no circuit of a segment that it leads to is blocked.
+    //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear (a berth need not be) and unblocked, and no circuit of a segment that it leads to is blocked.
     state.phase == Phase::Set && ready(route, state, view)
 }
 

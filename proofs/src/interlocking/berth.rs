@@ -8,7 +8,8 @@ use super::ahead::needed;
 use super::any::{bit, kept};
 use super::scene::{BUILT_IN, Beside, ENTRY, FIRST, LENGTH, Scene, Train, any_scene};
 use crate::Engine;
-use atc_kernel::interlocking::{CircuitSet, MAX_CODES, Phase, Plan, Refusal, Request, Route, RouteSet, SegmentSet};
+use crate::engine::any_flag;
+use atc_kernel::interlocking::{CircuitSet, MAX_CODES, Phase, Plan, Refusal, Request, Route};
 
 const ROUTES: usize = 2;
 
@@ -19,12 +20,13 @@ pub const BOUND: &str = match LENGTH {
 
 /// A scene where the route of number `called` is a calling-on route.
 fn any_call<E: Engine + ?Sized>(e: &mut E, called: usize) -> Option<Scene<ROUTES, 0, 0>> {
-    any_scene::<E, ROUTES, 0, 0>(e, |_, plan: &mut Plan<ROUTES, LENGTH, 0, 0>| {
-        // A rule of the constructor, kept from the start: such a route ends at the berth.
+    any_scene::<E, ROUTES, 0, 0>(e, |e, plan: &mut Plan<ROUTES, LENGTH, 0, 0>| {
+        // A rule of the constructor: such a route ends at the berth. Who draws values would break it with nearly all of them.
+        let goes_on = any_flag(e, "it goes on (odd: yes)");
         let route = &mut plan.routes[called];
         route.calling_on = true;
-        route.continuing = RouteSet::EMPTY;
-        route.to = SegmentSet::EMPTY;
+        route.continuing = route.continuing.only_if(goes_on);
+        route.to = route.to.only_if(goes_on);
         Beside::NOTHING
     })
 }

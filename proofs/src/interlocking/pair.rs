@@ -83,7 +83,7 @@ harness! {
     /// blocked circuit.
     t_ilk_1(e)
     theorem "T-ILK-1";
-    requirements ["ILK-1", "ILK-2", "ATC-10"];
+    requirements ["ILK-1", "ILK-2", "ILK-33", "ILK-34", "ATC-10"];
     assumptions [];
     bound BOUND;
     cases 2;
