@@ -109,7 +109,7 @@
 #define ATC_RECEPTION_NOTHING 2
 
 /// The size of an interlocking in bytes.
-#define ATC_INTERLOCKING_SIZE 23288
+#define ATC_INTERLOCKING_SIZE 23352
 
 /// The alignment of an interlocking in bytes.
 #define ATC_INTERLOCKING_ALIGN 8
@@ -215,6 +215,9 @@
 
 /// Refused: the permission to the neighbour is withdrawn, and the segment cannot be turned away yet.
 #define ATC_ANSWER_WAITING 15
+
+/// Refused: a calling-on route without a train that waits at its signal, or without one in its berth.
+#define ATC_ANSWER_NOT_CALLED_FOR 16
 
 /// Nothing is held.
 #define ATC_PHASE_IDLE 0
@@ -425,6 +428,12 @@ typedef enum atc_status {
   ATC_STATUS_PLAN_CODE_OUT_OF_TABLE = 125,
   /// A route comes from more than one segment, or goes to more than one.
   ATC_STATUS_PLAN_MANY_SEGMENTS = 126,
+  /// A calling-on route has no berth, is continued by another route, or leads to a segment.
+  ATC_STATUS_PLAN_CALLING_ON_ENDS = 127,
+  /// A route that starts in a berth against the called train can be held together with the calling-on route.
+  ATC_STATUS_PLAN_CALLING_ON_AGAINST = 128,
+  /// A circuit beyond the end of a calling-on route is not of its berth, or its trains act on telegrams alone.
+  ATC_STATUS_PLAN_CALLING_ON_UNSEEN = 129,
 } atc_status;
 
 /// The line's aspects and times.
@@ -763,6 +772,8 @@ typedef struct atc_route {
   uint8_t overlap_speed_code;
   /// 1: every train that uses the route acts on telegrams alone, and not on what a driver sees. 0: some do not.
   uint8_t cab_signalled;
+  /// 1: a calling-on route, whose train goes on sight into the overlap, the berth, where another one stands. 0: any other.
+  uint8_t calling_on;
 } atc_route;
 
 /// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an
@@ -828,7 +839,7 @@ typedef struct atc_place {
 /// An interlocking with its plan and its state. Its bytes are the library's; it may be moved and copied as a whole.
 typedef struct atc_interlocking {
   /// Not to be read or written.
-  uint64_t opaque[2911];
+  uint64_t opaque[2919];
 } atc_interlocking;
 
 /// One logic cycle's input. A set has bit `i` for the thing of number `i`.

@@ -11,6 +11,8 @@ pub enum Reason {
     Point,
     /// The overlap of one has a circuit of the other's path or overlap, and the other does not continue it.
     Overlap,
+    /// The berth of one has the last circuit of the other, until the other's train stands there and its overlap is given up.
+    Berth,
     /// They start from one circuit in opposite directions.
     Start,
     /// The file declares it.
@@ -26,6 +28,7 @@ impl Reason {
             Self::Circuit => "circuit",
             Self::Point => "point",
             Self::Overlap => "overlap",
+            Self::Berth => "berth",
             Self::Start => "start",
             Self::Declared => "declared",
             Self::Direction => "direction",
@@ -38,6 +41,7 @@ impl Reason {
             Self::Circuit => 'c',
             Self::Point => 'p',
             Self::Overlap => 'o',
+            Self::Berth => 'e',
             Self::Start => 'b',
             Self::Declared => 'd',
             Self::Direction => 's',
@@ -53,8 +57,12 @@ pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
         return Vec::new();
     }
     let meets = |a: &Route, b: &Route| a.circuits().any(|circuit| b.circuits().any(|same| same == circuit));
+    let touches = |overlap: &Route, path: &Route, last: bool| {
+        path.circuits().any(|circuit| overlap.overlap.contains(&circuit) && (path.last() == Some(circuit)) == last)
+    };
+    let ends = |overlap: &Route, path: &Route| overlap.calling_on && touches(overlap, path, true);
     let under = |overlap: &Route, number: usize, path: &Route| {
-        let touched = path.circuits().any(|circuit| overlap.overlap.contains(&circuit));
+        let touched = touches(overlap, path, false) || touches(overlap, path, true) && !overlap.calling_on;
         touched && !overlap.continuing.contains(&number)
     };
     let overlaps = a.overlap.iter().any(|circuit| b.overlap.contains(circuit));
@@ -66,6 +74,7 @@ pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
         (meets(a, b), Reason::Circuit),
         (opposed, Reason::Point),
         (overlaps || under(a, other, b) || under(b, one, a), Reason::Overlap),
+        (ends(a, b) || ends(b, a), Reason::Berth),
         (starts, Reason::Start),
         (!starts && (a.conflicts.contains(&other) || b.conflicts.contains(&one)), Reason::Declared),
         (opposite(a, b) || opposite(b, a), Reason::Direction),

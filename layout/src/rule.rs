@@ -230,10 +230,10 @@ pub const fn remedy(rule: Kernel) -> &'static str {
         }
         Kernel::ContinuesElsewhere => "name only routes whose entry is the last circuit",
         Kernel::CallingOnEnds => "end the path before the occupied track, name that as berth, and no continuing route",
-        Kernel::CallingOnAgainst => "let it start at the other end of the berth, or name each among the conflicts of the other",
-        Kernel::CallingOnUnseen => {
-            "name the circuit behind the end as berth, beyond only there, and no cab_signalled"
+        Kernel::CallingOnAgainst => {
+            "let it start at the other end of the berth, or name each among the conflicts of the other"
         }
+        Kernel::CallingOnUnseen => "name the circuit behind the end as berth, beyond only there, and no cab_signalled",
         Kernel::ThroatsDiffer => "let all routes out to the segment end at one circuit next to it",
         Kernel::SegmentShared => "end routes and overlaps where the segment begins",
         Kernel::PointInSegment => "end the segment before the point, and let routes run over it",

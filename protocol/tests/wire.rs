@@ -282,7 +282,7 @@ fn every_word_of_the_interlocking_is_the_kernels_name() {
         }
     }
     same(|word: Phase| word.0, 6);
-    same(|word: Reason| word.0, 14);
+    same(|word: Reason| word.0, 15);
     same(|word: Heading| word.0, 2);
     same(|word: Direction| word.0, 2);
     same(|word: Side| word.0, 2);

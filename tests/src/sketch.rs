@@ -140,7 +140,8 @@ impl Sketch {
                     self.routes[one].conflicts.push(other);
                 }
                 let (way, against) = (&self.routes[one], &self.routes[other]);
-                let berth = way.calling_on && way.leftward != against.leftward && way.overlap.0.contains(&against.entry);
+                let berth =
+                    way.calling_on && way.leftward != against.leftward && way.overlap.0.contains(&against.entry);
                 let meets = against.path.iter().any(|place| place.0 == way.last());
                 if berth && !meets && !way.conflicts.contains(&other) {
                     self.routes[one].conflicts.push(other);

@@ -13,10 +13,10 @@ use crate::memory::{Reader, Writer};
 
 type KernelPlan = atc_kernel::interlocking::Plan<64, 16, 32, 8>;
 
-/// The bytes of a plan: 64 routes of 324, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times
+/// The bytes of a plan: 64 routes of 325, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times
 /// and counts;
 /// 1 to fill.
-pub(super) const PARAMETERS: usize = 22392;
+pub(super) const PARAMETERS: usize = 22456;
 
 fn put_positions(positions: Positions, to: &mut Writer<'_>) {
     to.u32(positions.normal.bits());

@@ -1,7 +1,7 @@
 //! What C gives and gets: the plan in flat arrays, a cycle's input and its output.
 
 /// The size of an interlocking in bytes.
-pub const ATC_INTERLOCKING_SIZE: usize = 23288;
+pub const ATC_INTERLOCKING_SIZE: usize = 23352;
 /// The alignment of an interlocking in bytes.
 pub const ATC_INTERLOCKING_ALIGN: usize = 8;
 
@@ -116,7 +116,7 @@ pub const ATC_PLACE_CIRCUIT: u32 = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct atc_interlocking {
     /// Not to be read or written.
-    pub opaque: [u64; 2911],
+    pub opaque: [u64; 2919],
 }
 
 /// One place of a route's path, or its overlap: what is held there.

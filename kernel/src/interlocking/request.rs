@@ -41,8 +41,6 @@ pub enum Refusal {
     PointLocked,
     /// A circuit of path or overlap is occupied; a berth may be.
     Occupied,
-    /// A calling-on route without a train that waits at its signal, or without one in its berth.
-    NotCalledFor,
     /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
     Unswept,
     /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked.
@@ -54,6 +52,8 @@ pub enum Refusal {
     /// The permission to the neighbour is withdrawn, and the segment cannot be turned away yet: the neighbour's permission is missing, this
     /// station's own may still be in the air, or a circuit of the segment is blocked.
     Waiting,
+    /// A calling-on route without a train that waits at its signal, or without one in its berth.
+    NotCalledFor,
 }
 
 /// What the conflict check looks at besides the routes.

@@ -33,8 +33,7 @@ pub fn ends(station: &Station, names: &Names, model: &mut Model, problems: &mut 
             circuits.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join(", ")
         };
         let beyond = beyond.unwrap_or_else(|| {
-            let beyond =
-                if route.calling_on { ahead.into_iter().collect() } else { beyond_of(model, route, ahead) };
+            let beyond = if route.calling_on { ahead.into_iter().collect() } else { beyond_of(model, route, ahead) };
             note(format!("beyond the end: {}", listed(&beyond)));
             beyond
         });

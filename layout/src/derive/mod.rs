@@ -129,9 +129,12 @@ fn segments(station: &Station, names: &Names, values: &Values, problems: &mut Ve
     let mut segments = Vec::new();
     let line = values::line_kmh(station, values);
     let speeds = &station.speed;
-    for (what, speed) in
-        [("line_kmh", &speeds.line_kmh), ("route_kmh", &speeds.route_kmh), ("reverse_kmh", &speeds.reverse_kmh), ("calling_on_kmh", &speeds.calling_on_kmh)]
-    {
+    for (what, speed) in [
+        ("line_kmh", &speeds.line_kmh),
+        ("route_kmh", &speeds.route_kmh),
+        ("reverse_kmh", &speeds.reverse_kmh),
+        ("calling_on_kmh", &speeds.calling_on_kmh),
+    ] {
         values::within_codes(what, speed.as_ref(), values, problems);
     }
     for given in &station.segments {

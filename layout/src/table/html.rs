@@ -152,7 +152,15 @@ fn circuits(page: &mut String, model: &Model) {
 
 fn conflicts(page: &mut String, model: &Model) {
     let heads: Vec<&str> = model.routes.iter().map(|route| route.name.as_str()).collect();
-    let all = [Reason::Circuit, Reason::Point, Reason::Overlap, Reason::Start, Reason::Declared, Reason::Direction];
+    let all = [
+        Reason::Circuit,
+        Reason::Point,
+        Reason::Overlap,
+        Reason::Berth,
+        Reason::Start,
+        Reason::Declared,
+        Reason::Direction,
+    ];
     let key = all.map(|reason| format!("{}: {}", reason.letter(), reason.word())).join(", ");
     matrix(page, model, ("conflicts", "Routes and routes", &key), &heads, &|one, other| {
         let letters: String = reasons(model, one, other).into_iter().map(Reason::letter).collect();

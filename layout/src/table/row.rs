@@ -123,12 +123,9 @@ impl<'a> Row<'a> {
     fn times(&self) -> String {
         let seconds = |ticks: u16| f64::from(u32::from(ticks) * self.model.values.cycle_ms) / 1000.0;
         let route = self.route;
-        format!(
-            "drive {} s, release {} s, stay {} s",
-            seconds(route.drive.0),
-            seconds(route.release.0),
-            seconds(route.stay.0)
-        )
+        let times = format!("drive {} s, release {} s", seconds(route.drive.0), seconds(route.release.0));
+        // A berth is not given up by time.
+        if route.calling_on { times } else { format!("{times}, stay {} s", seconds(route.stay.0)) }
     }
 
     /// What releases each circuit of the path, and the overlap.

@@ -46,9 +46,11 @@ impl<D: Device> Yard<D> {
 
     fn safe(&self) -> Vec<Claim<Self>> {
         let mut claims = vec![
-            Claim::<Self>::always("no-collision", "no two trains are in one circuit, or touch, but one that is called on and one that stands there or goes on ahead of it", |_, s| {
-                s.harm != Harm::Collision
-            }),
+            Claim::<Self>::always(
+                "no-collision",
+                "no two trains are in one circuit, or touch, but one that is called on and one that stands there or goes on ahead of it",
+                |_, s| s.harm != Harm::Collision,
+            ),
             Claim::<Self>::always(
                 "no-derailment",
                 "no train runs over a point that does not lead there, and no point moves under a train",
@@ -185,7 +187,9 @@ impl<D: Device> Yard<D> {
                 starts.any(|(start, train)| start.segment.is_some_and(none) && train.occupies() >> start.at & 1 == 1)
             }),
             Sight::Shared => ("shared", "a train that was called on is in a circuit with another one", |_, s| {
-                s.trains.iter().any(|train| s.trains.iter().any(|other| train != other && train.called && train.is_behind(other)))
+                s.trains
+                    .iter()
+                    .any(|train| s.trains.iter().any(|other| train != other && train.called && train.is_behind(other)))
             }),
         };
         Claim::<Self>::sometimes(name, text, condition)

@@ -20,8 +20,8 @@
 mod others;
 
 pub use others::{
-    BRANCH, IN, MAIN, OUT, berth, berth_route, called, counted, counted_line, crossing, diamond, end, fork, halt, junction, rest, siding, stop,
-    terminus,
+    BRANCH, IN, MAIN, OUT, berth, berth_route, called, counted, counted_line, crossing, diamond, end, fork, halt,
+    junction, rest, siding, stop, terminus,
 };
 
 pub use super::sizes::{CIRCUITS, PLACES, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, SmallPlan, circuits};

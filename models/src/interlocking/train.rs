@@ -190,7 +190,9 @@ impl Train {
         }
         match signal {
             // Who runs on sight does not slide.
-            Some(signal) if signal.slide > 0 && !self.called && self.arrived < environment.slides_for => (true, Some(signal.slide - 1)),
+            Some(signal) if signal.slide > 0 && !self.called && self.arrived < environment.slides_for => {
+                (true, Some(signal.slide - 1))
+            }
             _ => (false, None),
         }
     }

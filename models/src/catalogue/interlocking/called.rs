@@ -77,7 +77,9 @@ pub(super) fn entries() -> Vec<Entry> {
             about(
                 "interlocking-called-on-falsely",
                 "The same while berth and throat are falsely occupied in any cycle: nobody is let in who must not be.",
-                &format!("{WORDS}; {SLIDING}; the lines are turned in any cycle; the berth and the western throat may be reported without a train in any cycle"),
+                &format!(
+                    "{WORDS}; {SLIDING}; the lines are turned in any cycle; the berth and the western throat may be reported without a train in any cycle"
+                ),
                 REQUIREMENTS,
                 SEEN,
             ),

@@ -306,7 +306,8 @@ pub fn berth() -> Station {
     let beside = 1 << WEST | 1 << EAST;
     let up_in = route(W, &[at(WEST), at(BERTH)], beside);
     put(UP_IN, Route { overlap: only(EAST), continuing: up, from: alone(0), ..up_in });
-    let call = Route { overlap: only(BERTH), calling_on: true, speed: SpeedCode(1), ..route(W, &[at(WEST)], 1 << BERTH) };
+    let call =
+        Route { overlap: only(BERTH), calling_on: true, speed: SpeedCode(1), ..route(W, &[at(WEST)], 1 << BERTH) };
     put(CALL, Route { from: alone(0), ..call });
     put(UP_OUT, Route { to: alone(1), ..route(BERTH, &[at(EAST)], 1 << E) });
     let down_in = route(E, &[at(EAST), at(BERTH)], beside);

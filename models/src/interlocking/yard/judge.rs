@@ -99,7 +99,8 @@ impl<D: Device> Yard<D> {
                 telegram.heading == Some(heading.of_layout()) && self.reaches((front, stop), hold, heading, after)
             };
             // Who was called on obeys no telegram that is for the train ahead of it.
-            let ahead = self.environment.on_sight && after.trains.iter().any(|other| train.is_behind(other) && other != train);
+            let ahead =
+                self.environment.on_sight && after.trains.iter().any(|other| train.is_behind(other) && other != train);
             if granted & hold != 0 && !ahead || !reaches(Heading::Up) && !reaches(Heading::Down) {
                 return Harm::Authority;
             }

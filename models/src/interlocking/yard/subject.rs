@@ -87,7 +87,8 @@ impl<D: Device> Subject for Yard<D> {
         let proceed = output.proceed.bits().to_le_bytes()[0];
         let mut trains = cycle.trains;
         for (train, telegram) in trains.iter_mut().zip(&telegrams) {
-            let behind = self.environment.on_sight && cycle.trains.iter().any(|other| train.is_behind(other) && other != train);
+            let behind =
+                self.environment.on_sight && cycle.trains.iter().any(|other| train.is_behind(other) && other != train);
             let proceed = if behind { 0 } else { proceed };
             // A telegram for the other direction of travel is one to stop.
             let meant = telegram.filter(|telegram| telegram.heading == Some(train.heading.of_layout()));

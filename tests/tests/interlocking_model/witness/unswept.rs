@@ -98,7 +98,8 @@ impl Unswept {
             let own = |place: usize| on.0 <= place && place < on.1;
             let kept = |circuit: &usize| needed.contains(circuit) && keep.circuits.contains(circuit);
             let in_path = path.iter().enumerate().any(|(place, circuit)| kept(circuit) && !own(place));
-            let waits = begins.is_some() && !mine.calling_on && on.1 == path.len() && !meets(&other.overlap.0, occupied);
+            let waits =
+                begins.is_some() && !mine.calling_on && on.1 == path.len() && !meets(&other.overlap.0, occupied);
             let in_overlap = other.overlap.0.iter().any(kept) && !waits;
             let shares = begins.is_some() || meets(&path, &needed) || meets(&other.overlap.0, &needed);
             let declared = mine.conflicts.contains(&number) && !keep.circuits.is_empty();
