@@ -95,6 +95,7 @@ fn every_assumption_is_lifted_by_a_model_that_shows_what_happens() {
         "views-of-a-line-meet",
         "start-outlasts-running",
         "verified-reset",
+        "called-on-runs-on-sight",
     ]
     .into();
     let mut excluding = BTreeSet::new();

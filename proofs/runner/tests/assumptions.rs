@@ -69,7 +69,7 @@ fn a_list_of_assumptions_is_what_the_harness_assumes() {
         let mut supposed = native::supposed(harness, 50);
         // What stands in an arm that is drawn rarely takes longer.
         if !faults(harness, &supposed, &entries).is_empty() {
-            supposed = native::supposed(harness, 5000);
+            supposed = native::supposed(harness, 20_000);
         }
         some += usize::from(!supposed.is_empty());
         all.extend(faults(harness, &supposed, &entries));

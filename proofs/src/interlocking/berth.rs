@@ -5,7 +5,7 @@
 //! The train is that of T-ILK-10 ([`super::train`]), once as the one that was there, and once as the one that is called.
 
 use super::ahead::needed;
-use super::any::{bit, kept};
+use super::any::{any_circuits, bit, kept};
 use super::scene::{BUILT_IN, Beside, ENTRY, FIRST, LENGTH, Scene, Train, any_scene};
 use crate::Engine;
 use crate::engine::any_flag;
@@ -25,6 +25,7 @@ fn any_call<E: Engine + ?Sized>(e: &mut E, called: usize) -> Option<Scene<ROUTES
         let goes_on = any_flag(e, "it goes on (odd: yes)");
         let route = &mut plan.routes[called];
         route.calling_on = true;
+        route.overlap.circuits = route.overlap.circuits.or(any_circuits(e, "berth (bits)", 0x4000..=0x4000));
         route.continuing = route.continuing.only_if(goes_on);
         route.to = route.to.only_if(goes_on);
         Beside::NOTHING

@@ -8,7 +8,7 @@ use crate::interlocking::ground::Heading;
 use crate::interlocking::stations::{berth, berth_route, called};
 use crate::interlocking::yard::Harm;
 use crate::interlocking::{Purpose, Sight};
-use atc_kernel::interlocking::Travel;
+use atc_kernel::interlocking::{Request, Travel};
 
 /// With drivers who run on sight.
 const ON_SIGHT: [&str; ALL.len() + 1] = joined(ALL, ["called-on-runs-on-sight"]);
@@ -36,12 +36,16 @@ fn following() -> Environment {
     }
 }
 
+fn inward() -> Vec<Request> {
+    dispatch(&[berth_route::UP_IN, berth_route::CALL, berth_route::DOWN_IN])
+}
+
 fn facing() -> Environment {
-    use berth_route::{CALL, DOWN_IN, DOWN_OUT, UP_IN, UP_OUT};
+    use berth_route::{DOWN_OUT, UP_OUT};
     Environment {
         slides_for: 1,
         before: vec![turn(0, Travel::Toward), turn(1, Travel::Toward)],
-        requests: [dispatch(&[UP_IN, CALL, DOWN_IN, UP_OUT, DOWN_OUT]), turns(&[0, 1])].concat(),
+        requests: [inward(), dispatch(&[UP_OUT, DOWN_OUT]), turns(&[0, 1])].concat(),
         ..Environment { trains: vec![WEST, EAST], ..following() }
     }
 }
@@ -78,13 +82,13 @@ pub(super) fn entries() -> Vec<Entry> {
                 "interlocking-called-on-falsely",
                 "The same while berth and throat are falsely occupied in any cycle: nobody is let in who must not be.",
                 &format!(
-                    "{WORDS}; {SLIDING}; the lines are turned in any cycle; the berth and the western throat may be reported without a train in any cycle"
+                    "{WORDS}; {SLIDING}; the berth and the western throat may be reported without a train in any cycle"
                 ),
                 REQUIREMENTS,
                 SEEN,
             ),
             berth(),
-            Environment { falsely: 1 << called::BERTH | 1 << called::WEST, ..facing() },
+            Environment { falsely: 1 << called::BERTH | 1 << called::WEST, requests: inward(), ..facing() },
             Purpose::Safe(&[Sight::Shared, Sight::Slides]),
         ),
         yard(
