@@ -872,3 +872,29 @@ fn distances_hold_where_a_code_is_heard() {
     breaks(&heard(1001), Rule::Range, "heard_beyond_m is 0 to 1000");
     breaks(&heard(-1), Rule::Form, "");
 }
+
+/// A calling-on route ends where the occupied track begins, is slow, seen by drivers, and tells of its berth.
+#[test]
+fn a_calling_on_route_keeps_its_rules() {
+    const COUPLING: &str = include_str!("../../layouts/coupling.toml");
+    let compiled = Description::from_toml("coupling", COUPLING).unwrap().compile().unwrap();
+    let number = compiled.names.routes.iter().position(|name| name == "W-1c").unwrap();
+    let route = &compiled.plan.routes[number];
+    assert!(route.calling_on && route.beyond == route.overlap.circuits && route.continuing.is_empty());
+    assert!(route.speed.0 == 1 && route.overlap.circuits.is_one() && !route.path[0].circuits.meets(route.overlap.circuits));
+    // The file is written with it.
+    let written = Description::from_toml("coupling", COUPLING).unwrap().to_toml();
+    let again = Description::from_toml("coupling", &written).unwrap().compile().unwrap();
+    assert_eq!(again.plan, compiled.plan);
+
+    let berth = "path = [\"P1T\"]\nberth = [\"1T\"]\n";
+    let with = |more: &str| COUPLING.replacen(berth, &format!("{berth}{more}\n"), 1);
+    breaks(&with("overlap = [\"1T\"]"), Rule::Plan(Kernel::CallingOnEnds), "route W-1c has an overlap and a berth");
+    breaks(&with("continuing = [\"1-E\"]"), Rule::Plan(Kernel::CallingOnEnds), "route W-1c");
+    breaks(&with("speed_kmh = 25"), Rule::Range, "25 km/h, and trains run on sight at 15");
+    breaks(&with("beyond = [\"1T\", \"2T\"]"), Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
+    let apart = COUPLING.replacen(berth, "path = [\"P1T\"]\nberth = [\"P2T\"]\n", 1);
+    breaks(&apart, Rule::OverlapNotAhead, "the overlap starts at P2T");
+    let blind = COUPLING.replacen("[speed]", "cab_signalled = true\n[speed]", 1);
+    breaks(&blind, Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
+}

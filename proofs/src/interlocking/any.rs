@@ -93,8 +93,8 @@ pub(super) fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u
 /// Any speeds of a route and of its overlap, from one value, and any trains.
 pub(super) fn any_speeds<E: Engine + ?Sized, const P: usize>(e: &mut E) -> Route<P> {
     let [route, overlap] = e.word("speed code, and 256 times that of the overlap", 0..=3).to_le_bytes();
-    let cab_signalled = any_flag(e, "all trains are cab-signalled (odd: yes)");
-    let calling_on = e.word("it is a calling-on route (odd: yes)", 0..=0) & 1 == 1;
+    let kind = e.word("all trains are cab-signalled (odd: yes), and it is a calling-on route (2 more)", 0..=1);
+    let (cab_signalled, calling_on) = (kind & 1 == 1, kind & 2 == 2);
     Route { speed: SpeedCode(route), overlap_speed: SpeedCode(overlap), cab_signalled, calling_on, ..Route::NONE }
 }
 
