@@ -881,7 +881,9 @@ fn a_calling_on_route_keeps_its_rules() {
     let number = compiled.names.routes.iter().position(|name| name == "W-1c").unwrap();
     let route = &compiled.plan.routes[number];
     assert!(route.calling_on && route.beyond == route.overlap.circuits && route.continuing.is_empty());
-    assert!(route.speed.0 == 1 && route.overlap.circuits.is_one() && !route.path[0].circuits.meets(route.overlap.circuits));
+    assert!(
+        route.speed.0 == 1 && route.overlap.circuits.is_one() && !route.path[0].circuits.meets(route.overlap.circuits)
+    );
     // The file is written with it.
     let written = Description::from_toml("coupling", COUPLING).unwrap().to_toml();
     let again = Description::from_toml("coupling", &written).unwrap().compile().unwrap();
