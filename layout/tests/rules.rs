@@ -892,10 +892,14 @@ fn a_calling_on_route_keeps_its_rules() {
     let berth = "path = [\"P1T\"]\nberth = [\"1T\"]\n";
     let with = |more: &str| COUPLING.replacen(berth, &format!("{berth}{more}\n"), 1);
     breaks(&with("overlap = [\"1T\"]"), Rule::Plan(Kernel::CallingOnEnds), "route W-1c has an overlap and a berth");
-    breaks(&with("continuing = [\"1-E\"]"), Rule::Plan(Kernel::CallingOnEnds), "route W-1c");
+    assert!(errors(&with("continuing = [\"1-E\"]")).breaks(Rule::Plan(Kernel::CallingOnEnds)));
     breaks(&with("speed_kmh = 25"), Rule::Range, "25 km/h, and trains run on sight at 15");
     breaks(&with("beyond = [\"1T\", \"2T\"]"), Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
-    let apart = COUPLING.replacen(berth, "path = [\"P1T\"]\nberth = [\"P2T\"]\n", 1);
+    let apart = COUPLING.replacen(
+        berth,
+        "path = [{ circuit = \"P1T\", points = { P1 = \"normal\" } }]\nberth = [\"P2T\"]\n",
+        1,
+    );
     breaks(&apart, Rule::OverlapNotAhead, "the overlap starts at P2T");
     let blind = COUPLING.replacen("[speed]", "cab_signalled = true\n[speed]", 1);
     breaks(&blind, Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
