@@ -433,7 +433,7 @@ typedef enum atc_status {
   /// A route that starts in a berth against the called train can be held together with the calling-on route.
   ATC_STATUS_PLAN_CALLING_ON_AGAINST = 128,
   /// A circuit beyond the end of a calling-on route is not of its berth, or its trains act on telegrams alone.
-  ATC_STATUS_PLAN_CALLING_ON_UNSEEN = 129,
+  ATC_STATUS_PLAN_CALLING_ON_BERTH = 129,
 } atc_status;
 
 /// The line's aspects and times.

@@ -178,10 +178,10 @@ pub enum atc_status {
     PlanManySegments = 126,
     /// A calling-on route has no berth, is continued by another route, or leads to a segment.
     PlanCallingOnEnds = 127,
-    /// A route that starts in a berth against the called train can be held together with the calling-on route.
+    /// A route that starts in a berth runs over a circuit of it, or against the called train elsewhere than over its last circuit.
     PlanCallingOnAgainst = 128,
-    /// A circuit beyond the end of a calling-on route is not of its berth, or its trains act on telegrams alone.
-    PlanCallingOnUnseen = 129,
+    /// The berth of a calling-on route is not the track up to the next signal, or its trains act on telegrams alone.
+    PlanCallingOnBerth = 129,
 }
 
 impl atc_status {
@@ -267,8 +267,14 @@ impl atc_status {
         (Self::PlanCodeOutOfTable, c"the speed code of a route must be above 0 and have a braking distance"),
         (Self::PlanManySegments, c"a route must come from one segment at most, and go to one at most"),
         (Self::PlanCallingOnEnds, c"a calling-on route must have a berth, no continuing route and no segment out"),
-        (Self::PlanCallingOnAgainst, c"a route from a berth against the called train must run over its last circuit"),
-        (Self::PlanCallingOnUnseen, c"a calling-on route must adjoin its berth, and not be cab-signalled"),
+        (
+            Self::PlanCallingOnAgainst,
+            c"a route from a berth must leave it at once, against the called train over its last circuit",
+        ),
+        (
+            Self::PlanCallingOnBerth,
+            c"a berth must be all of the track up to the next signal, and its route not be cab-signalled",
+        ),
     ];
 
     /// The sentence of the status with this number.

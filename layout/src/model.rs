@@ -236,6 +236,8 @@ pub struct Route {
     pub exit: usize,
     /// Whether it is a calling-on route: then its overlap is the berth.
     pub calling_on: bool,
+    /// The joint at the end of its berth, or overlap; at the end of the path without one.
+    pub berth_end: usize,
     /// The circuits of the overlap, in order of travel.
     pub overlap: Vec<usize>,
     /// The positions of points in the overlap.
@@ -287,6 +289,7 @@ impl Default for Route {
             path: Vec::new(),
             exit: 0,
             calling_on: false,
+            berth_end: 0,
             overlap: Vec::new(),
             overlap_positions: Positions::new(),
             overlap_passed: Vec::new(),

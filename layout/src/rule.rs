@@ -177,10 +177,10 @@ const fn of_plan(rule: Kernel) -> &'static str {
         Kernel::ContinuesElsewhere => "a route that continues another one enters at its last circuit",
         Kernel::CallingOnEnds => "a calling-on route has a berth, ends there, and leads to no line",
         Kernel::CallingOnAgainst => {
-            "a route that starts in a berth against the direction of travel of the calling-on route runs over its last circuit"
+            "a route that starts in a berth leaves it at once, and against the called train over the last circuit of its path"
         }
-        Kernel::CallingOnUnseen => {
-            "a berth adjoins the end of its calling-on route, and drivers see the calling-on aspect"
+        Kernel::CallingOnBerth => {
+            "a berth is the track from the end of its calling-on route to the next signal, and no throat of a line; drivers see the aspect"
         }
         Kernel::ThroatsDiffer => "all routes out to a segment end at the segment's throat",
         Kernel::SegmentShared => "a segment shares no circuit with a path, an overlap or another segment",
@@ -230,10 +230,10 @@ pub const fn remedy(rule: Kernel) -> &'static str {
         }
         Kernel::ContinuesElsewhere => "name only routes whose entry is the last circuit",
         Kernel::CallingOnEnds => "end the path before the occupied track, name that as berth, and no continuing route",
-        Kernel::CallingOnAgainst => {
-            "let it start at the other end of the berth, or name each among the conflicts of the other"
+        Kernel::CallingOnAgainst => "end the berth at the next signal, and let the path end where the berth begins",
+        Kernel::CallingOnBerth => {
+            "name as berth all circuits from the end of the path to the next signal, beyond only there, and leave out cab_signalled"
         }
-        Kernel::CallingOnUnseen => "name the circuit behind the end as berth, beyond only there, and no cab_signalled",
         Kernel::ThroatsDiffer => "let all routes out to the segment end at one circuit next to it",
         Kernel::SegmentShared => "end routes and overlaps where the segment begins",
         Kernel::PointInSegment => "end the segment before the point, and let routes run over it",

@@ -894,13 +894,27 @@ fn a_calling_on_route_keeps_its_rules() {
     breaks(&with("overlap = [\"1T\"]"), Rule::Plan(Kernel::CallingOnEnds), "route W-1c has an overlap and a berth");
     assert!(errors(&with("continuing = [\"1-E\"]")).breaks(Rule::Plan(Kernel::CallingOnEnds)));
     breaks(&with("speed_kmh = 25"), Rule::Range, "25 km/h, and trains run on sight at 15");
-    breaks(&with("beyond = [\"1T\", \"2T\"]"), Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
+    breaks(&with("beyond = [\"1T\", \"2T\"]"), Rule::Plan(Kernel::CallingOnBerth), "route W-1c");
     let apart = COUPLING.replacen(
         berth,
         "path = [{ circuit = \"P1T\", points = { P1 = \"normal\" } }]\nberth = [\"P2T\"]\n",
         1,
     );
     breaks(&apart, Rule::OverlapNotAhead, "the overlap starts at P2T");
+    // A berth that ends before the next signal.
+    let halves = |text: &str| {
+        let cut = "name = \"1T\"\nlength_m = 400\nleft = \"d\"\nright = \"f\"\n";
+        let more = "name = \"1T\"\nlength_m = 200\nleft = \"d\"\nright = \"m\"\n\n[[circuit]]\nname = \"1U\"\nlength_m = 200\nleft = \"m\"\nright = \"f\"\n";
+        text.replacen(cut, more, 1)
+            .replace("path = [\"P1T\", \"1T\"]", "path = [\"P1T\", \"1T\", \"1U\"]")
+            .replace("path = [\"P2T\", \"1T\"]", "path = [\"P2T\", \"1U\", \"1T\"]")
+            .replace("entry = \"1T\"\npath = [\"P2T\"]", "entry = \"1U\"\npath = [\"P2T\"]")
+            .replace("path = [\"P2T\"]\nberth = [\"1T\"]", "path = [\"P2T\"]\nberth = [\"1U\", \"1T\"]")
+    };
+    let short = halves(COUPLING);
+    breaks(&short, Rule::Plan(Kernel::CallingOnBerth), "the berth of route W-1c ends at joint m");
+    let whole = short.replacen(berth, "path = [\"P1T\"]\nberth = [\"1T\", \"1U\"]\n", 1);
+    assert!(Description::from_toml("coupling", &whole).unwrap().compile().is_ok());
     let blind = COUPLING.replacen("[speed]", "cab_signalled = true\n[speed]", 1);
-    breaks(&blind, Rule::Plan(Kernel::CallingOnUnseen), "route W-1c");
+    breaks(&blind, Rule::Plan(Kernel::CallingOnBerth), "route W-1c");
 }

@@ -361,7 +361,8 @@ static void keep(int r, set *circuits) {
     bool alone = route->length == 1 && (now.occupied & one(route->entry));
     bool runs = first >= 0 && (first < route->length - 1 || alone || route->calling);
     bool stops = (now.ran & one(r)) || now.still < route->stay;
-    if (!runs && !(stops && (first >= 0 || (route->overlap & now.occupied)))) return;
+    bool called = route->calling && (route->overlap & now.occupied);
+    if (!runs && !called && !(stops && (first >= 0 || (route->overlap & now.occupied)))) return;
     if (runs) running |= one(r);
     *circuits = route->overlap;
     for (int i = first; i >= 0 && i < route->length; i++) *circuits |= one(route->place[i]);

@@ -143,9 +143,10 @@ impl Sketch {
                 let berth =
                     way.calling_on && way.leftward != against.leftward && way.overlap.0.contains(&against.entry);
                 let meets = against.path.iter().any(|place| place.0 == way.last());
-                if berth && !meets && !way.conflicts.contains(&other) {
-                    self.routes[one].conflicts.push(other);
-                    self.routes[other].conflicts.push(one);
+                let within = against.path.iter().any(|place| way.overlap.0.contains(&place.0));
+                let starts = way.overlap.0.contains(&against.entry);
+                if berth && !meets || starts && within {
+                    self.routes[one].calling_on = false;
                 }
             }
         }

@@ -199,7 +199,7 @@ fn fault(broken: Broken) -> Fault {
         Rule::ManySegments => atc_status::PlanManySegments,
         Rule::CallingOnEnds => atc_status::PlanCallingOnEnds,
         Rule::CallingOnAgainst => atc_status::PlanCallingOnAgainst,
-        Rule::CallingOnUnseen => atc_status::PlanCallingOnUnseen,
+        Rule::CallingOnBerth => atc_status::PlanCallingOnBerth,
     };
     (status, atc_place { kind, first: first.into(), second: second.into() })
 }

@@ -104,7 +104,7 @@ rules! { PLAN, plan_is_complete, Kernel, (Asked, Scope), [];
     ContinuesElsewhere => (Asked::Theorems, Scope::Pairs);
     CallingOnEnds => (Asked::Theorems, Scope::Routes);
     CallingOnAgainst => (Asked::Theorems, Scope::Pairs);
-    CallingOnUnseen => (Asked::Engineering, Scope::Routes);
+    CallingOnBerth => (Asked::Engineering, Scope::Routes);
     TurnsBack => (Asked::Engineering, Scope::Routes);
     ThroatsDiffer => (Asked::Engineering, Scope::Routes);
     SegmentShared => (Asked::Theorems, Scope::Segments);

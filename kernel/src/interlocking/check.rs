@@ -62,10 +62,10 @@ pub enum Rule {
     ContinuesElsewhere,
     /// Needed: a calling-on route has a berth, ends there, and leads to no line.
     CallingOnEnds,
-    /// Needed: a route that starts in a berth against the called train runs over the last circuit of its path, or conflicts with its route.
+    /// Needed: a route that starts in a berth leaves it at once, and against the called train over the last circuit of its path.
     CallingOnAgainst,
-    /// Engineering: the berth adjoins the end of the path, and the calling-on aspect is seen by drivers.
-    CallingOnUnseen,
+    /// Engineering: a berth adjoins the end of the path, reaches to the end of every route into it, and is no throat; drivers see the aspect.
+    CallingOnBerth,
     /// Engineering: a route goes on in the direction of travel of the route that it continues, and of its segments.
     TurnsBack,
     /// Engineering: all routes out to a segment end at the segment's throat.
@@ -192,9 +192,10 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
             require(report, both, Rule::ConflictOneWay, pair);
             let together = !route.entry.meets(other.entry) || route.conflicts.meets(it) || !other.exists();
             require(report, together || route.heading == other.heading, Rule::OpposingStarts, pair);
-            let against = other.exists() && other.entry.meets(berth) && route.heading != other.heading;
-            let apart = other.held_from(0).circuits.meets(last) || route.conflicts.meets(it);
-            require(report, !against || apart, Rule::CallingOnAgainst, pair);
+            let starts = other.exists() && other.entry.meets(berth);
+            let path = other.held_from(0).circuits;
+            let leaves = !path.meets(berth) && (route.heading == other.heading || path.meets(last));
+            require(report, !starts || leaves, Rule::CallingOnAgainst, pair);
             let goes_on = !route.continuing.meets(it) || other.entry == last;
             require(report, goes_on, Rule::ContinuesElsewhere, pair);
         }
@@ -274,8 +275,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
         require(report, !route.overlap.circuits.meets(path.circuits), Rule::OverlapUnderOwnPath, place);
         let beyond = !route.beyond.is_empty() && !route.beyond.meets(route.last());
         require(report, beyond, Rule::NothingBeyond, place);
-        let seen = route.overlap.circuits.contains(route.beyond) && !route.cab_signalled;
-        require(report, !route.calling_on || seen, Rule::CallingOnUnseen, place);
+        require(report, !route.calling_on || self.is_berth(route), Rule::CallingOnBerth, place);
         let myself = RouteSet::nth(usize::from(number));
         require(report, !route.conflicts.meets(myself), Rule::ConflictsWithItself, place);
         let named = route.conflicts.or(route.continuing);
@@ -303,6 +303,29 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
             in_table |= code > 0 && code == route.speed.0 && *distance < Metres(u16::MAX);
         }
         require(report, in_table, Rule::CodeOutOfTable, place);
+    }
+
+    /// Whether the overlap of a calling-on route can be a berth: all of the track from the end of the path to the next signal.
+    fn is_berth(&self, route: &Route<P, Z>) -> bool {
+        let berth = route.overlap.circuits;
+        let mut whole = berth.contains(route.beyond) && !route.cab_signalled;
+        for segment in &self.segments {
+            whole &= !segment.throat.meets(berth);
+        }
+        for other in &self.routes {
+            let mut ahead = CircuitSet::EMPTY;
+            let mut behind = false;
+            for (place, element) in (0_u8..).zip(&other.path) {
+                if place < other.length {
+                    ahead = ahead.or(element.circuits.only_if(behind));
+                    behind |= element.circuits == route.last();
+                }
+            }
+            // Where a route runs on from the end of the path into the berth, the berth goes on as far as it does.
+            let into = other.heading == route.heading && ahead.meets(berth);
+            whole &= !into || berth.contains(ahead);
+        }
+        whole
     }
 
     fn check_points_of(&self, positions: Positions<Z>, place: Place, report: &mut impl FnMut(Broken)) {

@@ -78,7 +78,7 @@ impl<Z: Size> Unswept<Z> {
     #[inline]
     fn kept_by<const P: usize>(&self, route: &Route<P, Z>, it: RouteSet<Z>, occupied: CircuitSet<Z>) -> Kept<Z> {
         //= spec/interlocking.md#ilk-28-kept
-        //# A route that is not cab-signalled MUST keep the places of its path from the first occupied one on, and its overlap, where all of these are unswept, while it runs and for its overlap release time after that.
+        //# A route that is not cab-signalled MUST keep the places of its path from the first occupied one on, and its overlap, where all of these are unswept, while it runs and for its overlap release time after that; and a berth while it is occupied.
         let overlap = route.overlap;
         let mut seen = false;
         let mut kept = Kept::default();
@@ -106,7 +106,9 @@ impl<Z: Size> Unswept<Z> {
         kept.running |= seen && route.length == 1 && route.entry.meets(occupied);
         let stopping = self.running.meets(it) || self.still < route.stay;
         let slid = route.overlap.circuits.meets(occupied);
-        let keeps = kept.running || stopping && (seen || slid);
+        // Who is in a berth may go on there at any time.
+        let called = route.calling_on && slid;
+        let keeps = kept.running || called || stopping && (seen || slid);
         if route.cab_signalled || !keeps || !self.circuits.contains(overlap.circuits) {
             return Kept::default();
         }

@@ -106,6 +106,24 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
 
 fn overlap(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
     if route.calling_on {
+        let signal =
+            |other: &Route| other.is_sound() && other.start == route.berth_end && other.heading == route.heading;
+        let buffer = model.graph.joints[route.berth_end].end == Some(EndKind::Buffer);
+        if !buffer && !model.routes.iter().any(signal) {
+            let rule = Rule::Plan(atc_kernel::interlocking::Rule::CallingOnBerth);
+            let joint = &model.graph.joints[route.berth_end].name;
+            let what = format!(
+                "the berth of route {} ends at joint {joint}, where no signal for its trains stands",
+                route.name
+            );
+            let span = given.berth.first().map_or(&route.span, |first| &first.span);
+            problems.push(Problem::new(
+                rule,
+                span,
+                what,
+                "name all circuits from the end of the path to the next signal",
+            ));
+        }
         return;
     }
     if let Some(reason) = &given.short_overlap {

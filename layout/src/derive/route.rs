@@ -65,6 +65,7 @@ pub fn route(
         Ok((way, ahead)) => {
             route.start = way.start;
             route.exit = way.exit();
+            route.berth_end = ahead.exit();
             route.overlap = overlap.iter().map(|step| step.circuit).collect();
             route.overlap_positions = given_positions(&overlap);
             route.overlap_passed = ahead.ways.into_iter().flat_map(|way| way.passed).collect();

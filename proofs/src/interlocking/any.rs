@@ -94,7 +94,7 @@ pub(super) fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u
 pub(super) fn any_speeds<E: Engine + ?Sized, const P: usize>(e: &mut E) -> Route<P> {
     let [route, overlap] = e.word("speed code, and 256 times that of the overlap", 0..=3).to_le_bytes();
     let kind = e.word("all trains are cab-signalled (odd: yes), and it is a calling-on route (2 more)", 0..=1);
-    let (cab_signalled, calling_on) = (kind & 1 == 1, kind & 2 == 2);
+    let (cab_signalled, calling_on) = (kind & 1 == 1, kind >> 1 == 1);
     Route { speed: SpeedCode(route), overlap_speed: SpeedCode(overlap), cab_signalled, calling_on, ..Route::NONE }
 }
 

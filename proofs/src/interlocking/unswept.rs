@@ -109,7 +109,8 @@ impl Train {
         let (on, up) = (any_flag(e, "its front goes on (odd: yes)"), any_flag(e, "its tail goes on (odd: yes)"));
         let late = any_byte(e, "its front is unreported for (cycles, after the move)", 0..=0);
         e.suppose("loss-of-shunt-within-clear", late <= ground.loss);
-        let slides = (self.tail < ground.end || self.moving > 0) && !ground.route.overlap.circuits.is_empty();
+        let slides = (self.tail < ground.last || ground.route.calling_on || self.moving > 0)
+            && !ground.route.overlap.circuits.is_empty();
         e.suppose("overlap-covers-sliding", !on || self.front != ground.last || ground.out || slides);
         e.suppose("loss-of-shunt-within-clear", !on || self.late == 0);
         let whole = self.tail >= ground.end;
@@ -133,7 +134,8 @@ impl Train {
     /// Whether it may still come to a place of its path, or slide beyond it, or has and is not reported there yet.
     const fn goes(self, ground: &Ground) -> bool {
         let unseen = self.late > 0 && (!ground.out || self.front < ground.over);
-        self.tail < ground.end || unseen || self.moving > 0 && !ground.out
+        // In a berth it goes on whenever it likes.
+        self.tail < ground.last || ground.route.calling_on || unseen || self.moving > 0 && !ground.out
     }
 }
 
@@ -207,8 +209,9 @@ fn holds<const S: usize>(train: Train, ground: &Ground, device: &State<ROUTES, S
     let runs = unswept.running.bits() & 1 == 1;
     let (still, standstill) = (u32::from(unswept.still.0), u32::from(ground.standstill));
     holds &= first >= ground.end || runs;
-    holds &= runs || ground.out || moving == 0 || still + moving <= standstill;
-    holds & (runs || ground.out || train.late == 0 || still + late <= standstill + u32::from(ground.loss))
+    let timed = !ground.route.calling_on;
+    holds &= !timed || runs || ground.out || moving == 0 || still + moving <= standstill;
+    holds & (!timed || runs || ground.out || train.late == 0 || still + late <= standstill + u32::from(ground.loss))
 }
 
 /// Whether a route begins at a place of the train's path, and leads the same way: it is for this train.

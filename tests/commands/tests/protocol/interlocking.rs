@@ -243,7 +243,7 @@ fn plan() -> Value {
             "path": [{"circuits": ["A"], "points": {"P": "normal"}}, {"circuits": ["B"], "points": {}}],
             "overlap": {"circuits": ["E"], "points": {}}, "beyond": ["E"], "continuing": [], "conflicts": [],
             "from": [], "to": [], "drive_cycles": 8, "release_cycles": 60, "stay_cycles": 30, "speed_code": 1,
-            "cab_signalled": false,
+            "cab_signalled": false, "calling_on": false,
         }],
     }})
 }

@@ -63,7 +63,8 @@ impl Unswept {
         let alone = way.path.len() == 1 && occupied.contains(&way.entry);
         let runs = first.is_some_and(|first| first + 1 < way.path.len() || alone || way.calling_on);
         let stops = self.before.1.contains(&number) || self.before.2 < way.stay;
-        if !(runs || stops && (first.is_some() || meets(&way.overlap.0, occupied))) {
+        let called = way.calling_on && meets(&way.overlap.0, occupied);
+        if !(runs || called || stops && (first.is_some() || meets(&way.overlap.0, occupied))) {
             return Keep::default();
         }
         let ahead = &way.path[first.unwrap_or(way.path.len())..];
