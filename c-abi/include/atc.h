@@ -430,9 +430,9 @@ typedef enum atc_status {
   ATC_STATUS_PLAN_MANY_SEGMENTS = 126,
   /// A calling-on route has no berth, is continued by another route, or leads to a segment.
   ATC_STATUS_PLAN_CALLING_ON_ENDS = 127,
-  /// A route that starts in a berth against the called train can be held together with the calling-on route.
+  /// A route that starts in a berth runs over a circuit of it, or against the called train elsewhere than over its last circuit.
   ATC_STATUS_PLAN_CALLING_ON_AGAINST = 128,
-  /// A circuit beyond the end of a calling-on route is not of its berth, or its trains act on telegrams alone.
+  /// The berth of a calling-on route is not the track up to the next signal, or its trains act on telegrams alone.
   ATC_STATUS_PLAN_CALLING_ON_BERTH = 129,
 } atc_status;
 
