@@ -145,7 +145,12 @@ impl Sketch {
                 let meets = against.path.iter().any(|place| place.0 == way.last());
                 let within = against.path.iter().any(|place| way.overlap.0.contains(&place.0));
                 let starts = way.overlap.0.contains(&against.entry);
-                if berth && !meets || starts && within {
+                let throat = self.segments.iter().any(|line| line.throat.is_some_and(|it| way.overlap.0.contains(&it)));
+                // One that runs into the berth and out of it: the next signal is farther on.
+                let behind = against.path.iter().skip_while(|place| place.0 != way.last()).skip(1);
+                let outside = behind.filter(|place| !way.overlap.0.contains(&place.0)).count() > 0;
+                let through = way.leftward == against.leftward && within && outside;
+                if berth && !meets || starts && within || throat || through {
                     self.routes[one].calling_on = false;
                 }
             }
