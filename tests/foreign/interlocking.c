@@ -272,6 +272,9 @@ static enum position wanted_point(int r, int point) {
 
 static set line_and_throat(int s) { return plan.segment[s].circuits | (plan.segment[s].throat < 0 ? 0 : one(plan.segment[s].throat)); }
 
+static bool somebody_behind_entry(const struct route *route) { return (route->approach & ~one(route->entry) & now.occupied) != 0; }
+// A train that comes to the signal would run over a block.
+static bool cut_off(const struct route *route) { return somebody_behind_entry(route) && (route->approach & now.blocked); }
 static bool line_blocked(int s) { return (plan.segment[s].circuits & now.blocked) != 0; }
 
 static bool out_allowed(int r) {
@@ -286,8 +289,7 @@ static void idle(int r) { memset(&now.route[r], 0, sizeof now.route[r]); }
 static void follow_rear(int r, bool set_still) {
     const struct route *route = &plan.route[r];
     struct route_state *state = &now.route[r];
-    set outer = route->approach & ~one(route->entry);
-    bool outer_clear = !(outer & now.occupied), entry_clear = !(one(route->entry) & now.occupied);
+    bool outer_clear = !somebody_behind_entry(route), entry_clear = !(one(route->entry) & now.occupied);
     if (set_still) {
         if (!route->cab) state->rear = APPROACH;
         else if (outer_clear) state->rear = ENTRY;
@@ -444,7 +446,7 @@ static const char *set_route(int r) {
         enum position want = wanted_point(r, p);
         if (want && want != detected[p] && kept_point[p]) return "unswept";
     }
-    if (((route->path | route->overlap) & now.blocked) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
+    if (((route->path | route->overlap) & now.blocked) || cut_off(route) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
     for (int p = 0; p < plan.points; p++) {
         enum position want = wanted_point(r, p);
         if (want && want != detected[p] && (plan.detectors[p] & now.blocked)) return "blocked";
@@ -534,7 +536,7 @@ static bool all_points_sound(int r) {
 
 static bool clear_and_unblocked(int r) {
     set clear = held_path(r) | (plan.route[r].calling ? 0 : held_overlap(r));
-    return !(clear & now.occupied) && !((held_path(r) | held_overlap(r)) & now.blocked);
+    return !(clear & now.occupied) && !cut_off(&plan.route[r]) && !((held_path(r) | held_overlap(r)) & now.blocked);
 }
 
 static struct grant grants[ROUTES + CIRCUITS];
@@ -846,6 +848,7 @@ static bool step(const struct json *input) {
     for (int p = 0; p < plan.points; p++) held |= settled[p] == NOWHERE || now.drives[p] ? plan.detectors[p] : 0;
     for (int r = 0; r < plan.routes; r++) {
         held |= held_path(r) | held_overlap(r);
+        if (now.route[r].proved && now.route[r].rear == APPROACH && somebody_behind_entry(&plan.route[r])) held |= plan.route[r].approach;
         for (int p = 0; p < plan.points; p++) held |= held_point(r, p) ? plan.detectors[p] : 0;
     }
     for (int c = 0; c < plan.circuits && !starting; c++) {

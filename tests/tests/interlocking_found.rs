@@ -8,8 +8,8 @@ use atc_kernel::interlocking::{
     Travel,
 };
 use atc_tests::passing_loop::{EASTWARD, INWARD, loop_station};
-use atc_tests::sketch::Way;
-use atc_tests::station_chart::{Small, check};
+use atc_tests::sketch::{Sketch, Way};
+use atc_tests::station_chart::{Lines, Small, check};
 
 // ---- Routes and their trains -----------------------------------------------------------------------------------------------
 
@@ -161,6 +161,65 @@ fn a_line_with_a_block_is_not_turned() {
         block h   .#....
         unblock h ...#..
         permits E #..###
+        ",
+    );
+}
+
+// ---- A block between a train and its signal --------------------------------------------------------------------------------
+
+const WESTWARD: Lines = Lines { west: Travel::Away, east: Travel::Toward };
+
+/// The loop, with f on the approach of the route from d to b.
+fn turned_back() -> Sketch {
+    let mut station = loop_station();
+    station.routes[6].approach = vec![3, 5];
+    station
+}
+
+/// A train changes ends in f, and staff are in d: the signal behind them is not for it.
+#[test]
+fn a_train_that_changes_ends_is_not_let_over_a_block_to_its_signal() {
+    check(
+        &turned_back(),
+        WESTWARD,
+        "
+        occ f       ##########
+        block d     .#........
+        unblock d   ......#...
+        set 6       ...#....#.
+        answer      ...b....+.
+        signal 6    ........##
+        confirmed d .#####....
+        ",
+    );
+    // Where nobody is in f, the block concerns nobody who looks at the signal.
+    check(
+        &turned_back(),
+        WESTWARD,
+        "
+        block d     .#........
+        set 6       ...#......
+        answer      ...+......
+        occ f       .......###
+        signal 6    ...####...
+        confirmed d .#########
+        ",
+    );
+}
+
+/// It has seen the signal, and may be on its way: the block stops it, and staff wait until it stands.
+#[test]
+fn a_block_waits_for_a_train_that_may_be_on_its_way_to_the_signal() {
+    check(
+        &turned_back(),
+        WESTWARD,
+        "
+        occ f       ################
+        set 6       .#..............
+        block d     ...#............
+        withdraw 6  .......#........
+        signal 6    .##.............
+        confirmed d ............####
         ",
     );
 }

@@ -123,6 +123,18 @@ impl<const P: usize, Z: Size> Route<P, Z> {
     pub fn last(&self) -> CircuitSet<Z> {
         self.circuit_at(self.length.wrapping_sub(1))
     }
+
+    /// Whether a train may be on the approach behind the entry.
+    #[inline]
+    pub fn is_approached(&self, occupied: CircuitSet<Z>) -> bool {
+        self.approach.without(self.entry).meets(occupied)
+    }
+
+    /// Whether a train may be on the approach behind the entry, and run over one of `circuits` to the signal.
+    #[inline]
+    pub fn is_approached_over(&self, circuits: CircuitSet<Z>, occupied: CircuitSet<Z>) -> bool {
+        self.approach.meets(circuits) && self.is_approached(occupied)
+    }
 }
 
 /// A point.

@@ -164,7 +164,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             *held = held.reserve(route, occupied, signal::ready(route, *held, view));
             moving = moving.or(held.positions(route).points());
-            circuits = circuits.or(held.circuits(route));
+            circuits = circuits.or(held.circuits(route)).or(held.before_signal(route, occupied));
         }
         circuits = circuits.or(point::detectors(self, moving));
         if !starting {

@@ -43,7 +43,8 @@ pub enum Refusal {
     Occupied,
     /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
     Unswept,
-    /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked.
+    /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked;
+    /// or one of the approach, with a train behind the entry.
     Blocked,
     /// A point must move, and a train stands on it.
     PointUnderTrain,
@@ -86,7 +87,7 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
     sight: Sight<Z>,
 ) -> Option<Refusal> {
     //= spec/interlocking.md#ilk-1-request
-    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied (a berth may be) or blocked, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
+    //# A route MUST be refused if a conflicting route is held, a circuit of its path or overlap is held, occupied (a berth may be) or blocked, a circuit of its approach is blocked while one of it behind the entry is occupied, a segment that it leads to is blocked, a segment has not the direction that it needs, a point is held in the other position, or a point must move under a train or in a blocked circuit.
     let route = &layout.plan().routes[asked];
     if !route.exists() {
         return Some(Refusal::Unknown);
@@ -121,7 +122,11 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
         Some(Refusal::NotCalledFor)
     } else if sight.from_before.is_in_the_way(layout, asked, sight.occupied) || moves.meets(sight.ways.points) {
         Some(Refusal::Unswept)
-    } else if ahead.meets(sight.blocked) || route.to.meets(sight.closed) || moves.meets(shut) {
+    } else if ahead.meets(sight.blocked)
+        || route.is_approached_over(sight.blocked, sight.occupied)
+        || route.to.meets(sight.closed)
+        || moves.meets(shut)
+    {
         Some(Refusal::Blocked)
     } else if !toward.contains(route.from) || !away.contains(route.to) {
         Some(Refusal::Direction)

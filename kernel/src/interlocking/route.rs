@@ -179,9 +179,8 @@ impl RouteState {
     fn counted_on<const P: usize, Z: Size>(&self, route: &Route<P, Z>, occupied: CircuitSet<Z>) -> Rear {
         //= spec/interlocking.md#ilk-21-rear
         //# While a route is set, its rear MUST be the approach, but the entry where every train is cab-signalled and the approach but the entry, since it was last clear, has not been occupied while the entry was clear.
-        let waiting = route.approach.without(route.entry).meets(occupied);
         let granted = self.rear == Rear::Approach || !route.entry.meets(occupied);
-        if route.cab_signalled && !(waiting && granted) { Rear::Entry } else { Rear::Approach }
+        if route.cab_signalled && !(route.is_approached(occupied) && granted) { Rear::Entry } else { Rear::Approach }
     }
 
     /// The rear of the route is swept behind its last train.
@@ -193,7 +192,7 @@ impl RouteState {
         }
         //= spec/interlocking.md#ilk-22-swept
         //# The rear of a route that is not set any more MUST go from the approach to the entry only while the approach but the entry is clear, and be swept only while the entry is clear, or when the release time has passed since the route came into use or was withdrawn.
-        if self.rear == Rear::Approach && !route.approach.without(route.entry).meets(occupied) {
+        if self.rear == Rear::Approach && !route.is_approached(occupied) {
             self.rear = Rear::Entry;
         }
         let clear = self.rear == Rear::Entry && !route.entry.meets(occupied);
@@ -263,6 +262,16 @@ impl RouteState {
         if at_once { Self::IDLE } else { Self { phase: Phase::Releasing, time: Ticks(0), ..self } }
     }
 
+    /// The circuits that a train may still run over on its way to the signal, that counts on it: the approach, while one may be there.
+    #[inline]
+    pub fn before_signal<const P: usize, Z: Size>(
+        &self,
+        route: &Route<P, Z>,
+        occupied: CircuitSet<Z>,
+    ) -> CircuitSet<Z> {
+        route.approach.only_if(self.proved && self.rear == Rear::Approach && route.is_approached(occupied))
+    }
+
     /// Whether it was withdrawn after a train had entered it.
     #[inline]
     pub fn may_resume(&self) -> bool {
@@ -284,7 +293,7 @@ impl RouteState {
             return self;
         }
         //= spec/interlocking.md#ilk-5-reservation
-        //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear (a berth need not be) and unblocked, and failed when that has not come about within the drive time.
+        //# A provisional route MUST become set only when its points are detected in position and its path and overlap are clear (a berth need not be) and unblocked, and no circuit of its approach is blocked while one of it behind the entry is occupied, and failed when that has not come about within the drive time.
         let time = Ticks(self.time.0.saturating_add(1));
         if ready {
             Self { phase: Phase::Set, proved: true, time: Ticks(0), rear: self.counted_on(route, occupied), ..self }

@@ -54,7 +54,7 @@ impl<Z: Size> Grant<Z> {
 #[inline]
 pub fn shows_proceed<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     //= spec/interlocking.md#ilk-7-aspect
-    //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear (a berth need not be) and unblocked, and no circuit of a segment that it leads to is blocked.
+    //# A signal MUST show proceed only while its route is set, every point that the route holds is detected in position, locked and undriven, path and overlap are clear (a berth need not be) and unblocked, no circuit of its approach is blocked while one of it behind the entry is occupied, and no circuit of a segment that it leads to is blocked.
     state.phase == Phase::Set && ready(route, state, view)
 }
 
@@ -65,6 +65,7 @@ pub fn ready<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, vi
     let clear = if route.calling_on { state.path(route).circuits } else { circuits };
     !clear.meets(view.occupied)
         && !circuits.meets(view.blocked)
+        && !route.is_approached_over(view.blocked, view.occupied)
         && !route.to.meets(view.closed)
         && state.positions(route).missing_in(view.firm).is_empty()
 }

@@ -58,7 +58,7 @@ impl<Z: Size> Works<Z> {
     #[must_use]
     pub fn confirm(mut self, held: CircuitSet<Z>, occupied: CircuitSet<Z>) -> Self {
         //= spec/interlocking.md#ilk-16-protection
-        //# A block MUST be confirmed as protection only when its circuit is neither held by a route nor occupied, no held route needs a point in it, every point in it counts as detected, and, on plain line, nobody may be on the way to it: the segment and its throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time.
+        //# A block MUST be confirmed as protection only when its circuit is neither held by a route nor occupied, nobody may be on the way over it to a signal, no held route needs a point in it, every point in it counts as detected, and, on plain line, nobody may be on the way to it: the segment and its throat are clear, no route out is held, and before this cycle the neighbour has not been permitted to send for the turn time.
         self.confirmed = self.confirmed.or(self.blocked.without(held.or(occupied)));
         self
     }

@@ -4,7 +4,7 @@
 //! The train is that of T-ILK-10 ([`super::train`]), with all that may happen around it.
 
 use super::any::{any_circuits, any_settling, bit};
-use super::scene::{BOUND, BUILT_IN, Beside, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
+use super::scene::{APPROACH, BOUND, BUILT_IN, Beside, ENTRY, FIRST, ROUTES, Scene, Train, UNDER_KANI, any_scene};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{CircuitSet, Element, PointSet, Positions, Settling};
@@ -50,6 +50,15 @@ pub(super) fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, tra
         circuits: CircuitSet::from_bits(circuits),
         positions: Positions { normal: PointSet::from_bits(normal), reverse: PointSet::from_bits(reverse) },
     }
+}
+
+/// What a train that counts on the signal may still run over before it is there. The approach has no order: all of it, while the front is in it.
+fn before_signal<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train) -> CircuitSet {
+    let ground = &scene.ground;
+    let on_approach = train.is_live() && train.front == APPROACH;
+    // The circuit that the front has just entered may not report it yet.
+    let at_entry = train.is_live() && train.front == ENTRY && train.late > 0;
+    ground.approach.only_if(on_approach).or(ground.entry.only_if(on_approach || at_entry))
 }
 
 /// The blades of a point: a ghost of their own. In neither position they are between the two.
@@ -164,11 +173,11 @@ harness! {
 }
 
 harness! {
-    /// While a train may enter a route or is in it, no circuit of the path that is not behind its tail, and none of the overlap into which it may
-    /// slide, is confirmed to staff; whatever is blocked, falsely occupied or commanded.
+    /// While a train may enter a route or is in it, no circuit of the approach over which it may still run to the signal, no circuit of the path that
+    /// is not behind its tail, and none of the overlap into which it may slide, is confirmed to staff; whatever is blocked, falsely occupied or commanded.
     t_ilk_train_worker(e)
     theorem "T-ILK-8";
-    requirements ["ILK-7", "ILK-15", "ILK-16", "ATC-1"];
+    requirements ["ILK-5", "ILK-7", "ILK-15", "ILK-16", "ATC-1"];
     assumptions [
         "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
         "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
@@ -186,15 +195,17 @@ harness! {
         Blocked: "the circuit ahead of a train in the path is blocked, and not confirmed",
         Behind: "a circuit behind the tail of a train that is still in the path is confirmed",
         Runs: "a circuit is blocked in front of a train that runs on without authority",
+        Before: "the entry is blocked in front of a train on the approach, and not confirmed",
     }
     {
         let beside = |e: &mut E, _: &mut _| Beside { confirmed: any_circuits(e, "confirmed (bits)", 0..=0), ..Beside::NOTHING };
         let Some(scene) = any_scene::<E, ROUTES, 0, 0>(e, beside) else { return };
         let (device, end) = &scene.devices;
         let confirmed = device.works.confirmed;
-        let before = !confirmed.meets(needed(&scene, &scene.earlier).circuits) && device.works.is_valid();
+        let reaches = |train: &Train| needed(&scene, train).circuits.or(before_signal(&scene, train));
+        let before = !confirmed.meets(reaches(&scene.earlier)) && device.works.is_valid();
         e.assume(before);
-        let ahead = needed(&scene, &scene.informed).circuits;
+        let ahead = reaches(&scene.informed);
         e.claim(Claim::Apart as u32, !scene.output.confirmed.meets(ahead));
         e.claim(Claim::Kept as u32, !end.works.confirmed.meets(ahead));
         let inside = scene.informed.front >= FIRST && scene.informed.front <= scene.ground.last;
@@ -203,5 +214,7 @@ harness! {
         e.cover(Cover::Behind as u32, inside && scene.output.confirmed.meets(scene.ground.at(FIRST)));
         let runs = !scene.informed.authority && scene.informed.is_live() && scene.informed.run > 1;
         e.cover(Cover::Runs as u32, runs && blocked.meets(scene.ground.at(FIRST)));
+        let waits = scene.informed.is_live() && scene.informed.front == APPROACH;
+        e.cover(Cover::Before as u32, waits && blocked.meets(scene.ground.entry) && !scene.input.occupied.meets(scene.ground.entry));
     }
 }

@@ -96,7 +96,7 @@ harness! {
         Continuing: "a circuit is in the path of one and the overlap of the other only where the first continues the second, or has nothing left but its last circuit, with its overlap given up, and the second is a calling-on route that is asked for",
         Points: "no point is needed in normal position by one and in reverse by the other",
         Conflicts: "neither is declared to conflict with the other while both are held, and if they start from one circuit they lead the same way",
-        Clear: "no circuit of path or overlap is occupied or blocked, and no segment that the route leads to is blocked; but the berth of a calling-on route is occupied, and its entry",
+        Clear: "no circuit of path or overlap is occupied or blocked, no segment that the route leads to is blocked, and no circuit of the approach with a train behind the entry; but the berth of a calling-on route is occupied, and its entry",
         Direction: "every segment that the route needs has the direction that it needs",
         Moves: "a point that is not detected in position has no train on it, and is in no blocked circuit",
     }
@@ -132,7 +132,9 @@ harness! {
         let route = &routes[asked];
         let mine = (held(route, RouteState::RESERVED), kept(route, RouteState::RESERVED));
         let ahead = (mine.0.circuits.bits() | mine.1.circuits.bits()) & circuit;
-        let blocked = ahead & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0;
+        let behind = route.approach.bits() & !route.entry.bits() & sight.occupied.bits() != 0;
+        let cut_off = behind && route.approach.bits() & sight.blocked.bits() != 0;
+        let blocked = ahead & sight.blocked.bits() != 0 || route.to.bits() & sight.closed.bits() != 0 || cut_off;
         let clear = if route.calling_on { mine.0.circuits.bits() & circuit } else { ahead };
         let called = route.entry.bits() & sight.occupied.bits() != 0 && mine.1.circuits.bits() & sight.occupied.bits() != 0;
         let may = clear & sight.occupied.bits() == 0 && !blocked && (called || !route.calling_on);

@@ -48,7 +48,7 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Set: "proceed is shown only for a set route: no train has entered it",
-        Clear: "no circuit of path or overlap is occupied, but one of a berth, or blocked, and no segment that the route leads to is blocked",
+        Clear: "no circuit of path or overlap is occupied, but one of a berth, or blocked, no segment that the route leads to is blocked, and no circuit of the approach with a train behind the entry",
         Points: "every point of path, flank and overlap is detected in the position that it is needed in, and undriven",
         Shown: "and if all this is so, proceed is shown",
     }
@@ -66,7 +66,9 @@ harness! {
         let set = state.phase == Phase::Set && state.head == 0 && state.tail == 0 && state.proved;
         let clear = if route.calling_on { mine.0.circuits.bits() } else { circuits };
         let unblocked = circuits & view.blocked.bits() == 0 && route.to.bits() & view.closed.bits() == 0;
-        let clear = clear & view.occupied.bits() == 0 && unblocked;
+        let behind = route.approach.bits() & !route.entry.bits() & view.occupied.bits() != 0;
+        let cut_off = behind && route.approach.bits() & view.blocked.bits() != 0;
+        let clear = clear & view.occupied.bits() == 0 && unblocked && !cut_off;
         let points = normal & !view.firm.normal.bits() == 0 && reverse & !view.firm.reverse.bits() == 0;
         e.claim(Claim::Set as u32, !proceed || set);
         e.claim(Claim::Clear as u32, !proceed || clear);

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{Position, Refusal, Travel};
-use atc_tests::sketch::{Need, Sketch};
+use atc_tests::sketch::{Need, Sketch, Way};
 
 mod authority;
 mod held;
@@ -115,6 +115,11 @@ pub struct Witness {
 
 fn meets(one: &[usize], other: &Set) -> bool {
     one.iter().any(|item| other.contains(item))
+}
+
+/// Whether somebody may be on the approach who is not at the signal yet.
+fn waits(way: &Way, occupied: &Set) -> bool {
+    way.approach.iter().any(|circuit| *circuit != way.entry && occupied.contains(circuit))
 }
 
 fn common(one: &[usize], other: &[usize]) -> bool {
@@ -290,7 +295,13 @@ impl Witness {
         held.needs(way).iter().all(|need| firm.contains(need))
             && !meets(if way.calling_on { &path } else { &circuits }, occupied)
             && !meets(&circuits, &self.blocked)
+            && !self.is_cut_off(way, occupied)
             && way.to.is_none_or(|segment| !self.closed(sketch, segment) && self.sends.contains(&segment))
+    }
+
+    /// Whether somebody would have to run over a block to come to the signal.
+    fn is_cut_off(&self, way: &Way, occupied: &Set) -> bool {
+        waits(way, occupied) && meets(&way.approach, &self.blocked)
     }
 
     /// Whether a circuit of a segment is blocked.
@@ -312,8 +323,11 @@ impl Witness {
         };
         let line = sketch.segments.iter().position(|line| line.circuits.contains(&circuit));
         let needed = |need: &Need| sketch.points[need.0].contains(&circuit);
-        let of_route =
-            routes().any(|(held, way)| held.circuits(way).contains(&circuit) || held.needs(way).iter().any(needed));
+        let to_signal = |held: &Held, way: &Way| {
+            held.once_set && held.behind == Behind::Approach && waits(way, occupied) && way.approach.contains(&circuit)
+        };
+        let of_route = routes().any(|(held, way)| to_signal(held, way))
+            || routes().any(|(held, way)| held.circuits(way).contains(&circuit) || held.needs(way).iter().any(needed));
         of_route || line.is_some_and(on_line)
     }
 

@@ -20,6 +20,7 @@ struct Asked<Z: Size> {
     continuing: RouteSet<Z>,
     calling_on: bool,
     entry: CircuitSet<Z>,
+    approach: CircuitSet<Z>,
     /// The segment that the route leads to, or that is to be turned.
     out: SegmentSet<Z>,
 }
@@ -70,7 +71,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             },
             Refusal::Blocked => {
                 let moving = self.detectors(asked.positions.missing_in(detected).points());
-                self.circuits_of(all.or(self.line(asked.out)).or(moving).and(self.state().works.blocked))
+                let before = asked.approach.only_if(asked.approach.without(asked.entry).meets(occupied));
+                let needed = all.or(before).or(self.line(asked.out)).or(moving);
+                self.circuits_of(needed.and(self.state().works.blocked))
             }
             Refusal::PointUnderTrain => match request {
                 Request::Drive(point, _) => self.points_of(point.alone()),
@@ -96,6 +99,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             continuing: RouteSet::EMPTY,
             calling_on: false,
             entry: CircuitSet::EMPTY,
+            approach: CircuitSet::EMPTY,
             out: SegmentSet::EMPTY,
         };
         match request {
@@ -112,6 +116,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
                     continuing: route.continuing,
                     calling_on: route.calling_on,
                     entry: route.entry,
+                    approach: route.approach,
                     out: route.to,
                 }
             }

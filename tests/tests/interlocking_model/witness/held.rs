@@ -110,7 +110,7 @@ impl Held {
 
     /// Where trains may be that may still come in: seen while the route is set, and swept after that.
     pub(super) fn look_back(&mut self, way: &Way, occupied: &Set) {
-        let waits = way.approach.iter().any(|circuit| *circuit != way.entry && occupied.contains(circuit));
+        let waits = super::waits(way, occupied);
         let at_signal = occupied.contains(&way.entry);
         match self.stage {
             Stage::InUse(time) | Stage::Releasing(time) => {

@@ -70,6 +70,7 @@ impl Witness {
             (self.unswept.is_in_the_way(sketch, asked, occupied), Refusal::Unswept),
             (needs.iter().any(|need| !seen.contains(need) && self.unswept.needs(need.0)), Refusal::Unswept),
             (meets(&path, &self.blocked) || meets(overlap, &self.blocked), Refusal::Blocked),
+            (self.is_cut_off(way, occupied), Refusal::Blocked),
             (way.to.is_some_and(|segment| self.closed(sketch, segment)), Refusal::Blocked),
             (needs.iter().any(shut), Refusal::Blocked),
             (!has(way.from, Travel::Toward) || !has(way.to, Travel::Away), Refusal::Direction),
