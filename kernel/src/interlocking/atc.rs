@@ -58,20 +58,20 @@ pub fn connect<const R: usize, const P: usize, const N: usize, const S: usize, Z
     //# Where more than one grant begins at a circuit, none of them MUST be used.
     let mut found = 0_u8;
     let mut link = (Grant::NONE, SegmentSet::EMPTY);
-    let mut take = |grant: Grant<Z>, leads: SegmentSet<Z>| {
-        if grant.train == here && !here.is_empty() {
-            found = found.saturating_add(1);
-            link = (grant, leads);
-        }
-    };
+    let nowhere = here.is_empty();
     for (route, grant) in layout.plan().routes.iter().zip(&contents.grants) {
         // Behind a route out there is the line, and no other route.
-        if to.is_empty() {
-            take(*grant, route.to.only_if(grant.complete));
+        if to.is_empty() && grant.train == here && !nowhere {
+            found = found.saturating_add(1);
+            link = (*grant, route.to.only_if(grant.complete));
         }
     }
     for number in 0..S {
-        take(on_line(layout, contents, number, (here, to)), SegmentSet::EMPTY);
+        let ahead = on_line(layout, contents, number, (here, to));
+        if ahead.train == here && !nowhere {
+            found = found.saturating_add(1);
+            link = (ahead, SegmentSet::EMPTY);
+        }
     }
     if found == 1 { link } else { (Grant::NONE, SegmentSet::EMPTY) }
 }
@@ -104,10 +104,10 @@ fn on_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Si
     //= spec/interlocking.md#atc-3-plain-line
     //# On plain line a train MUST be granted only the free and unblocked circuits ahead of it in the direction that the segment has, up to the next that is not.
     let segment = &layout.plan().segments[number];
-    let (toward, away) = (contents.toward.meets(SegmentSet::nth(number)), contents.away.meets(SegmentSet::nth(number)));
+    let (toward, away) = (contents.toward.has_number(number), contents.away.has_number(number));
     //= spec/interlocking.md#atc-13-out-to-the-line
     //# From the throat, plain line MUST be granted only behind a route to that line: one whose grant reaches the throat, or one that the train in the throat has entered in order and whose points there are sound.
-    let throat = segment.throat.only_if(away && to.meets(SegmentSet::nth(number)));
+    let throat = segment.throat.only_if(away && to.has_number(number));
     let begins = segment.all().or(throat).contains(here) && !here.is_empty();
     if !begins || !(toward || away) {
         return Grant::NONE;
@@ -118,7 +118,7 @@ fn on_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Si
     // Outwards, a train comes from the throat or from a circuit of the segment.
     let mut open = !throat.is_empty() && throat == here;
     ahead.complete = open;
-    for (place, circuit) in (0_u8..).zip(&segment.circuits) {
+    for (place, circuit) in (0_u8..).zip(Z::used(&segment.circuits, segment.length)) {
         if away && place < segment.length {
             if *circuit == here {
                 open = true;
@@ -129,8 +129,9 @@ fn on_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Si
         }
     }
     // Inwards, in the other order.
-    for back in 0..P {
-        let place = P - 1 - back;
+    let reach = Z::used(&segment.circuits, segment.length).len();
+    for back in 0..reach {
+        let place = reach - 1 - back;
         let circuit = segment.circuits[place];
         if toward && !away && place < usize::from(segment.length) {
             if circuit == here {
@@ -228,7 +229,7 @@ pub fn silent<const R: usize, const P: usize, const N: usize, const S: usize, Z:
     };
     let mut silent = CircuitSet::EMPTY;
     for (number, segment) in layout.plan().segments.iter().enumerate() {
-        let sent = toward.meets(SegmentSet::nth(number));
+        let sent = toward.has_number(number);
         silent = silent.or(segment.shared_circuits().only_if(!sent));
     }
     silent
@@ -243,7 +244,7 @@ fn stopping_within<const R: usize, const P: usize, const N: usize, const S: usiz
     let plan = layout.plan();
     let mut distance = 0_u32;
     for (number, length) in plan.lengths.iter().enumerate() {
-        if circuits.meets(CircuitSet::nth(number)) {
+        if circuits.has_number(number) {
             distance = distance.saturating_add(u32::from(length.0));
         }
     }

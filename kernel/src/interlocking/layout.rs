@@ -97,7 +97,7 @@ impl<const P: usize, Z: Size> Route<P, Z> {
     #[inline]
     pub fn held_from(&self, first: u8) -> Element<Z> {
         let mut held = Element::default();
-        for (place, element) in (0_u8..).zip(&self.path) {
+        for (place, element) in (0_u8..).zip(Z::used(&self.path, self.length)) {
             if place >= first && place < self.length {
                 held.circuits = held.circuits.or(element.circuits);
                 held.positions = held.positions.or(element.positions);
@@ -110,7 +110,7 @@ impl<const P: usize, Z: Size> Route<P, Z> {
     #[inline]
     pub fn circuit_at(&self, place: u8) -> CircuitSet<Z> {
         let mut circuit = CircuitSet::EMPTY;
-        for (number, element) in (0_u8..).zip(&self.path) {
+        for (number, element) in (0_u8..).zip(Z::used(&self.path, self.length)) {
             if number == place && number < self.length {
                 circuit = element.circuits;
             }
@@ -173,7 +173,7 @@ impl<const P: usize, Z: Size> Segment<P, Z> {
     #[inline]
     pub fn all(&self) -> CircuitSet<Z> {
         let mut all = CircuitSet::EMPTY;
-        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+        for (place, circuit) in (0_u8..).zip(Z::used(&self.circuits, self.length)) {
             if place < self.length {
                 all = all.or(*circuit);
             }
@@ -186,7 +186,7 @@ impl<const P: usize, Z: Size> Segment<P, Z> {
     pub fn shared_circuits(&self) -> CircuitSet<Z> {
         let own = self.length.saturating_sub(self.shared);
         let mut shared = CircuitSet::EMPTY;
-        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+        for (place, circuit) in (0_u8..).zip(Z::used(&self.circuits, self.length)) {
             shared = shared.or(circuit.only_if(place >= own && place < self.length));
         }
         shared
@@ -197,13 +197,14 @@ impl<const P: usize, Z: Size> Segment<P, Z> {
     pub fn joined_to(&self, train: CircuitSet<Z>, occupied: CircuitSet<Z>) -> CircuitSet<Z> {
         let mut joined = train;
         let mut before = self.throat;
-        for (place, circuit) in (0_u8..).zip(&self.circuits) {
+        for (place, circuit) in (0_u8..).zip(Z::used(&self.circuits, self.length)) {
             let follows = place < self.length && before.meets(joined);
             joined = joined.or(circuit.and(occupied).only_if(follows));
             before = *circuit;
         }
-        for back in 1..=P {
-            let place = P - back;
+        let reach = Z::used(&self.circuits, self.length).len();
+        for back in 1..=reach {
+            let place = reach - back;
             let outer = self.circuits[place].only_if(place < usize::from(self.length));
             let inner = if place == 0 { self.throat } else { self.circuits[place - 1] };
             joined = joined.or(inner.and(occupied).only_if(outer.meets(joined)));

@@ -162,7 +162,8 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         // Their strokes may begin, or go on.
         let mut moving = PointSet::ALL.without(firm.points());
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
-            *held = held.reserve(route, occupied, signal::ready(route, *held, view));
+            let ready = held.phase == Phase::Provisional && signal::ready(route, *held, view);
+            *held = held.reserve(route, occupied, ready);
             moving = moving.or(held.positions(route).points());
             circuits = circuits.or(held.circuits(route)).or(held.before_signal(route, occupied));
         }
@@ -254,7 +255,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         let silent = silent(self, contents.as_ref());
         let begins = contents.as_ref().map_or(CircuitSet::EMPTY, |contents| begins(self, contents));
         PerCircuit::from_fn(|number| {
-            let circuit = CircuitSet::<Z>::nth(number).first().unwrap_or(CircuitId::ZERO);
+            let circuit = CircuitId::new(short(number)).unwrap_or(CircuitId::ZERO);
             (!silent.has(circuit)).then(|| telegram(self, contents.as_ref(), begins, circuit))
         })
     }

@@ -95,13 +95,19 @@ macro_rules! numbered {
             /// Whether it is in the set.
             #[inline]
             pub fn has(self, id: $id) -> bool {
-                self.meets(id.alone())
+                self.has_number(usize::from(id.number()))
+            }
+
+            #[doc = concat!("Whether ", $thing, " `number` is in the set.")]
+            #[inline]
+            pub fn has_number(self, number: usize) -> bool {
+                self.0.has(number)
             }
 
             /// Whether the two have something in common.
             #[inline]
             pub fn meets(self, other: Self) -> bool {
-                !self.and(other).is_empty()
+                self.0.meets(other.0)
             }
 
             /// Whether all of `other` is in this set.
@@ -135,7 +141,7 @@ macro_rules! numbered {
             #[inline]
             #[must_use]
             pub fn only_if(self, wanted: bool) -> Self {
-                if wanted { self } else { Self::EMPTY }
+                Self(self.0.only_if(wanted))
             }
 
             /// The lowest number of the set; `None` if it is empty.

@@ -75,17 +75,22 @@ pub fn ready<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, vi
 pub fn grant<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> Grant<Z> {
     //= spec/interlocking.md#atc-1-grant
     //# A route MUST grant its path to the train at its entry circuit while its signal shows proceed, and after that the sound circuits beyond the last occupied one to the train there, if it has entered that one in order and its points are sound too; and nothing otherwise.
+    granted(route, state, view, shows_proceed(route, state, view))
+}
+
+/// What a route grants whose signal shows proceed, or not.
+#[inline]
+fn granted<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>, proceed: bool) -> Grant<Z> {
     if !state.is_held() {
         return Grant::NONE;
     }
-    let proceed = shows_proceed(route, state, view);
     let entered = state.phase == Phase::InUse && state.head > 0;
     let mut train = route.entry.only_if(proceed);
     let mut circuits = CircuitSet::EMPTY;
     let mut last = CircuitSet::EMPTY;
     // Whether every circuit since the train's front is sound.
     let mut open = proceed;
-    for (place, element) in (0_u8..).zip(&route.path) {
+    for (place, element) in (0_u8..).zip(Z::used(&route.path, route.length)) {
         if place < route.length && place >= state.tail {
             let sound = element.positions.missing_in(view.firm).is_empty();
             if entered && element.circuits.meets(view.occupied) {
@@ -118,8 +123,9 @@ pub(super) fn all<const R: usize, const P: usize, const N: usize, const S: usize
     let mut proceed = RouteSet::EMPTY;
     let mut grants = [Grant::NONE; R];
     for (number, (route, state)) in layout.plan().routes.iter().zip(routes).enumerate() {
-        proceed = proceed.or(RouteSet::nth(number).only_if(shows_proceed(route, *state, view)));
-        grants[number] = grant(route, *state, view);
+        let shows = shows_proceed(route, *state, view);
+        proceed = proceed.or(RouteSet::nth(number).only_if(shows));
+        grants[number] = granted(route, *state, view, shows);
     }
     (proceed, grants)
 }

@@ -36,6 +36,16 @@ pub trait Bits: Plain {
     /// The bits that `other` has not.
     #[must_use]
     fn without(self, other: Self) -> Self;
+    /// These bits if `wanted`, else none.
+    #[must_use]
+    fn only_if(self, wanted: bool) -> Self;
+    /// Whether a bit is set in both.
+    fn meets(self, other: Self) -> bool;
+    /// Whether the bit of this number is set; not if there is none of that number.
+    #[inline]
+    fn has(self, number: usize) -> bool {
+        self.meets(Self::nth(number))
+    }
     /// Whether exactly one bit is set.
     fn is_one(self) -> bool;
     /// The lowest number of a bit that is set.
@@ -69,6 +79,16 @@ macro_rules! word {
             #[inline]
             fn without(self, other: Self) -> Self {
                 self & !other
+            }
+
+            #[inline]
+            fn only_if(self, wanted: bool) -> Self {
+                if wanted { self } else { 0 }
+            }
+
+            #[inline]
+            fn meets(self, other: Self) -> bool {
+                self & other != 0
             }
 
             #[inline]
@@ -123,6 +143,25 @@ impl<B: Bits> Bits for [B; WORDS] {
     #[inline]
     fn without(self, other: Self) -> Self {
         core::array::from_fn(|word| self[word].without(other[word]))
+    }
+
+    #[inline]
+    fn only_if(self, wanted: bool) -> Self {
+        core::array::from_fn(|word| self[word].only_if(wanted))
+    }
+
+    #[inline]
+    fn meets(self, other: Self) -> bool {
+        let mut meets = false;
+        for (word, its) in self.iter().zip(other) {
+            meets |= word.meets(its);
+        }
+        meets
+    }
+
+    #[inline]
+    fn has(self, number: usize) -> bool {
+        self.get(number / B::WIDTH).is_some_and(|word| word.has(number % B::WIDTH))
     }
 
     #[inline]
@@ -226,6 +265,14 @@ pub trait Size: Default + Plain + sealed::Sealed {
     type PerCircuit<T: Value>: Values<T>;
     /// A value for each point.
     type PerPoint<T: Value>: Values<T>;
+
+    /// The places of a list that are to be looked at, if the first `length` are in use: these at least, in their order. A large station has many
+    /// lists with room for more than they hold; a small one looks at all, so that a prover knows how many there are.
+    fn used<T>(places: &[T], length: u8) -> &[T];
+
+    /// Whether what is repeated up to some number of times ends as soon as it changes nothing any more. A small station goes on, so that a prover knows
+    /// how often.
+    const RESTS: bool;
 }
 
 /// A station of up to 64 circuits, 64 routes, 32 points and 8 segments.
@@ -238,6 +285,13 @@ impl Size for Small {
     type Narrow = u8;
     type PerCircuit<T: Value> = [T; 64];
     type PerPoint<T: Value> = [T; 32];
+
+    #[inline]
+    fn used<T>(places: &[T], _: u8) -> &[T] {
+        places
+    }
+
+    const RESTS: bool = false;
 }
 
 /// A station of up to 256 circuits, 256 routes, 128 points and 32 segments.
@@ -250,4 +304,13 @@ impl Size for Large {
     type Narrow = [u8; WORDS];
     type PerCircuit<T: Value> = [T; 256];
     type PerPoint<T: Value> = [T; 128];
+
+    #[inline]
+    fn used<T>(places: &[T], length: u8) -> &[T] {
+        //= spec/interlocking.md#lay-4-places-in-use
+        //# Of a list of places all those in use MUST be looked at, in their order.
+        places.get(..usize::from(length)).unwrap_or(places)
+    }
+
+    const RESTS: bool = true;
 }

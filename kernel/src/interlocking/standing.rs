@@ -82,6 +82,9 @@ impl<const R: usize, Z: Size> Standing<R, Z> {
             for segment in &layout.plan().segments {
                 longer = longer.or(segment.joined_to(longer, occupied));
             }
+            if Z::RESTS && longer == train {
+                break;
+            }
         }
         if longer != train || train.meets(self.loose) { occupied.or(train) } else { train }
     }

@@ -83,7 +83,7 @@ impl<Z: Size> Unswept<Z> {
         let mut seen = false;
         let mut kept = Kept::default();
         let mut end = Element::default();
-        for (place, element) in (0_u8..).zip(&route.path) {
+        for (place, element) in (0_u8..).zip(Z::used(&route.path, route.length)) {
             if place < route.length {
                 let unswept = self.circuits.contains(element.circuits);
                 // Whoever is before a place that is swept is none of these trains.
@@ -134,7 +134,7 @@ impl<Z: Size> Unswept<Z> {
             let it = RouteSet::nth(number);
             let kept = self.kept_by(other, it, occupied).held.circuits;
             let (mut own, mut shares) = (false, false);
-            for (place, element) in (0_u8..).zip(&other.path) {
+            for (place, element) in (0_u8..).zip(Z::used(&other.path, other.length)) {
                 if place < other.length {
                     let meets = needed.meets(element.circuits);
                     in_the_way |= meets && !own && kept.meets(element.circuits);

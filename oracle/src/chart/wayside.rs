@@ -36,10 +36,10 @@ fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
             (Tone::Emergency, "refused, fault, restart"),
             (Tone::Code, "what trains are told"),
         ],
-        ..Scene::of(Ground::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
+        ..Scene::of(<Ground>::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
     };
     // A trace is laid out only after the kernel has taken its configuration and every step.
-    let Ok(mut machine) = Ground::open(config) else { return scene };
+    let Ok(mut machine) = <Ground>::open(config) else { return scene };
     scene.unit.per_cycle = machine.station().cycle_ms();
     let mut moments = Vec::with_capacity(cycles.len());
     for cycle in cycles {

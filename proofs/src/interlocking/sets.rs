@@ -1,8 +1,9 @@
 //! Sets of large stations (T-LAY-3): the code of the kernel is the same for both sizes, but for the bits of a set. Here is what that
 //! code counts on, of every operation, for one number that stands for all.
 
+use crate::engine::any_byte;
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Large, PointId, PointSet, SegmentId, SegmentSet, SpeedLimits,
+    CircuitId, CircuitSet, Contents, Epoch, Grant, Large, PointId, PointSet, SegmentId, SegmentSet, Size, SpeedLimits,
     Standing, Table,
 };
 
@@ -34,13 +35,15 @@ macro_rules! laws {
         let both = has!(one.and(other), number, $width) == (in_one && in_other);
         let either = has!(one.or(other), number, $width) == (in_one || in_other);
         let left = has!(one.without(other), number, $width) == (in_one && !in_other);
-        $e.claim(Claim::Parts as u32, !there || both && either && left);
         let second = $e.word("another number", 0..=($width * 4)) & 1023;
+        let wanted = second & 1 == 1;
+        let kept = has!(one.only_if(wanted), number, $width) == (in_one && wanted);
+        $e.claim(Claim::Parts as u32, !there || both && either && left && kept);
         let alone = $set::<Large>::nth(usize::from(second));
         let same = there && second == number;
         $e.claim(Claim::Alone as u32, !there || has!(alone, number, $width) == same);
         let its = $id::new((number & 255).to_le_bytes()[0]).is_some_and(|id| one.has(id));
-        $e.claim(Claim::Has as u32, !there || its == in_one);
+        $e.claim(Claim::Has as u32, (!there || its == in_one) && one.has_number(usize::from(number)) == in_one);
         let meets = one.meets(other);
         let first = one.first().map(|id| u16::from(id.number()));
         let in_first = first.is_some_and(|first| has!(one, first, $width));
@@ -85,9 +88,9 @@ harness! {
     cases 3;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
-        Parts: "a number is in both, in either, or in the one and not the other, exactly if it is",
+        Parts: "a number is in both, in either, in the one and not the other, or in one that is wanted, exactly if it is",
         Alone: "the set of one number has that number and no other; of a number that there is no room for, none",
-        Has: "a thing is in a set exactly if its number is",
+        Has: "a thing is in a set exactly if its number is, and none of a number that there is no room for",
         First: "the first number is in the set, none that is in it is lower, and there is one unless the set is empty",
         Meets: "two sets meet exactly if a number is in both",
         Contains: "one contains the other exactly if no number of the other is missing",
@@ -104,6 +107,39 @@ harness! {
             1 => laws!(e, PointSet, PointId, middle, 32),
             _ => laws!(e, SegmentSet, SegmentId, short, 8),
         }
+    }
+}
+
+harness! {
+    /// Of the places of a list a large station looks at those in use, each in its own place; whatever the number in use is said to be.
+    t_lay_3_used(e)
+    theorem "T-LAY-3";
+    requirements ["LAY-4"];
+    assumptions [];
+    bound "lists with room for 32 places";
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        All: "each place in use is looked at, in its place, and has what it has there",
+        None: "no place that is not in use is looked at, where so many places are there at all",
+    }
+    covers {
+        Full: "all places are in use",
+        More: "more places are said to be in use than there are",
+        Empty: "none is",
+    }
+    {
+        let places: [u8; 32] = core::array::from_fn(|place| place.to_le_bytes()[0]);
+        let length = any_byte(e, "the number of places in use", 0..=33);
+        let used = Large::used(&places, length);
+        let it = any_byte(e, "a place that stands for all", 0..=32);
+        let found = used.get(usize::from(it));
+        let there = it < 32 && it < length;
+        e.claim(Claim::All as u32, !there || found == Some(&it));
+        e.claim(Claim::None as u32, length > 32 || it < length || found.is_none());
+        e.cover(Cover::Full as u32, length == 32 && found.is_some());
+        e.cover(Cover::More as u32, length > 32 && found.is_some());
+        e.cover(Cover::Empty as u32, used.is_empty());
     }
 }
 

@@ -7,6 +7,7 @@ pub mod interlocking;
 pub mod pattern;
 pub mod permitted;
 pub mod position;
+pub mod sizes;
 pub mod supervision;
 pub mod telegram;
 pub mod train;
@@ -81,7 +82,7 @@ pub const KINDS: &[Kind] = &[
     kind::<position::Positioned>(),
     kind::<interlocking::Sizes>(),
     kind::<train::OnBoard>(),
-    kind::<wayside::Ground>(),
+    kind::<wayside::Sizes>(),
 ];
 
 /// The machine of that name.

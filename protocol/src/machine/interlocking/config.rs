@@ -11,6 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::opened::{Opened, Said};
 use super::plan::PlanConfig;
+use crate::machine::sizes::Stationed;
 
 /// A layout: the tables and fields of a layout file, as a JSON object; or a plan in the kernel's own terms.
 #[derive(Clone, Debug)]
@@ -21,15 +22,16 @@ pub enum Config {
     Plan(Box<PlanConfig>),
 }
 
-impl Config {
-    /// Whether a small station has no room for it.
-    pub(super) fn is_large(&self) -> bool {
+impl Stationed for Config {
+    fn is_large(&self) -> bool {
         match self {
             Self::Layout(description) => Extent::of(&description.station).is_large(),
             Self::Plan(plan) => plan.extent().is_large(),
         }
     }
+}
 
+impl Config {
     /// The layout in the kernel's form, with its names.
     ///
     /// # Errors

@@ -6,14 +6,13 @@ mod forms;
 mod opened;
 mod part;
 mod plan;
-mod sizes;
 mod words;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{
-    self as kernel, CircuitSet, Combined, Layout, Memory, PointId, PointSet, Positions, RouteId, SegmentId, SegmentSet,
-    Size, Small, SpeedCode,
+    self as kernel, CircuitSet, Combined, Large, Layout, Memory, PointId, PointSet, Positions, RouteId, SegmentId,
+    SegmentSet, Size, Small, SpeedCode,
 };
 use atc_layout::Names;
 
@@ -23,11 +22,11 @@ use plan::PlanConfig;
 pub use config::Config;
 pub use forms::{Accepted, Answer, ByName, Orders, Output, Refused, Request, Step, Telegram};
 pub use opened::{Found, Said};
-pub use sizes::Sizes;
 pub use words::{Heading, Phase, Reason, Side, Travel};
 
 use super::contract::Machine;
 use crate::decimal::shorten;
+use crate::machine::sizes;
 
 /// The state of the kernel's machine, with room for every station.
 pub type State = kernel::State<64, 8>;
@@ -48,6 +47,12 @@ pub struct Interlocked<
     said: Option<Said>,
     memory: Box<Memory<R, S, Z>>,
 }
+
+/// The interlocking of a station of either size.
+pub type Sizes = sizes::Sizes<
+    Interlocked,
+    Interlocked<{ sizes::ROUTES }, { sizes::PLACES }, { sizes::POINTS }, { sizes::SEGMENTS }, Large>,
+>;
 
 /// Where the name stands in the list.
 fn place(names: &[String], name: &str, field: &str, kind: &str) -> Result<u8, String> {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use atc_kernel::aspect::{AspectId, AspectTable};
 use atc_kernel::block::{self as kernel, Block, LineError};
-use atc_kernel::interlocking::{CircuitId, MAX_CODES, PerCircuit, SpeedCode};
+use atc_kernel::interlocking::{CircuitId, MAX_CODES, PerCircuit, Size, SpeedCode};
 use atc_kernel::speed::KmhTenths;
 use atc_kernel::telegram::SectionId;
 use atc_kernel::time::{Cycle as Clock, Millis, Ticks};
@@ -18,6 +18,7 @@ use atc_line::refusal::{Refusal, fit, gradient, metres};
 use crate::kmh::Kmh;
 use crate::machine::block;
 use crate::machine::interlocking::{self, Found, Interlocked, Travel};
+use crate::machine::sizes::Stationed;
 use crate::machine::train::Codes;
 use crate::names::{self, Named};
 
@@ -143,11 +144,11 @@ pub struct FacingSignals {
 }
 
 /// What a device is made of, checked part by part.
-pub(super) struct Parts {
+pub(super) struct Parts<Z: Size> {
     pub(super) blocks: Vec<Block>,
     /// The blocks' circuits, from the low end.
     circuits: Vec<[Option<CircuitId>; 16]>,
-    pub(super) signals: SignalPlan,
+    pub(super) signals: SignalPlan<Z>,
     pub(super) life: Ticks,
     pub(super) session: Session,
 }
@@ -157,12 +158,21 @@ pub(super) fn session(field: &str, number: u32) -> Result<Session, Refusal> {
     fit(field, number, "0 to 65535").map(Session)
 }
 
+impl Stationed for Config {
+    fn is_large(&self) -> bool {
+        self.layout.is_large()
+    }
+}
+
 impl Config {
     /// The parts.
     ///
     /// # Errors
     /// The first that breaks a rule of its own, in a sentence.
-    pub(super) fn parts(&self, station: &Interlocked) -> Result<Parts, String> {
+    pub(super) fn parts<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        &self,
+        station: &Interlocked<R, P, N, S, Z>,
+    ) -> Result<Parts<Z>, String> {
         let cycle = Millis(station.cycle_ms());
         let (mut blocks, mut circuits) = (Vec::new(), Vec::new());
         for (number, block) in self.counted.iter().flat_map(|counted| &counted.blocks).enumerate() {
@@ -204,11 +214,11 @@ impl Config {
     ///
     /// # Errors
     /// What the layout does not have, in a sentence.
-    pub(super) fn equipment<const B: usize>(
+    pub(super) fn equipment<const B: usize, const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
         &self,
-        station: &Interlocked,
-        parts: &Parts,
-    ) -> Result<Equipment<B>, String> {
+        station: &Interlocked<R, P, N, S, Z>,
+        parts: &Parts<Z>,
+    ) -> Result<Equipment<B, Z>, String> {
         let mut counted = None;
         if let Some(line) = &self.counted {
             let few = || format!("counted.blocks has {} blocks; a line has 1 to 8", parts.blocks.len());
@@ -228,7 +238,11 @@ impl Config {
     }
 
     /// Which rule the parts break together.
-    pub(super) fn explain(&self, station: &Interlocked, error: WaysideError) -> String {
+    pub(super) fn explain<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        &self,
+        station: &Interlocked<R, P, N, S, Z>,
+        error: WaysideError,
+    ) -> String {
         let circuit =
             |id: CircuitId| station.names().circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
         let speed = |code: SpeedCode| station.speeds_kmh().get(usize::from(code.0)).copied().unwrap_or(0);
@@ -337,7 +351,10 @@ fn explain_line(error: LineError) -> String {
 }
 
 impl Signals {
-    fn plan(&self, station: &Interlocked) -> Result<SignalPlan, String> {
+    fn plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+        &self,
+        station: &Interlocked<R, P, N, S, Z>,
+    ) -> Result<SignalPlan<Z>, String> {
         let mut ranks = Vec::new();
         for (place, speed) in self.speeds_km_h.iter().enumerate() {
             ranks.push(tenths(&format!("signals.speeds_km_h[{place}]"), *speed)?);

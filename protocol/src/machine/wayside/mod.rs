@@ -11,31 +11,36 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::block::Block;
 use atc_kernel::code::{Code, CodeFrequencies};
-use atc_kernel::interlocking::{CircuitSet, SegmentSet};
+use atc_kernel::interlocking::{CircuitSet, Large, Size, Small};
 use atc_kernel::telegram::{self, Frame, decode};
 use atc_kernel::wayside as kernel;
 
 use super::contract::Machine;
 use super::interlocking::{self, Interlocked};
+use super::sizes;
 use crate::decimal::Hertz;
 use device::{Device, Done, Read, device};
 
-/// The machine with its state.
-pub struct Ground {
+/// The machine with its state, on a layout of one size.
+pub struct Ground<const R: usize = 64, const P: usize = 16, const N: usize = 32, const S: usize = 8, Z: Size = Small> {
     /// The layout, and what interlocking and ATC remember.
-    station: Interlocked,
+    station: Interlocked<R, P, N, S, Z>,
     blocks: Vec<Block>,
     codes: (CodeFrequencies, CodeFrequencies),
-    device: Box<dyn Device>,
+    device: Box<dyn Device<R, P, N, S, Z>>,
 }
 
-impl Ground {
+/// The ground's device of a station of either size.
+pub type Sizes =
+    sizes::Sizes<Ground, Ground<{ sizes::ROUTES }, { sizes::PLACES }, { sizes::POINTS }, { sizes::SEGMENTS }, Large>>;
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Ground<R, P, N, S, Z> {
     /// The layout, its names, and what interlocking and ATC remember.
-    pub fn station(&self) -> &Interlocked {
+    pub fn station(&self) -> &Interlocked<R, P, N, S, Z> {
         &self.station
     }
 
-    fn read(&self, step: &Step) -> Result<Read, String> {
+    fn read(&self, step: &Step) -> Result<Read<S, Z>, String> {
         // Read as the interlocking reads it, which has the sentences.
         let told = self.station.input(&interlocking::Step {
             occupied: step.occupied.clone(),
@@ -52,7 +57,7 @@ impl Ground {
         for (number, (detection, block)) in step.blocks.iter().zip(&self.blocks).enumerate() {
             blocks.push(detection.kernel(&format!("blocks[{number}]"), *block)?);
         }
-        let mut messages = [None; 8];
+        let mut messages = [None; S];
         for (name, message) in &step.messages.0 {
             let number = usize::from(self.station.segment(name, "messages")?.number());
             if let Some(place) = messages.get_mut(number) {
@@ -88,7 +93,7 @@ impl Ground {
         Some(Feed { main: main.into(), sub: sub.into(), main_hz, sub_hz })
     }
 
-    fn output(&self, done: &Done, all_telegrams: bool) -> Result<Output, String> {
+    fn output(&self, done: &Done<R, S, Z>, all_telegrams: bool) -> Result<Output, String> {
         let names = self.station.names();
         let (mut transmissions, mut silent) = (BTreeMap::new(), BTreeSet::new());
         for (name, sent) in names.circuits.iter().zip(done.transmissions.iter()) {
@@ -129,13 +134,13 @@ impl Ground {
     pub fn told(&mut self, step: &Step) -> Result<(Output, BTreeSet<String>, BTreeSet<String>), String> {
         let done = self.run(step)?;
         let consent = self.station.names().segments.iter().enumerate();
-        let consent = consent.filter(|(number, _)| done.told.consent.meets(SegmentSet::nth(*number)));
+        let consent = consent.filter(|(number, _)| done.told.consent.has_number(*number));
         let consent = consent.map(|(_, name)| name.clone()).collect();
         let occupied = self.station.circuits_of(done.told.occupied);
         Ok((self.output(&done, step.all_telegrams)?, occupied, consent))
     }
 
-    fn run(&mut self, step: &Step) -> Result<Done, String> {
+    fn run(&mut self, step: &Step) -> Result<Done<R, S, Z>, String> {
         let read = self.read(step)?;
         let restart = step.restart.map(|number| config::session("restart", number)).transpose()?;
         let layout = self.station.layout();
@@ -155,7 +160,7 @@ macro_rules! with_blocks {
     ($config:ident, $station:ident, $parts:ident: $($number:literal)*) => {
         match $parts.blocks.len() {
             $($number => {
-                let equipment = $config.equipment::<$number>(&$station, &$parts)?;
+                let equipment = $config.equipment::<$number, R, P, N, S, Z>(&$station, &$parts)?;
                 device($station.layout(), equipment).map_err(|error| $config.explain(&$station, error))
             })*
             many => Err(format!("counted.blocks has {many} blocks; a line has 1 to 8")),
@@ -163,7 +168,7 @@ macro_rules! with_blocks {
     };
 }
 
-impl Machine for Ground {
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Machine for Ground<R, P, N, S, Z> {
     const NAME: &'static str = "wayside";
     const STEP: &'static str = r#"{"occupied":["1T"],"detected":{"P1":"normal"},"blocks":[{"low_check":false,"high_check":false,"present":[0],"reset":null}],"request":{"set":"W-1"},"messages":{"West":{"permission":"granted","sent":{"session":1,"cycle":9},"echo":{"session":0,"cycle":8}}}}"#;
     const CONFIG: &'static str = r#"{"layout":{…},"counted":{"segment":"West","travel":"toward","direction":"up","train_m":200,"blocks":[{"circuits":["W2","W1"],"max_trains":1,"tail_hold_sections":1}]},"signals":{"speeds_km_h":[0,45],"codes":{"pairs":[…]},"circuits":{"1T":{…}}},"life_ms":1000,"session":1}, with a layout of `interlocking`"#;

@@ -4,6 +4,7 @@
 use std::sync::LazyLock;
 
 use atc_oracle::chart::{self};
+use atc_oracle::conform::walk::{Sizes, case};
 use atc_oracle::trace::{Replies, Trace};
 use atc_tests::device;
 use atc_tests::drawing::{self, titles};
@@ -471,4 +472,51 @@ fn a_start_has_a_number() {
     config.as_object_mut().expect("an object").remove("session");
     let said = converse(&[&start("wayside", &config.to_string())]);
     assert!(said[0].contains("missing field `session`"), "{}", said[0]);
+}
+
+/// An output without the names that only the larger station has. A list of silent circuits that is empty is not written.
+fn without_more(mut output: Value) -> Value {
+    let said = output["output"].as_object_mut().expect("an object");
+    for list in ["silent", "confirmed"] {
+        let its = said.get_mut(list).and_then(Value::as_array_mut).unwrap_or_else(|| panic!("{list}"));
+        its.retain(|name| !name.as_str().is_some_and(|name| name.starts_with("more ")));
+    }
+    said.retain(|list, its| list != "silent" || *its != json!([]));
+    output
+}
+
+/// A station of more circuits than a small one has room for, the others with nothing on them, does what the small one does: its counted line,
+/// its telegrams and its neighbours, over walks at random.
+#[test]
+fn a_large_station_does_what_a_small_one_does() {
+    let (mut compared, mut counted, mut sent) = (0, 0, 0);
+    for number in 0..60 {
+        let expected = case("wayside", 7, number, Sizes::Small, None).expect("a case");
+        if expected.outputs.is_empty() || expected.case.config["layout"].get("plan").is_none() {
+            continue;
+        }
+        let mut config = expected.case.config.clone();
+        let circuits = config["layout"]["plan"]["circuits"].as_array_mut().expect("circuits");
+        // In front of them, so that every number is another one.
+        let more = (0..200).map(|number| json!({"name": format!("more {number}"), "length_m": 100}));
+        let others = std::mem::take(circuits);
+        circuits.extend(more.chain(others));
+        let begin = start("wayside", &config.to_string());
+        let steps: Vec<String> = expected.case.steps.iter().map(|body| step(&body.to_string())).collect();
+        let lines: Vec<&str> = std::iter::once(begin.as_str()).chain(steps.iter().map(String::as_str)).collect();
+        let said = converse(&lines);
+        assert!(said[0].starts_with("{\"started\""), "{}", said[0]);
+        for (large, small) in said[1..].iter().zip(&expected.outputs) {
+            let read = |line: &str| serde_json::from_str::<Value>(line).expect("JSON");
+            let (large, same) = (without_more(read(large)), read(small));
+            assert_eq!(large, same, "case {number}");
+            compared += 1;
+            counted += u32::from(!read(small)["output"]["line"].is_null());
+            sent += u32::from(read(small)["output"]["transmissions"].as_object().is_some_and(|sent| !sent.is_empty()));
+        }
+    }
+    assert!(
+        compared > 400 && counted > 100 && sent > 40,
+        "{compared} cycles, {counted} counted, {sent} with telegrams"
+    );
 }
