@@ -188,7 +188,7 @@ const LISTED: &[(&str, &str, &str)] = &[
     ("block/line.rs", "distance <= hold", CASE),
     ("block/report.rs", "heads & !cycle.output.occupied.bits() != 0", CASE),
     ("block/reset.rs", "input.reset.map(|number| u32::from(number.0))", CASE),
-    ("interlocking/ahead.rs", "!confirmed.meets(needed(&scene, &scene.earlier).circuits)", AGAIN),
+    ("interlocking/ahead.rs", "!confirmed.meets(reaches(&scene.earlier))", AGAIN),
     ("interlocking/ahead.rs", "counted(&still, count(&device.points))", AGAIN),
     ("interlocking/ahead.rs", "serves(&still, &scene.earlier)", AGAIN),
     ("interlocking/atc.rs", "numbers.0 != numbers.1", CASE),

@@ -116,7 +116,7 @@ harness! {
     theorem "T-LAY-3";
     requirements ["LAY-4"];
     assumptions [];
-    bound "lists with room for 32 places";
+    bound "";
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
