@@ -50,8 +50,9 @@ enum Broken {
     Release,
 }
 
-/// Each with the episode from which it is looked for: near one that finds it. From the first on it takes up to 430.
-const BROKEN: [(Broken, u64); 3] = [(Broken::Turn, 300), (Broken::Clear, 1), (Broken::Release, 420)];
+/// Each with the episode from which it is looked for: near one that finds it. From the first on it takes up to 3,700: a block on the approach stops
+/// trains that would have had the accident (ILK-7).
+const BROKEN: [(Broken, u64); 3] = [(Broken::Turn, 2100), (Broken::Clear, 1), (Broken::Release, 3600)];
 
 /// The station at one end: its tracks, its throat, the line outward from it, and how much of that the other one sees.
 fn plan(tracks: [usize; 2], throat: usize, (line, shared): (&[usize], u8), outward: Heading, on_board: bool) -> Draft {
