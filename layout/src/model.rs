@@ -246,6 +246,8 @@ pub struct Route {
     pub overlap_passed: Vec<Passed>,
     /// Why the overlap may be short or missing.
     pub short_overlap: Option<String>,
+    /// Why no train changes ends where it ends.
+    pub no_reversal: Option<String>,
     /// The approach.
     pub approach: Circuits,
     /// The highest speed at which a train comes up to the signal, in km/h.
@@ -294,6 +296,7 @@ impl Default for Route {
             overlap_positions: Positions::new(),
             overlap_passed: Vec::new(),
             short_overlap: None,
+            no_reversal: None,
             approach: Circuits::new(),
             approach_kmh: 0,
             approach_m: 0,

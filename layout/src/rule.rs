@@ -35,7 +35,8 @@ pub enum Rule {
     PositionContradicts,
     /// A point's detectors cover the circuit it lies in and those in which it is fouled.
     DetectorsIncomplete,
-    /// The approach covers the braking distance, and what the train runs while its telegram ages and while it is not reported.
+    /// The approach covers the braking distance, what the train runs while its telegram ages and while it is not reported, and the track before the
+    /// signal, where a driver may change ends and go by it.
     ApproachTooShort,
     /// Circuits of an approach lead to the signal.
     ApproachApart,
@@ -71,6 +72,8 @@ pub enum Rule {
     LineWithoutSegment,
     /// The entry of a route is plain track: no point lies in it, and no other track crosses it.
     EntryNotPlain,
+    /// No point and no crossing lies between the end of a route and the first signal on the way back, or the file says why no train changes ends there.
+    PointBeforeSignal,
     /// A route comes from the segment whose first circuit is its entry, and goes out to the one whose first circuit follows its end.
     SegmentElsewhere,
     /// Circuits beyond the end of a route adjoin it.
@@ -119,7 +122,7 @@ impl Rule {
                 "a point's detectors cover the circuit it lies in and those in which it is fouled"
             }
             Self::ApproachTooShort => {
-                "the approach covers the braking distance, the age of a telegram and the longest loss of shunt"
+                "the approach covers the braking distance, the age of a telegram, the longest loss of shunt, and the track before the signal"
             }
             Self::ApproachApart => "the circuits of an approach lead to the signal",
             Self::DriveUnderThrow => "the drive time is not shorter than the stroke of the points",
@@ -146,6 +149,9 @@ impl Rule {
             Self::SegmentOrder => "the circuits of a segment follow each other outward from the station",
             Self::LineWithoutSegment => "where the line goes on unseen, the outermost circuit of a segment ends",
             Self::EntryNotPlain => "no point and no crossing lies in the entry of a route",
+            Self::PointBeforeSignal => {
+                "no point lies between the end of a route and the first signal on the way back, or the file says why no train changes ends there"
+            }
             Self::SegmentElsewhere => {
                 "a route comes from the segment that it enters from, and goes out to the one that follows its end"
             }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 const LOOP: &str = include_str!("../../layouts/passing-loop.toml");
 const JUNCTION: &str = include_str!("../../layouts/junction.toml");
 const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
+const LONG_TRACK: &str = include_str!("files/long-track.toml");
 
 /// One track that leads to a line with a segment, and over a point to a line without.
 const LEG: &str = r#"name = "Leg at the line"
@@ -286,6 +287,53 @@ fn approach_too_short() {
     );
     let both = change(&short, "name = \"W2\"", "300", "30");
     breaks(&both, Rule::ApproachTooShort, "the line is not described beyond joint a");
+}
+
+/// Back to the point, the buffer stop, the other signal, or the line; and only where drivers go by signals. Found by the twenty-first attack: staff
+/// had a confirmed block in 1A, and a train that had changed ends in 1B was not in the approach.
+#[test]
+fn approach_reaches_over_the_track_before_the_signal() {
+    let approach = |text: &str, route: &str| {
+        let compiled = Description::from_toml("station.toml", text).unwrap().compile().unwrap();
+        let route = compiled.model.routes.iter().find(|known| known.name == route).expect("a route");
+        assert_eq!(route.approach_m, 125);
+        let names: Vec<String> = route.approach.iter().map(|at| compiled.names.circuits[*at].clone()).collect();
+        names.join(" ")
+    };
+    assert_eq!(approach(LONG_TRACK, "1-W"), "1A 1B");
+    assert_eq!(approach(LONG_TRACK, "2-W"), "2T");
+    assert_eq!(approach(LONG_TRACK, "W-1"), "W1");
+    let signal =
+        format!("{LONG_TRACK}\n[[route]]\nname = \"1B-W\"\nentry = \"1B\"\npath = [\"1A\"]\noverlap = [\"P1T\"]\n");
+    assert_eq!(approach(&signal, "1-W"), "1A");
+    assert_eq!(approach(&signal, "1B-W"), "1B");
+    let telegrams = LONG_TRACK.replace("[speed]", "cab_signalled = true\n[speed]");
+    assert_eq!(approach(&telegrams, "1-W"), "1A");
+    let named = change(LONG_TRACK, "name = \"1-W\"", "entry", "approach = [\"1A\"]\nentry");
+    let says = "route 1-W: the approach reaches 200 m back from the signal, and 1B is not in it, on the same track";
+    breaks(&named, Rule::ApproachTooShort, says);
+}
+
+/// A point between the end of a route and the first signal on the way back is locked by no route from there. Found by the twenty-first attack: a train
+/// that had changed ends in 1C ran over P2 wherever it lay, or it was driven under its front.
+#[test]
+fn point_before_signal() {
+    let into = |entry: &str, path: &str, more: &str| {
+        let leads = format!("name = \"W-C\"\nentry = \"{entry}\"\npath = [{path}]\n{more}");
+        format!("{LONG_TRACK}\n[[route]]\n{leads}\n")
+    };
+    let siding = into("W1", "\"P1T\", \"1A\", \"1B\", \"P2T\", \"1C\"", "");
+    let says = "route W-C: a train that changes ends where it ends comes first to the signal of route 1-W, and on the way runs over the point or crossing in P2T";
+    breaks(&siding, Rule::PointBeforeSignal, says);
+    let of = |text: &str| Description::from_toml("station.toml", text).unwrap().compile();
+    // A route that begins before the point, or a reason, or no drivers who go by signals.
+    let back = "\n[[route]]\nname = \"C-1\"\nentry = \"1C\"\npath = [\"P2T\", \"1B\", \"1A\"]\noverlap = [\"P1T\"]\n";
+    assert_eq!(of(&format!("{siding}{back}")).err(), None);
+    let reason = "no_reversal = \"wagons alone are put there\"";
+    let said = into("W1", "\"P1T\", \"1A\", \"1B\", \"P2T\", \"1C\"", reason);
+    assert_eq!(of(&said).err(), None);
+    assert_eq!(of(&siding.replace("[speed]", "cab_signalled = true\n[speed]")).err(), None);
+    breaks(&said.replace("wagons alone are put there", " "), Rule::PointBeforeSignal, "lacks the reason");
 }
 
 #[test]

@@ -21,6 +21,7 @@ const FOULING: &str = include_str!("files/fouling.toml");
 
 /// A single line that a track crosses on the level.
 const DIAMOND: &str = include_str!("files/diamond.toml");
+const LONG_TRACK: &str = include_str!("files/long-track.toml");
 
 type Size = Plan<64, 16, 32, 8>;
 
@@ -239,6 +240,15 @@ const WRONG: &[Wrong] = &[
         "from the signal, and not in its approach",
     ),
     (
+        "an approach is as long as a train brakes, and not as its track",
+        LONG_TRACK,
+        |plan, it| {
+            let route = &mut plan.routes[it.route("1-W")];
+            route.approach = route.entry;
+        },
+        "route 1-W: a driver who changes ends in 1B goes by its signal, and it is not in its approach",
+    ),
+    (
         "a circuit has another length",
         JUNCTION,
         |plan, _| plan.lengths[1] = Metres(plan.lengths[1].0 + 1),
@@ -306,7 +316,7 @@ fn every_wrong_plan_is_found() {
 /// Compiling asks: a layout whose plan differs is refused. Here the right ones are not.
 #[test]
 fn right_plans_agree() {
-    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER, FOULING, DIAMOND] {
+    for text in [LOOP, JUNCTION, TERMINUS, STATION, CROSSOVER, FOULING, DIAMOND, LONG_TRACK] {
         let (description, numbers) = Numbers::of(text);
         assert_eq!(differences(&description.station, &numbers.0.plan), []);
     }

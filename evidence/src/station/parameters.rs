@@ -127,6 +127,10 @@ pub fn confirm(imported: &Imported, model: Option<&Model>) -> Vec<Confirm> {
             let about = format!("route {}", route.name);
             all.push(one(Origin::Reason, &about, format!("short overlap: {reason}"), at(description, &reason.span)));
         }
+        if let Some(reason) = &route.no_reversal {
+            let text = format!("no train changes ends where it ends: {reason}");
+            all.push(one(Origin::Reason, &format!("route {}", route.name), text, at(description, &reason.span)));
+        }
     }
     // Of an imported file the report says what was assumed.
     if !description.source.text.is_empty() && report.taken.is_empty() {

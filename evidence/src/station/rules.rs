@@ -73,6 +73,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     OverlapNotAhead => (Asked::Engineering, Stage::Model, Scope::Routes);
     OverlapTooShort => (Asked::Engineering, Stage::Model, Scope::Routes);
     EntryNotPlain => (Asked::Engineering, Stage::Model, Scope::Routes);
+    PointBeforeSignal => (Asked::Engineering, Stage::Model, Scope::Routes);
     SegmentElsewhere => (Asked::Engineering, Stage::Model, Scope::Routes);
     BeyondApart => (Asked::Engineering, Stage::Model, Scope::Routes);
     FoulingNotHeld => (Asked::Engineering, Stage::Model, Scope::Pairs);

@@ -2,7 +2,7 @@
 
 use atc_kernel::distance::Metres;
 
-use crate::derive::{Shortfall, back};
+use crate::derive::{Shortfall, back, signals_behind_points};
 use crate::form;
 use crate::form::EndKind;
 use crate::graph::Kind;
@@ -17,6 +17,7 @@ pub fn check(given: &form::Route, model: &Model, route: &Route, problems: &mut V
     approach(given, model, route, problems);
     overlap(given, model, route, problems);
     beyond(given, model, route, problems);
+    reversal(given, model, route, problems);
 }
 
 fn entry(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
@@ -69,10 +70,20 @@ fn segments(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
 fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
     let named = given.approach.as_ref().and_then(|named| named.first());
     let span = named.map_or(&route.span, |named| &named.span);
-    let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
-    let from = (route.start, route.entry);
-    let found = back(&model.graph, &model.circuits, from, route.approach_m, &ahead, Some(&route.approach));
-    if let Some((covered, why)) = found.short {
+    let found = back(model, route, route.approach_m, Some(&route.approach));
+    if let Some((covered, Shortfall::Circuit(circuit))) =
+        found.short.filter(|(covered, _)| *covered >= route.approach_m)
+    {
+        let circuit = &model.circuits[circuit].name;
+        let what = format!(
+            "route {}: the approach reaches {covered} m back from the signal, and {circuit} is not in it, on the same track: a driver who changes ends there goes by this signal",
+            route.name
+        );
+        let right = format!(
+            "add {circuit}, and so on as far as the next point, buffer stop or signal of that direction, or leave out `approach`"
+        );
+        problems.push(Problem::new(Rule::ApproachTooShort, span, what, right));
+    } else if let Some((covered, why)) = found.short {
         let why = match why {
             Shortfall::Line(joint) => {
                 format!("the line is not described beyond joint {}", model.graph.joints[joint].name)
@@ -94,7 +105,8 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
         );
         problems.push(Problem::new(Rule::ApproachTooShort, span, what, right));
     }
-    let everything = back(&model.graph, &model.circuits, from, u32::MAX, &ahead, Some(&route.approach));
+    let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
+    let everything = back(model, route, u32::MAX, Some(&route.approach));
     for apart in route.approach.difference(&everything.circuits).filter(|apart| !ahead.contains(apart)) {
         let what = format!(
             "route {}: {} is in the approach, but does not lead to the signal through it",
@@ -154,5 +166,24 @@ fn beyond(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<
             let what = format!("route {}: {name} does not adjoin the last circuit {last}", route.name);
             problems.push(Problem::new(Rule::BeyondApart, span, what, format!("name neighbours of {last}")));
         }
+    }
+}
+
+fn reversal(given: &form::Route, model: &Model, route: &Route, problems: &mut Vec<Problem>) {
+    if let Some(reason) = &given.no_reversal {
+        if reason.trim().is_empty() {
+            let what = format!("route {} lacks the reason why no train changes ends where it ends", route.name);
+            problems.push(Problem::new(Rule::PointBeforeSignal, &reason.span, what, "say what keeps drivers from it"));
+        }
+        return;
+    }
+    let last = given.path.last().map_or(&route.span, |last| &last.span);
+    for behind in signals_behind_points(model, route) {
+        let what = format!(
+            "route {}: a train that changes ends where it ends comes first to the signal of route {}, and on the way runs over the point or crossing in {}, which no route from there locks",
+            route.name, model.routes[behind.route].name, model.circuits[behind.circuit].name
+        );
+        let right = "let a route back begin before it, or give no_reversal = \"why no train changes ends there\"";
+        problems.push(Problem::new(Rule::PointBeforeSignal, last, what, right));
     }
 }

@@ -5,11 +5,13 @@ mod ends;
 mod flank;
 pub mod heading;
 pub mod positions;
+mod reversal;
 mod route;
 pub mod values;
 pub(crate) mod way;
 
 pub use approach::{Back, Shortfall, back};
+pub use reversal::signals_behind_points;
 
 use crate::at::At;
 use crate::form::Station;
@@ -195,9 +197,7 @@ fn approaches(station: &Station, names: &Names, model: &mut Model, problems: &mu
         let approach = if let Some(given) = &given.approach {
             names.circuits(given, problems)
         } else {
-            let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
-            let from = (route.start, route.entry);
-            let found = back(&model.graph, &model.circuits, from, route.approach_m, &ahead, None);
+            let found = back(model, route, route.approach_m, None);
             let listed: Vec<&str> =
                 found.circuits.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect();
             let text = format!("approach: {} m back from the signal: {}", route.approach_m, listed.join(", "));

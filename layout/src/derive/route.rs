@@ -31,6 +31,7 @@ pub fn route(
     let mut route = Route {
         name: name.value.clone(),
         signal: given.signal.clone().unwrap_or_else(|| name.value.clone()),
+        no_reversal: given.no_reversal.as_ref().map(|reason| reason.value.clone()),
         short_overlap: given.short_overlap.as_ref().map(|reason| reason.value.clone()),
         drive,
         release,

@@ -34,6 +34,16 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
                 Some(At::derived(format!("assumed on import: the {form} file gives no overlap that is long enough")));
             report.defaulted.push(format!("route {}: an overlap of {length} m is taken to be enough", given.name));
         }
+        if route.is_sound() && !derive::signals_behind_points(&model, route).is_empty() {
+            let given = &mut station.routes[number];
+            given.no_reversal = Some(At::derived(format!(
+                "assumed on import: no route of the {form} file begins there for the way back"
+            )));
+            report.defaulted.push(format!(
+                "route {}: no train is taken to change ends where it ends: a point lies before the next signal back",
+                given.name
+            ));
+        }
         // A timer of the file that runs out before a train can stand there.
         let (values, given) = (&model.values, &mut station.routes[number]);
         if let Some(stay) = given.stay_ms.as_mut().filter(|stay| stay.value < values.stay_ms.value) {

@@ -1,6 +1,6 @@
 //! Lengths, distances, speeds and times, counted anew in floating point.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use atc_kernel::interlocking::{CircuitSet, Size, SpeedCode};
 use atc_kernel::time::Ticks;
@@ -170,5 +170,47 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Si
                 found.push(self.differs(number, &what));
             }
         }
+        for circuit in self.where_ends_are_changed(number, way, ways) {
+            if !route.approach.meets(CircuitSet::nth(circuit)) {
+                let what = format!(
+                    "a driver who changes ends in {} goes by its signal, and it is not in its approach",
+                    self.circuit(circuit)
+                );
+                found.push(self.differs(number, &what));
+            }
+        }
+    }
+
+    /// The circuits from which a train runs to the signal of a route, wherever it begins there: over no point and no other track, and past no other signal.
+    /// None on plain line, and none where telegrams alone count.
+    fn where_ends_are_changed(&self, number: usize, way: &Way, ways: &[Option<Way>]) -> BTreeSet<usize> {
+        let route = &self.plan.routes[number];
+        let held = route.held_from(0).circuits.or(route.overlap.circuits);
+        let lines = self.plan.segments.iter().fold(CircuitSet::EMPTY, |all, segment| all.or(segment.all()));
+        let mut seen = BTreeSet::new();
+        let mut found = BTreeSet::new();
+        let entry = members(route.entry).next();
+        let mut open: Vec<Vehicle> = entry.map_or_else(Vec::new, |entry| {
+            self.tracks.at_joint(entry, way.start, true).filter(|_| !self.station.cab_signalled).collect()
+        });
+        while let Some(train) = open.pop() {
+            let piece = self.tracks.piece(train);
+            let alone =
+                self.tracks.pieces.iter().all(|other| other.circuit != piece.circuit || other.track == piece.track);
+            let elsewhere = lines.or(held).meets(CircuitSet::nth(piece.circuit));
+            if !alone || piece.over.is_some() || elsewhere || !seen.insert(train) {
+                continue;
+            }
+            found.insert(piece.circuit);
+            let passed = |joint: usize, circuit: usize| {
+                ways.iter().zip(&self.plan.routes).any(|(way, other)| {
+                    let here = other.entry == CircuitSet::nth(circuit) && other.heading == route.heading;
+                    here && way.as_ref().is_some_and(|way| way.start == joint)
+                })
+            };
+            let behind = self.tracks.behind(train);
+            open.extend(self.tracks.before(train).filter(|before| !passed(behind, self.tracks.piece(*before).circuit)));
+        }
+        found
     }
 }

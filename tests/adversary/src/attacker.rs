@@ -165,6 +165,9 @@ impl Attacker {
             12 => {
                 if let Some(train) = train.filter(|train| train.speed == 0) {
                     moves.push(Move::Face(train.number));
+                    if self.arsenal.block > 0 && train.driver == Driver::Signals && self.dice.once_in(2) {
+                        self.work_before(world, train);
+                    }
                 }
             }
             13 => {
@@ -236,6 +239,20 @@ impl Attacker {
             self.later.push((obeys + 3, Move::Work(circuit, true)));
         }
         self.later.push((obeys + 6, Move::Pace(train, mm_s(400))));
+    }
+
+    /// Staff block what adjoins a train that changes ends, before or after its signal may show proceed, and come as soon as they may.
+    fn work_before(&mut self, world: &World, train: &Train) {
+        let ground = world.ground;
+        let block = next_to(ground, train) & all(ground);
+        let begin = world.truth.now + self.dice.pick(&[1, 6, 20, 60]).unwrap_or(1);
+        self.later.push((begin, Move::Command(Commands { block, ..Commands::default() })));
+        for circuit in members(block) {
+            for wait in [1, 2, ground.clear + 2, 30] {
+                self.later.push((begin + wait, Move::Work(circuit, true)));
+            }
+        }
+        self.later.push((begin, Move::Pace(train.number, mm_s(400))));
     }
 
     fn line(&mut self, ground: &Ground) -> Option<usize> {

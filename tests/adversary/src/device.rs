@@ -273,6 +273,14 @@ pub fn kernel(description: &Description) -> Result<(Box<dyn Device>, Ground), Er
     Ok((started(compiled.layout()), ground))
 }
 
+/// A device that has just started on this layout, of a small station.
+#[must_use]
+pub fn of<const R: usize, const P: usize, const N: usize, const S: usize>(
+    layout: Layout<R, P, N, S>,
+) -> Box<dyn Device> {
+    started(Box::new(layout))
+}
+
 fn started<const R: usize, const P: usize, const N: usize, const S: usize, Z: Masked>(
     layout: Box<Layout<R, P, N, S, Z>>,
 ) -> Box<dyn Device> {

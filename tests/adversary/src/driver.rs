@@ -79,8 +79,8 @@ fn run_over(train: &Train, ground: &Ground, points: &Points, goes_on: impl Fn(i6
     found & !here
 }
 
-/// What the driver decides for the next cycle: how far the train may run. The authority is noted.
-pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: Mask) -> i64 {
+/// What the driver decides for the next cycle, with `others` under the other trains: how far the train may run. The authority is noted.
+pub fn decide(train: &mut Train, ground: &Ground, points: &Points, (proceed, others): (Mask, Mask)) -> i64 {
     let told = train.heard;
     let by_telegram = (told.limit - train.run).max(0);
     let (distance, speed) = match train.driver {
@@ -93,7 +93,7 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: Mask
             (by_telegram, told.speed)
         }
         Driver::Signals => {
-            let sight = look(train, ground, points, proceed);
+            let sight = look(train, ground, points, (proceed, others));
             train.authority = sight.ahead;
             (sight.distance, sight.speed)
         }
@@ -107,12 +107,17 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, proceed: Mask
 }
 
 /// Looks ahead from signal to signal.
-fn look(train: &Train, ground: &Ground, points: &Points, proceed: Mask) -> Sight {
+fn look(train: &Train, ground: &Ground, points: &Points, (proceed, others): (Mask, Mask)) -> Sight {
     let front = train.front();
     let here = train.front_circuit(ground);
     let on_line = ground.lines.iter().any(|line| line.mask & bit(here) != 0);
     let limits = train.legs.iter().map(|leg| leg.limit).min().unwrap_or(i64::MAX);
     let mut sight = Sight { distance: train.to_joint(), speed: limits.min(ground.fastest), ahead: 0 };
+    // Who has changed ends waits for the first signal ahead, and goes if it shows proceed: not while another train stands before it, and over a point only
+    // from where a route ends.
+    let mut waits = train.about && !on_line && train.route.is_none();
+    let reverses = |route: &super::ground::Route| route.reverses && route.path.last() == Some(&here);
+    let from_an_end = ground.routes.iter().any(reverses);
     let (mut piece, mut joint, mut route) = (front.piece, front.exit, train.route);
     let at_signal =
         |joint: usize, circuit: usize| ground.routes.iter().any(|route| route.start == joint && route.entry == circuit);
@@ -124,10 +129,13 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: Mask) -> Sight
         if at_signal(joint, circuit) {
             let shown = |number: &usize| {
                 let it = &ground.routes[*number];
-                it.start == joint && it.entry == circuit && proceed >> number & 1 == 1 && it.approach & bit(here) != 0
+                let from_afar = waits && circuit != here;
+                let counts = if from_afar { others & bit(circuit) == 0 } else { it.approach & bit(here) != 0 };
+                it.start == joint && it.entry == circuit && proceed >> number & 1 == 1 && counts
             };
             match (0..ground.routes.len()).find(shown) {
-                Some(number) => route = Some(number),
+                Some(number) => (route, waits) = (Some(number), false),
+                None if waits && circuit != here => return Sight { distance: 0, ahead: 0, ..sight },
                 None => return sight,
             }
         }
@@ -135,20 +143,21 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: Mask) -> Sight
         let ends = |route: &super::ground::Route| {
             route.exit == joint && route.path.last() == Some(&circuit) && route.lines[1].is_none()
         };
-        if !at_signal(joint, circuit) && ground.routes.iter().any(ends) {
-            return sight;
+        let waiting = Sight { distance: 0, ahead: 0, ..sight };
+        let ends_here = !at_signal(joint, circuit) && ground.routes.iter().any(ends);
+        if ends_here {
+            return if waits && circuit != here { waiting } else { sight };
         }
-        // Who changed ends between signals has none ahead of him that was set for him: he waits until he is told to move.
-        if train.about && !on_line && route.is_none() {
-            return Sight { distance: 0, ..sight };
-        }
-        let Some(next) = ground.across(joint, piece) else { return sight };
+        let Some(next) = ground.across(joint, piece) else { return if waits { waiting } else { sight } };
         let to = ground.pieces[next].circuit;
+        if waits && (others & bit(to) != 0 || ground.pieces[next].point.is_some() && !from_an_end) {
+            return waiting;
+        }
         // Onto plain line, and off it where no signal stands, he keeps to the telegram.
         let is_line = |circuit: usize| ground.lines.iter().any(|line| line.mask & bit(circuit) != 0);
         let by_telegram = to >= ground.seen || is_line(to) || is_line(circuit) && !at_signal(joint, circuit);
         if by_telegram && train.heard.hold & bit(to) == 0 {
-            return sight;
+            return if waits { waiting } else { sight };
         }
         if route.is_some_and(|route| ground.routes[route].mask & bit(to) == 0) {
             route = None;
@@ -162,7 +171,7 @@ fn look(train: &Train, ground: &Ground, points: &Points, proceed: Mask) -> Sight
         sight.distance += under.length;
         (piece, joint) = (next, under.exit);
     }
-    sight
+    if waits { Sight { distance: 0, ahead: 0, ..sight } } else { sight }
 }
 
 /// The square root, rounded down.

@@ -56,6 +56,8 @@ pub struct Route {
     pub limit: i64,
     /// The segments that it comes from and goes to.
     pub lines: [Option<usize>; 2],
+    /// Whether trains may change ends where it ends, and go by the first signal back: not on a line, and not where the file gives a reason.
+    pub reverses: bool,
     /// The time after which it is released when it was withdrawn.
     pub release: i64,
 }
@@ -240,6 +242,7 @@ impl Ground {
                 points: passed.map(|passed| (passed.point, passed.position == Position::Reverse)).collect(),
                 limit: self.codes[usize::from(route.speed.0)],
                 lines: [route.from, route.to],
+                reverses: route.to.is_none() && route.no_reversal.is_none(),
                 release: i64::from(route.release.0),
             });
         }

@@ -317,6 +317,7 @@ fn routes(ground: &Ground, place: &Place, joint: &dyn Fn(usize) -> usize) -> Vec
         points: route.points.iter().map(|(point, reverse)| (point + place.points, *reverse)).collect(),
         limit: route.limit,
         lines: route.lines.map(|line| line.map(|line| line + place.lines)),
+        reverses: route.reverses,
         release: route.release,
     };
     ground.routes.iter().map(moved).collect()

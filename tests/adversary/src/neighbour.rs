@@ -97,6 +97,8 @@ impl Neighbour {
         let may = !self.works && !self.consents && self.withdrawn >= ground.turn && self.is_permitted(ground);
         if may && turns && outside {
             self.sends = true;
+            // One train at a time comes up to the border.
+            self.outside_clear = 0;
         }
         may && turns && outside
     }

@@ -290,8 +290,11 @@ impl<'a> World<'a> {
 
     /// Every driver decides.
     fn authorities(&mut self) {
-        for train in &mut self.trains {
-            train.next = decide(train, self.ground, &self.points, self.said.proceed);
+        let under: Vec<Mask> = self.trains.iter().map(|train| train.under).collect();
+        for (number, train) in self.trains.iter_mut().enumerate() {
+            let others =
+                under.iter().enumerate().filter(|(other, _)| *other != number).fold(0, |all, (_, it)| all | it);
+            train.next = decide(train, self.ground, &self.points, (self.said.proceed, others));
             // What it may yet run over: what it has authority for, and where it runs if it brakes now.
             let braking = train.speed * train.speed / (2 * self.ground.brake);
             let to_joint = train.to_joint();

@@ -10,6 +10,7 @@ use atc_adversary::conditions::broken;
 use atc_adversary::hunt::{Hunt, hunt, minimise, replay};
 use atc_adversary::judge::Family;
 use atc_adversary::{altered, device, known, stations, words};
+use atc_kernel::interlocking::{Layout, Small};
 
 /// With the weapons that were once enough for each known fault nothing is found in the kernel as it is.
 #[test]
@@ -44,6 +45,46 @@ fn all_weapons_on_every_station() {
         assert!(find.is_none(), "{}\n{told:?}", ground.name);
         assert!(tally.routes_set > 10 && tally.trains > 20, "{}: no traffic: {tally:?}", ground.name);
     }
+}
+
+/// A long track before a signal, where trains change ends. The drivers of the search go by the first signal ahead of them; with an approach that
+/// is as long as a train brakes, as it was once, staff are struck (the twenty-first attack). So are they where a point lies between the end of a
+/// route and the signal, and drivers do not keep to the reason that the file gives.
+#[test]
+fn trains_that_change_ends_far_behind_their_signal() {
+    const FILE: &str = include_str!("../../../layout/tests/files/long-track.toml");
+    let read = |text: &str| atc_layout::Description::from_toml("long-track.toml", text).expect("a layout");
+    let wanted = |cycles: u64, seed: u64, sought: &[Family]| Hunt {
+        seed,
+        cycles,
+        episode: known::EPISODE,
+        arsenal: Arsenal::ALL,
+        sought: sought.to_vec(),
+    };
+    let beyond = "[[route]]\nname = \"W-C\"\nentry = \"W1\"\npath = [\"P1T\", \"1A\", \"1B\", \"P2T\", \"1C\"]\n";
+    let said = format!("{FILE}\n{beyond}no_reversal = \"engines are taken off there\"\n");
+    for text in [FILE, &said] {
+        let (mut kernel, ground) = device::kernel(&read(text)).expect("a sound layout");
+        let (find, tally) = hunt(&mut *kernel, &ground, &wanted(600_000, 1, &Family::ALL));
+        assert_eq!(find.map(|find| words::tell(&mut *kernel, &ground, &find)), None);
+        assert!(tally.routes_set > 100 && tally.discarded == 0, "{tally:?}");
+    }
+    let staff = [Family::Worker];
+    let compiled = read(FILE).compile_to::<8, 4, 4, 2, Small>().expect("a sound layout");
+    let mut plan = *compiled.plan;
+    for route in &mut plan.routes {
+        route.approach = route.entry;
+    }
+    let mut kernel = device::of(Layout::new(plan).expect("the kernel knows no tracks"));
+    let ground = device::kernel(&read(FILE)).expect("a sound layout").1;
+    let (find, _) = hunt(&mut *kernel, &ground, &wanted(300_000, 1, &staff));
+    assert!(find.is_some(), "an approach that is as long as a train brakes");
+    let (mut kernel, mut ground) = device::kernel(&read(&said)).expect("a sound layout");
+    for route in &mut ground.routes {
+        route.reverses = true;
+    }
+    let (find, _) = hunt(&mut *kernel, &ground, &wanted(300_000, 1, &staff));
+    assert!(find.is_some(), "a point between the end of a route and the signal");
 }
 
 /// A file that was altered at random and breaks no rule is a station like any other. This attacks the rules of layouts. It is
@@ -162,7 +203,7 @@ fn two_stations_and_what_is_put_in() {
     };
     let (code, said) = hunt("300000", "none");
     assert!(code == Some(0) && said.contains("broken: 0") && !said.contains("crossings: 0"), "{said}");
-    for (wrong, accident) in [("facing", "derailment"), ("slides-late", "derailment"), ("loss", "derailment")] {
+    for (wrong, accident) in [("facing", "authority"), ("slides-late", "derailment"), ("loss", "worker")] {
         let (code, said) = hunt("300000", wrong);
         assert!(code == Some(1) && said.contains(accident), "{wrong}: {said}");
     }
