@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use atc_layout::import::{only, railml, read_any};
 use atc_layout::{Description, Extent, Rule, draw, read};
+use support::central::central;
 use support::railml::{Version, railml as written};
 use support::{East, seventy_seven, station};
 
@@ -60,6 +61,13 @@ fn the_station_with_a_hundred_routes_is_made_by_rule() {
 }
 
 #[test]
+fn the_junction_station_is_made_by_rule() {
+    let head = "# A junction station: two double and two single lines, scissors, double slips, ladders, a bay, and calling-on routes. Made by\n\
+        # layout/tests/samples.rs.\n\n";
+    pinned("layouts/central.toml", &format!("{head}{}", description(central()).to_toml()));
+}
+
+#[test]
 fn a_large_station_is_imported_whole() {
     let native = read(folder("layouts/station-100.toml")).unwrap();
     let imported = railml("station-100", &written(&native.station, Version::V32)).unwrap();
@@ -67,6 +75,20 @@ fn a_large_station_is_imported_whole() {
     assert_eq!(sound.names.routes.len(), 100);
     let plan = native.compile_to::<128, 32, 64, 8, Large>().unwrap().plan;
     assert_eq!(plan.routes.iter().filter(|route| route.exists()).count(), 100);
+}
+
+/// Over scissors and double slips too. The file has no calling-on routes: those of railML are not read.
+#[test]
+fn a_junction_station_is_imported_whole() {
+    let mut native = central();
+    assert_eq!(native.routes.len(), 102);
+    native.routes.retain(|route| route.berth.is_empty());
+    for version in [Version::V31, Version::V32] {
+        let imported = railml("central", &written(&native, version)).unwrap();
+        let sound = imported.description.check().unwrap_or_else(|errors| panic!("{errors}"));
+        let left_out: Vec<&String> = imported.report.lacking.iter().collect();
+        assert_eq!(sound.names.routes.len(), 68, "{left_out:?}");
+    }
 }
 
 #[test]
@@ -85,7 +107,7 @@ fn every_sample_breaks_no_rule() {
         }
         seen += 1;
     }
-    assert_eq!(seen, 10, "four samples in two forms, one with calling-on routes, and a large one");
+    assert_eq!(seen, 11, "four samples in two forms, one with calling-on routes, and two large ones");
 }
 
 #[test]

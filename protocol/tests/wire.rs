@@ -228,8 +228,12 @@ fn plans_and_inputs_of_small_stations() {
 }
 
 #[test]
-fn plans_and_inputs_of_a_large_station() {
-    let large = || the_same::<256, 32, 128, 32, atc_kernel::interlocking::Large>("station-100.toml");
+fn plans_and_inputs_of_large_stations() {
+    let large = || {
+        for file in ["station-100.toml", "central.toml"] {
+            the_same::<256, 32, 128, 32, atc_kernel::interlocking::Large>(file);
+        }
+    };
     // Its layout has half a megabyte, and is moved some times.
     let thread = std::thread::Builder::new().stack_size(64 << 20).spawn(large).expect("a thread");
     thread.join().expect("the same");

@@ -53,12 +53,14 @@ fn the_station_with_30_routes_keeps_every_rule_and_says_against_what() {
 }
 
 #[test]
-fn a_large_station_is_held_against_every_rule() {
-    let station = read(&layouts("station-100.toml")).expect("readable").case(&[], &[]);
-    assert!(station.is_sound() && station.checks.len() == 68, "{:?}", station.checks);
-    let rule = |name: &str| station.checks.iter().find(|one| one.rule == name).expect("a rule");
-    assert_eq!(rule("plan-conflict-one-way").scope, "4950 pairs");
-    assert_eq!((station.table.len(), station.drawing.contains("<svg")), (100, true));
+fn large_stations_are_held_against_every_rule() {
+    for (file, pairs, routes) in [("station-100.toml", "4950 pairs", 100), ("central.toml", "5151 pairs", 102)] {
+        let station = read(&layouts(file)).expect("readable").case(&[], &[]);
+        assert!(station.is_sound() && station.checks.len() == 68, "{file}: {:?}", station.checks);
+        let rule = |name: &str| station.checks.iter().find(|one| one.rule == name).expect("a rule");
+        assert_eq!(rule("plan-conflict-one-way").scope, pairs);
+        assert_eq!((station.table.len(), station.drawing.contains("<svg")), (routes, true));
+    }
 }
 
 #[test]

@@ -58,8 +58,9 @@ fn covers(class: &str, (x, y): (i32, i32), text: &str) -> Covered {
         "point" => 11,
         _ => 10,
     };
-    // A letter is about as wide as 0.6 of its height, one of Chinese or Japanese as its height.
-    let tenths = text.chars().map(|letter| if letter < '\u{2e80}' { 6 } else { 10 }).sum::<i32>();
+    // A letter is about as wide as 0.6 of its height, a bold one as 0.7, one of Chinese or Japanese as its height.
+    let wide = if class == "point" { 7 } else { 6 };
+    let tenths = text.chars().map(|letter| if letter < '\u{2e80}' { wide } else { 10 }).sum::<i32>();
     let half = tenths * size / 20;
     (x - half, y - size + 2, x + half, y + 2)
 }

@@ -1,6 +1,7 @@
 //! Stations made by rule, and the same as railML.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
+pub mod central;
 pub mod railml;
 pub mod random;
 

@@ -9,6 +9,7 @@ mod counted_between;
 mod line;
 mod others;
 mod passing_loop;
+mod reversal;
 mod shared;
 mod wrong;
 
@@ -17,6 +18,7 @@ pub(super) fn entries() -> Vec<Entry> {
     let mut entries = passing_loop::entries();
     entries.extend(others::entries());
     entries.extend(called::entries());
+    entries.extend(reversal::entries());
     entries.extend(line::entries());
     entries.extend(between::entries());
     entries.extend(counted::entries());

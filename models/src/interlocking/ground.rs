@@ -84,6 +84,8 @@ pub struct Ground {
     pub ends: Vec<(u8, Heading)>,
     /// The circuits in which trains turn round.
     pub turning: u8,
+    /// The circuits without a signal of their own where a train that has turned round waits for the one ahead: a mask.
+    pub waits: u8,
     /// The circuits where points and sand catch a train that slides: what becomes of that train there is no accident, unless it meets another.
     pub catching: u8,
 }

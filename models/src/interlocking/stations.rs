@@ -12,6 +12,7 @@
 //! halt        L ──▷ throat ◁── platform
 //! counted     far ─── near ──▷ throat ═══ one          point 0 in throat; normal leads to one
 //!                                     ╲══ two
+//! long track  L ──▷ throat ◁── near ─── far            trains turn round in far
 //! berth       W ──▷ west ◁═ berth ═▷ east ◁── E        a train from W may be called on into the berth
 //! ```
 //!
@@ -21,7 +22,7 @@ mod others;
 
 pub use others::{
     BRANCH, IN, MAIN, OUT, berth, berth_route, called, counted, counted_line, crossing, diamond, end, fork, halt,
-    junction, rest, siding, stop, terminus,
+    junction, long_track, rest, reversal, siding, stop, terminus,
 };
 
 pub use super::sizes::{CIRCUITS, PLACES, POINTS, ROUTES, SEGMENTS, SIGNALS, Small, SmallPlan, circuits};
@@ -256,6 +257,7 @@ pub fn passing_loop(overlaps: Overlaps) -> Station {
         line: 1 << W | 1 << E,
         ends: vec![(E, Up), (W, Down)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(6);

@@ -183,7 +183,10 @@ impl Train {
             Obey::Nothing => true,
             Obey::Telegrams => granted,
             Obey::Signals if ground.line >> to & 1 == 1 => granted,
-            Obey::Signals => signal.is_none() || self.since_proceed <= environment.residual,
+            Obey::Signals => {
+                let waits = signal.is_some() || ground.waits >> front & 1 == 1;
+                !waits || self.since_proceed <= environment.residual
+            }
         };
         if may {
             return (true, None);

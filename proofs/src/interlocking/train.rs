@@ -101,7 +101,7 @@ harness! {
     /// Induction: what the theorems about a route and its train assume of them holds at the end of every cycle again.
     t_ilk_train(e)
     theorem "T-ILK-10";
-    requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-14", "ILK-21", "ILK-22"];
+    requirements ["ILK-10", "ILK-12", "ILK-13", "ILK-14", "ILK-21", "ILK-22", "ILK-35"];
     assumptions [
         "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
         "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",

@@ -37,6 +37,8 @@ pub struct Arsenal {
     pub slow_points: bool,
     /// Trains take a telegram for the other direction of travel as one to stop.
     pub faces: bool,
+    /// Neighbours take a line without a look at its outermost circuit.
+    pub blind_neighbours: bool,
     /// The drivers: those of telegrams, those of signals.
     pub drivers: [bool; 2],
 }
@@ -61,6 +63,7 @@ impl Arsenal {
         restart: 0,
         slow_points: false,
         faces: true,
+        blind_neighbours: false,
         drivers: [true, true],
     };
 

@@ -41,7 +41,7 @@ impl Attacker {
         let slow = u32::try_from(self.dice.next() & 0xFFFF_FFFF).unwrap_or(0);
         let late = self.dice.within(0, (ground.life - 1).max(0));
         Setting {
-            manner: Manner { overlaps: self.dice.once_in(2), late },
+            manner: Manner { overlaps: self.dice.once_in(2), late, blind: self.arsenal.blind_neighbours },
             slow: if self.arsenal.slow_points { slow } else { 0 },
             throw_percent: self.dice.within(30, 100),
             faces: self.arsenal.faces,

@@ -132,7 +132,7 @@ pub const KNOWN: &[Fault] = &[
         name: "turned while occupied after a restart",
         session: "turned-while-occupied-after-restart",
         must: "the direction of an occupied line is given to nobody",
-        arsenal: Arsenal { line: 60, restart: 8, ..TELEGRAMS },
+        arsenal: Arsenal { line: 60, restart: 8, blind_neighbours: true, ..TELEGRAMS },
         ends_in: &[Family::Collision, Family::Authority],
         layout: LOOP,
         old_rule: &["line-occupied-given", "heading-of-the-line"],

@@ -31,6 +31,8 @@ pub struct Manner {
     pub overlaps: bool,
     /// How late their consent reaches the station: less than a telegram's life.
     pub late: i64,
+    /// They look at what lies beyond the border alone when they take the line: the other station's old rule (`neighbour-turns-alike` asks for more).
+    pub blind: bool,
 }
 
 impl Neighbour {
@@ -91,8 +93,9 @@ impl Neighbour {
     }
 
     /// It takes the line to send a train, or sends another one.
-    pub const fn take(&mut self, ground: &Ground) -> bool {
-        let outside = self.outside_clear > ground.clear && self.outermost_clear > ground.clear;
+    pub const fn take(&mut self, ground: &Ground, manner: Manner) -> bool {
+        let unseen = manner.blind && !self.sends && !manner.overlaps;
+        let outside = self.outside_clear > ground.clear && (unseen || self.outermost_clear > ground.clear);
         let turns = self.sends || self.clear_for > ground.clear;
         let may = !self.works && !self.consents && self.withdrawn >= ground.turn && self.is_permitted(ground);
         if may && turns && outside {

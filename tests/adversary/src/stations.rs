@@ -10,8 +10,8 @@ use super::dice::Dice;
 /// The small stations of `layouts/`, by name.
 pub const NAMES: [&str; 4] = ["passing-loop", "junction", "terminus", "station-30"];
 
-/// The large one.
-pub const LARGE: &str = "station-100";
+/// The large ones, each with the cycles of a hunt in the tests.
+pub const LARGE: [(&str, u64); 2] = [("station-100", 60_000), ("central", 60_000)];
 
 /// A station of `layouts/`.
 ///

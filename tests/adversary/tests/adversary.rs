@@ -132,16 +132,19 @@ fn imported_stations_with_all_weapons() {
     }
 }
 
-/// The same on a station of a hundred routes, 48 points and 77 circuits, whose sets have more than one word.
+/// The same on stations of a hundred routes, whose sets have more than one word: a plain ladder of 48 points and 77 circuits, and a junction
+/// with scissors, double slips and calling-on routes.
 #[test]
-fn a_large_station_with_all_weapons() {
-    let (mut kernel, ground) = device::kernel(&stations::of(stations::LARGE)).expect("a sound layout");
-    let wanted =
-        Hunt { seed: 7, cycles: 100_000, episode: known::EPISODE, arsenal: Arsenal::ALL, sought: Family::ALL.to_vec() };
-    let (find, tally) = hunt(&mut *kernel, &ground, &wanted);
-    let told = find.as_ref().map(|find| words::tell(&mut *kernel, &ground, find));
-    assert_eq!(told, None);
-    assert!(tally.routes_set > 10 && tally.trains > 10, "no traffic: {tally:?}");
+fn large_stations_with_all_weapons() {
+    for (name, cycles) in stations::LARGE {
+        let (mut kernel, ground) = device::kernel(&stations::of(name)).expect("a sound layout");
+        let sought = Family::ALL.to_vec();
+        let wanted = Hunt { seed: 7, cycles, episode: known::EPISODE, arsenal: Arsenal::ALL, sought };
+        let (find, tally) = hunt(&mut *kernel, &ground, &wanted);
+        let told = find.as_ref().map(|find| words::tell(&mut *kernel, &ground, find));
+        assert_eq!(told, None, "{name}");
+        assert!(tally.routes_set > 10 && tally.trains > 10, "{name}: no traffic: {tally:?}");
+    }
 }
 
 /// In ordinary running, without any weapon, trains run and nothing happens to them: the ground itself makes no accident.

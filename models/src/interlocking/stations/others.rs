@@ -46,6 +46,7 @@ pub fn junction() -> Station {
         line: 1 << M | 1 << B | 1 << E,
         ends: vec![(E, Up)],
         turning: 0,
+        waits: 0,
         catching: 1 << TRAP | 1 << SAND | 1 << JOIN,
     };
     let mut plan = plan(6);
@@ -86,6 +87,7 @@ pub fn crossing() -> Station {
         line: 1 << A | 1 << B | 1 << X | 1 << Y,
         ends: vec![(X, Up), (Y, Up)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(6);
@@ -120,6 +122,7 @@ pub fn terminus() -> Station {
         line: 1 << L,
         ends: vec![(L, Down)],
         turning: 1 << ONE | 1 << TWO,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(4);
@@ -157,6 +160,7 @@ pub fn siding() -> Station {
         line: 1 << L,
         ends: vec![(SECOND, Up)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(4);
@@ -164,6 +168,45 @@ pub fn siding() -> Station {
     plan.routes[0] = Route { from: alone(0), ..route(L, &path, 1 << FIRST) };
     plan.segments[0] = segment(L, 1 << THROAT);
     checked("siding", ground, &plan)
+}
+
+/// Circuits of the station with a long track.
+pub mod reversal {
+    /// Plain line.
+    pub const L: u8 = 0;
+    /// The throat.
+    pub const THROAT: u8 = 1;
+    /// The half of the track before the signal out.
+    pub const NEAR: u8 = 2;
+    /// The other half, where trains turn round.
+    pub const FAR: u8 = 3;
+}
+
+/// A track of two circuits, where trains turn round behind the one with the signal. The routes are [`IN`] and [`OUT`].
+pub fn long_track() -> Station {
+    use reversal::{FAR, L, NEAR, THROAT};
+    let ground = Ground {
+        circuits: &["L", "throat", "near", "far"],
+        edges: both(&[edge(L, THROAT, Up), edge(THROAT, NEAR, Up), edge(NEAR, FAR, Up)]),
+        signals: vec![
+            signal(L, Up, 1 << IN),
+            Signal { counted_on: 1 << NEAR | 1 << FAR, ..signal(NEAR, Down, 1 << OUT) },
+        ],
+        points_in: [THROAT, THROAT],
+        fouls: Vec::new(),
+        line: 1 << L,
+        ends: vec![(L, Down)],
+        turning: 1 << FAR,
+        waits: 1 << FAR,
+        catching: 0,
+    };
+    let mut plan = plan(4);
+    let path = [THROAT, NEAR, FAR].map(|circuit| (circuit, Positions::NONE));
+    plan.routes[usize::from(IN)] = Route { from: alone(0), ..route(L, &path, 1 << NEAR) };
+    let out = route(NEAR, &[(THROAT, Positions::NONE)], 1 << L);
+    plan.routes[usize::from(OUT)] = Route { to: alone(0), approach: circuits(1 << NEAR | 1 << FAR), ..out };
+    plan.segments[0] = segment(L, 1 << THROAT);
+    checked("long track", ground, &plan)
 }
 
 /// Circuits of the station with a counted line. The first two are the sections of the line.
@@ -197,6 +240,7 @@ pub fn counted_line() -> Station {
         line: 1 << FAR | 1 << NEAR,
         ends: vec![(ONE, Up), (TWO, Up)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(5);
@@ -238,6 +282,7 @@ pub fn halt() -> Station {
         line: 1 << L,
         ends: vec![(THROAT, Up), (L, Down)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let mut plan = plan(3);
@@ -294,6 +339,7 @@ pub fn berth() -> Station {
         line: 1 << W | 1 << E,
         ends: vec![(E, Up), (W, Down)],
         turning: 0,
+        waits: 0,
         catching: 0,
     };
     let only = |circuit: u8| Element { circuits: circuits(1 << circuit), positions: Positions::NONE };

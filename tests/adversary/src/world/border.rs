@@ -22,7 +22,7 @@ impl World<'_> {
     pub(super) fn send(&mut self, line: usize, arrival: Arrival) {
         let it = &self.ground.lines[line];
         let (piece, far) = (it.piece, it.far);
-        if it.ways[0] && self.neighbours[line].take(self.ground) {
+        if it.ways[0] && self.neighbours[line].take(self.ground, self.setting.manner) {
             let at = OUTSIDE_MM - NEIGHBOUR_SIGNAL_MM;
             // It passes the signal at a speed at which it can keep to a restriction behind the border.
             let slow = self.truth.restricted[it.outermost].0.min(self.ground.fastest);
