@@ -336,6 +336,21 @@ fn point_before_signal() {
     breaks(&said.replace("wagons alone are put there", " "), Rule::PointBeforeSignal, "lacks the reason");
 }
 
+/// Found by the twenty-second attack: a route that ends at a board is no route out, whatever line lies farther on; and who stands past the signal that is
+/// nearest to the end of his route, as his train is longer than the track, goes by the next one.
+#[test]
+fn point_before_signal_wherever_the_train_stands() {
+    const BOARD: &str = include_str!("files/board-behind-point.toml");
+    const LONGER: &str = include_str!("files/longer-than-its-track.toml");
+    let says = "route W-1: a train that changes ends where it ends comes first to the signal of route 1-W";
+    breaks(BOARD, Rule::PointBeforeSignal, says);
+    breaks(LONGER, Rule::PointBeforeSignal, says);
+    // Where the length of trains is not known, they may be longer.
+    breaks(&LONGER.replace("longest_train_m = 250\n", ""), Rule::PointBeforeSignal, says);
+    let fits = LONGER.replace("longest_train_m = 250", "longest_train_m = 120");
+    assert_eq!(Description::from_toml("station.toml", &fits).unwrap().compile().err(), None);
+}
+
 #[test]
 fn approach_apart() {
     let text = change(LOOP, "name = \"W-1\"", "entry", "approach = [\"W1\", \"W2\", \"E1\"]\nentry");

@@ -34,9 +34,9 @@ pub const DRAWINGS: &[Drawing] = &[
     drawing::<pattern::Braking>(),
     drawing::<permitted::Permitting>(),
     drawing::<position::Positioned>(),
-    drawing::<interlocking::Interlocked>(),
+    drawing::<interlocking::Sizes>(),
     drawing::<train::OnBoard>(),
-    drawing::<wayside::Ground>(),
+    drawing::<wayside::Sizes>(),
 ];
 
 /// The machine of that name.

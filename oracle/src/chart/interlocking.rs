@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use atc_kernel::interlocking::{self as kernel, CircuitSet, Position, SegmentSet};
+use atc_kernel::interlocking::{self as kernel, CircuitSet, Position, SegmentSet, Size};
 
 use super::record;
 use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
@@ -15,14 +15,15 @@ use crate::trace::run::Cycle;
 use atc_film::Film;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{
-    Answer, Config, Interlocked, Output, Phase, Refused, Request, Side, State, Step, Travel,
+    Answer, Config, Interlocked, Output, Phase, Refused, Request, Side, Sizes, Step, Travel,
 };
+use atc_protocol::machine::sizes::{self, Stationed as _};
 use atc_protocol::names::Named;
 
 /// The device after one cycle.
-struct Moment {
-    state: State,
-    occupied: CircuitSet,
+struct Moment<const R: usize, const S: usize, Z: Size> {
+    state: kernel::State<R, S, Z>,
+    occupied: CircuitSet<Z>,
     output: Output,
 }
 
@@ -35,9 +36,17 @@ enum Use {
     Free,
 }
 
-impl Drawn for Interlocked {
+impl Drawn for Sizes {
     fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        scene(config, cycles)
+        if config.is_large() {
+            let draws = || {
+                scene::<{ sizes::ROUTES }, { sizes::PLACES }, { sizes::POINTS }, { sizes::SEGMENTS }, kernel::Large>(
+                    config, cycles,
+                )
+            };
+            return sizes::with_room(draws).unwrap_or_else(|_| empty(cycles.len()));
+        }
+        scene::<64, 16, 32, 8, kernel::Small>(config, cycles)
     }
 
     fn film(take: &Take<'_, Self>, film: &mut Film) -> Result<bool, String> {
@@ -45,9 +54,9 @@ impl Drawn for Interlocked {
     }
 }
 
-/// Lays out a case.
-fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
-    let mut scene = Scene {
+/// A chart of so many cycles without a row.
+fn empty(cycles: usize) -> Scene {
+    Scene {
         legend: vec![
             (Tone::Detected, "occupied; route in use"),
             (Tone::Held, "held; route set"),
@@ -57,10 +66,18 @@ fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
             (Tone::Emergency, "failed, refused"),
             (Tone::Code, "what trains are told"),
         ],
-        ..Scene::of(<Interlocked>::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
-    };
+        ..Scene::of(Sizes::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles as u64)
+    }
+}
+
+/// Lays out a case.
+fn scene<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    config: &Config,
+    cycles: &[Cycle<Sizes>],
+) -> Scene {
+    let mut scene = empty(cycles.len());
     // A trace is laid out only after the kernel has taken its configuration and every step.
-    let Ok(mut machine) = Interlocked::open(config) else { return scene };
+    let Ok(mut machine) = Interlocked::<R, P, N, S, Z>::open(config) else { return scene };
     scene.unit.per_cycle = machine.cycle_ms();
     let mut moments = Vec::with_capacity(cycles.len());
     for cycle in cycles {
@@ -93,7 +110,10 @@ fn scene(config: &Config, cycles: &[Cycle<Interlocked>]) -> Scene {
     scene
 }
 
-fn moment(machine: &mut Interlocked, step: &Step) -> Option<Moment> {
+fn moment<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &mut Interlocked<R, P, N, S, Z>,
+    step: &Step,
+) -> Option<Moment<R, S, Z>> {
     let input = machine.input(step).ok()?;
     let before = *machine.state();
     let output = Machine::step(machine, step).ok()?;
@@ -116,7 +136,7 @@ fn group(rows: impl Iterator<Item = (String, u32, Vec<Mark>)>) -> Vec<Lane> {
     rows.map(|(place, (label, height, marks))| Lane { label, first: place == 0, height, marks }).collect()
 }
 
-fn requests(cycles: &[Cycle<Interlocked>]) -> Vec<Lane> {
+fn requests(cycles: &[Cycle<Sizes>]) -> Vec<Lane> {
     let marks = cycles.iter().zip(0..).filter_map(|(cycle, at)| {
         let asked = match cycle.step.request.as_ref()? {
             Request::Set { set } => format!("set {set}"),
@@ -154,8 +174,11 @@ fn requests(cycles: &[Cycle<Interlocked>]) -> Vec<Lane> {
     group(rows.map(|(marks, label)| (label.to_owned(), 24, marks)))
 }
 
-fn circuits(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
-    let used = |moment: &Moment, circuit: CircuitSet| {
+fn circuits<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Lane> {
+    let used = |moment: &Moment<R, S, Z>, circuit: CircuitSet<Z>| {
         if moment.occupied.meets(circuit) {
             return Use::Occupied;
         }
@@ -187,7 +210,10 @@ fn circuits(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
     group(rows)
 }
 
-fn routes(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
+fn routes<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Lane> {
     let ever = |number: &usize| moments.iter().any(|now| now.state.routes[*number].is_held());
     let rows = (0..machine.names().routes.len()).filter(ever).flat_map(|number| {
         let name = &machine.names().routes[number];
@@ -211,7 +237,11 @@ fn routes(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
     group(rows)
 }
 
-fn points(machine: &Interlocked, cycles: &[Cycle<Interlocked>], moments: &[Moment]) -> Vec<Lane> {
+fn points<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    cycles: &[Cycle<Sizes>],
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Lane> {
     let rows = machine.names().points.iter().map(|name| {
         let detected = cycles.iter().map(|cycle| cycle.step.detected.0.get(name).copied().flatten());
         let driven = moments.iter().map(|now| now.output.drives.get(name).copied());
@@ -228,10 +258,13 @@ fn points(machine: &Interlocked, cycles: &[Cycle<Interlocked>], moments: &[Momen
     group(rows)
 }
 
-fn segments(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
+fn segments<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Lane> {
     let rows = machine.names().segments.iter().enumerate().map(|(number, name)| {
         let segment = SegmentSet::nth(number);
-        let travel = |now: &Moment| {
+        let travel = |now: &Moment<R, S, Z>| {
             let directions = now.state.directions;
             match (directions.toward.meets(segment), directions.away.meets(segment)) {
                 (true, _) => Some(kernel::Travel::Toward),
@@ -251,7 +284,10 @@ fn segments(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
 }
 
 /// What the train in each circuit is told, for the circuits in which one is told to go.
-fn telegrams(machine: &Interlocked, moments: &[Moment]) -> Vec<Lane> {
+fn telegrams<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Lane> {
     let open: BTreeSet<&String> = moments
         .iter()
         .flat_map(|now| now.output.telegrams.iter().filter(|(_, telegram)| telegram.open).map(|(name, _)| name))
@@ -291,14 +327,17 @@ fn difference(said: &Output, kernel: &Output) -> Option<String> {
     Some(parts.join(", "))
 }
 
-fn signals(machine: &Interlocked, moments: &[Moment]) -> Vec<Signal> {
+fn signals<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<R, S, Z>],
+) -> Vec<Signal> {
     let word = |name: &str| name.replace(|letter: char| letter.is_whitespace(), "_");
     let names = machine.names();
     let mut all = Vec::new();
     for (number, name) in names.circuits.iter().enumerate() {
         let occupied = standing(true, moments.iter().map(|now| now.occupied.meets(CircuitSet::nth(number))));
         all.push(Signal { name: format!("occupied_{}", word(name)), values: Values::Wire(changes(occupied)) });
-        let told = |now: &Moment| match now.output.telegrams.get(name) {
+        let told = |now: &Moment<R, S, Z>| match now.output.telegrams.get(name) {
             Some(telegram) if telegram.open => format!("{}_{}", word(&telegram.stop), telegram.speed_km_h),
             _ => "stop".to_owned(),
         };
@@ -306,14 +345,14 @@ fn signals(machine: &Interlocked, moments: &[Moment]) -> Vec<Signal> {
         all.push(Signal { name: format!("telegram_{}", word(name)), values: Values::State(changes(told)) });
     }
     for (number, name) in names.routes.iter().enumerate() {
-        let phase = |now: &Moment| Phase(now.state.routes[number].phase).name().to_owned();
+        let phase = |now: &Moment<R, S, Z>| Phase(now.state.routes[number].phase).name().to_owned();
         let phases = standing("idle".to_owned(), moments.iter().map(phase));
         all.push(Signal { name: format!("route_{}", word(name)), values: Values::State(changes(phases)) });
         let proceed = standing(false, moments.iter().map(|now| now.output.proceed.contains(name)));
         all.push(Signal { name: format!("proceed_{}", word(name)), values: Values::Wire(changes(proceed)) });
     }
     for name in &names.points {
-        let drive = |now: &Moment| now.output.drives.get(name).map_or("none", |side| side.name()).to_owned();
+        let drive = |now: &Moment<R, S, Z>| now.output.drives.get(name).map_or("none", |side| side.name()).to_owned();
         let drives = standing("none".to_owned(), moments.iter().map(drive));
         all.push(Signal { name: format!("drive_{}", word(name)), values: Values::State(changes(drives)) });
     }

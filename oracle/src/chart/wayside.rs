@@ -8,9 +8,11 @@ use super::scene::{Lane, Mark, Scene, Signal, Tone, Unit, Values};
 use super::series::{changes, spans, standing};
 use crate::drawn::machine::Drawn;
 use crate::trace::run::Cycle;
+use atc_kernel::interlocking::{Large, Size, Small};
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{Answer, Request};
-use atc_protocol::machine::wayside::{Config, Ground, Output, Permission, Step, Transmission};
+use atc_protocol::machine::sizes::{self, Stationed as _};
+use atc_protocol::machine::wayside::{Config, Ground, Output, Permission, Sizes, Step, Transmission};
 use atc_protocol::names::Named;
 
 /// The device after one cycle.
@@ -20,15 +22,23 @@ struct Moment {
     consent: BTreeSet<String>,
 }
 
-impl Drawn for Ground {
+impl Drawn for Sizes {
     fn chart(config: &Config, cycles: &[Cycle<Self>]) -> Scene {
-        scene(config, cycles)
+        if config.is_large() {
+            let draws = || {
+                scene::<{ sizes::ROUTES }, { sizes::PLACES }, { sizes::POINTS }, { sizes::SEGMENTS }, Large>(
+                    config, cycles,
+                )
+            };
+            return sizes::with_room(draws).unwrap_or_else(|_| empty(cycles.len()));
+        }
+        scene::<64, 16, 32, 8, Small>(config, cycles)
     }
 }
 
-/// Lays out a case.
-fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
-    let mut scene = Scene {
+/// A chart of so many cycles without a row.
+fn empty(cycles: usize) -> Scene {
+    Scene {
         legend: vec![
             (Tone::Detected, "occupied"),
             (Tone::Held, "told to be occupied, not reported"),
@@ -36,10 +46,21 @@ fn scene(config: &Config, cycles: &[Cycle<Ground>]) -> Scene {
             (Tone::Emergency, "refused, fault, restart"),
             (Tone::Code, "what trains are told"),
         ],
-        ..Scene::of(<Ground>::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles.len() as u64)
-    };
+        ..Scene::of(Sizes::NAME, Unit { axis: "time", name: "ms", per_cycle: 1 }, cycles as u64)
+    }
+}
+
+/// Lays out a case.
+fn scene<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    config: &Config,
+    cycles: &[Cycle<Sizes>],
+) -> Scene
+where
+    Ground<R, P, N, S, Z>: Machine<Config = Config, Step = Step, Output = Output>,
+{
+    let mut scene = empty(cycles.len());
     // A trace is laid out only after the kernel has taken its configuration and every step.
-    let Ok(mut machine) = <Ground>::open(config) else { return scene };
+    let Ok(mut machine) = Ground::<R, P, N, S, Z>::open(config) else { return scene };
     scene.unit.per_cycle = machine.station().cycle_ms();
     let mut moments = Vec::with_capacity(cycles.len());
     for cycle in cycles {
@@ -135,7 +156,7 @@ fn bars<T: Clone + PartialEq>(
     marks.collect()
 }
 
-fn requests(cycles: &[Cycle<Ground>]) -> Vec<Mark> {
+fn requests(cycles: &[Cycle<Sizes>]) -> Vec<Mark> {
     let asked = |step: &Step| {
         Some(match step.request.as_ref()? {
             Request::Set { set } => format!("set {set}"),
@@ -159,7 +180,10 @@ fn requests(cycles: &[Cycle<Ground>]) -> Vec<Mark> {
     marks
 }
 
-fn signals(machine: &Ground, moments: &[Moment]) -> Vec<Signal> {
+fn signals<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Ground<R, P, N, S, Z>,
+    moments: &[Moment],
+) -> Vec<Signal> {
     let word = |name: &str| name.replace(|letter: char| letter.is_whitespace(), "_");
     let names = machine.station().names();
     let mut all = Vec::new();

@@ -9,11 +9,11 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use super::take::Take;
-use atc_protocol::machine::interlocking::{Interlocked, Phase, Reason};
+use atc_protocol::machine::interlocking::{Interlocked, Phase, Reason, Sizes};
 use atc_protocol::names::Named;
 
 /// Puts the kernel into a film, if there is one to put in; else the film says that it only plays.
-pub(super) fn put(take: &Take<'_, Interlocked>, machine: &Interlocked, film: &mut Film) -> Result<(), String> {
+pub(super) fn put(take: &Take<'_, Sizes>, machine: &Interlocked, film: &mut Film) -> Result<(), String> {
     let Some(module) = &take.setting.kernel else {
         film.notes.push("The kernel is not in this page, which only plays; --kernel puts it in.".to_owned());
         return Ok(());

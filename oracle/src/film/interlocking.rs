@@ -2,23 +2,47 @@
 //! told.
 
 use atc_film::{Class, Film, Plan};
-use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet};
+use atc_kernel::interlocking::{self as kernel, CircuitSet, PointSet, Position, SegmentSet, Size};
 
 use super::take::Take;
 use super::{inside, schematic, stage};
 use atc_protocol::machine::Machine as _;
-use atc_protocol::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, State, Step, Travel};
+use atc_protocol::machine::interlocking::{Answer, Config, Interlocked, Output, Phase, Request, Sizes, Step, Travel};
+use atc_protocol::machine::sizes::{self, Stationed as _};
 use atc_protocol::names::Named as _;
 
 /// A step: what was read, the state after it, and what was answered (as recorded, if it was).
-struct Moment<'a> {
+struct Moment<'a, const R: usize, const S: usize, Z: Size> {
     step: &'a Step,
-    state: State,
+    state: kernel::State<R, S, Z>,
     said: &'a Output,
 }
 
 /// Lays out the film of an interlocking.
-pub(crate) fn put(take: &Take<'_, Interlocked>, film: &mut Film) -> Result<(), String> {
+pub(crate) fn put(take: &Take<'_, Sizes>, film: &mut Film) -> Result<(), String> {
+    if !take.config.is_large() {
+        let machine = laid_out::<64, 16, 32, 8, kernel::Small>(take, film)?;
+        return inside::put(take, &machine, film);
+    }
+    if take.setting.kernel.is_some() {
+        return Err(
+            "the kernel in a page takes small stations, of up to 64 circuits and routes: leave out --kernel".to_owned()
+        );
+    }
+    let puts = || {
+        laid_out::<{ sizes::ROUTES }, { sizes::PLACES }, { sizes::POINTS }, { sizes::SEGMENTS }, kernel::Large>(
+            take, film,
+        )
+        .map(|_| ())
+    };
+    sizes::with_room(puts)?
+}
+
+/// Lays out what the page shows; the machine after the last step.
+fn laid_out<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    take: &Take<'_, Sizes>,
+    film: &mut Film,
+) -> Result<Interlocked<R, P, N, S, Z>, String> {
     let mut machine = Interlocked::open(take.config)?;
     let mut moments = Vec::with_capacity(take.cycles.len());
     for cycle in take.cycles {
@@ -37,10 +61,13 @@ pub(crate) fn put(take: &Take<'_, Interlocked>, film: &mut Film) -> Result<(), S
     segments(film, &machine, &moments);
     tables(film);
     events(film);
-    inside::put(take, &machine, film)
+    Ok(machine)
 }
 
-fn plan(take: &Take<'_, Interlocked>, machine: &Interlocked) -> Result<Plan, String> {
+fn plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    take: &Take<'_, Sizes>,
+    machine: &Interlocked<R, P, N, S, Z>,
+) -> Result<Plan, String> {
     if let Some(layout) = &take.setting.layout {
         return stage::fitting(layout, machine.names());
     }
@@ -50,15 +77,15 @@ fn plan(take: &Take<'_, Interlocked>, machine: &Interlocked) -> Result<Plan, Str
     }
 }
 
-fn requests(film: &mut Film, moments: &[Moment<'_>]) {
-    let asked = |now: &Moment<'_>| match now.step.request.as_ref() {
+fn requests<const R: usize, const S: usize, Z: Size>(film: &mut Film, moments: &[Moment<'_, R, S, Z>]) {
+    let asked = |now: &Moment<'_, R, S, Z>| match now.step.request.as_ref() {
         None => String::new(),
         Some(Request::Set { set }) => format!("set {set}"),
         Some(Request::Withdraw { withdraw }) => format!("withdraw {withdraw}"),
         Some(Request::Drive { drive, to }) => format!("drive {drive} {}", to.name()),
         Some(Request::Turn { turn, to }) => format!("turn {turn} {}", to.name()),
     };
-    let answered = |now: &Moment<'_>| match &now.said.answer {
+    let answered = |now: &Moment<'_, R, S, Z>| match &now.said.answer {
         None => String::new(),
         Some(Answer::Accepted(_)) => "accepted".to_owned(),
         Some(Answer::Refused(refused)) => {
@@ -66,7 +93,7 @@ fn requests(film: &mut Film, moments: &[Moment<'_>]) {
             format!("refused: {} {}", refused.refused.name(), because.join(", ")).trim_end().to_owned()
         }
     };
-    let ordered = |now: &Moment<'_>| {
+    let ordered = |now: &Moment<'_, R, S, Z>| {
         let orders = &now.step.orders;
         let mut parts = Vec::new();
         for (word, list) in [("block", &orders.block), ("unblock", &orders.unblock), ("lift", &orders.lift)] {
@@ -90,11 +117,15 @@ fn requests(film: &mut Film, moments: &[Moment<'_>]) {
     }
 }
 
-fn circuits(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
+fn circuits<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    film: &mut Film,
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<'_, R, S, Z>],
+) {
     let plan = machine.layout().plan();
     let names = machine.names();
     // Who holds a circuit, and how: by its path before its overlap.
-    let holder = |now: &Moment<'_>, circuit: CircuitSet| {
+    let holder = |now: &Moment<'_, R, S, Z>, circuit: CircuitSet<Z>| {
         let mut found = (String::new(), "");
         for ((name, route), state) in names.routes.iter().zip(&plan.routes).zip(&now.state.routes) {
             if state.path(route).circuits.meets(circuit) {
@@ -109,8 +140,8 @@ fn circuits(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
     for (number, name) in names.circuits.iter().enumerate() {
         let it = CircuitSet::nth(number);
         let word = |is: bool, word: &'static str| if is { word } else { "" };
-        let reported = |now: &Moment<'_>| word(now.step.occupied.contains(name), "occupied");
-        let counted = |now: &Moment<'_>| {
+        let reported = |now: &Moment<'_, R, S, Z>| word(now.step.occupied.contains(name), "occupied");
+        let counted = |now: &Moment<'_, R, S, Z>| {
             let clear_for = now.state.track.clear_for().get(number).copied().unwrap_or(0);
             word(clear_for < plan.clear, "occupied")
         };
@@ -118,13 +149,14 @@ fn circuits(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
         film.channel(("circuit", name, "counted"), moments.iter().map(counted));
         film.channel(("circuit", name, "held"), moments.iter().map(|now| holder(now, it).0));
         film.channel(("circuit", name, "phase"), moments.iter().map(|now| holder(now, it).1));
-        let blocked = |now: &Moment<'_>| match (now.said.confirmed.contains(name), now.state.works.blocked.meets(it)) {
-            (true, _) => "confirmed",
-            (false, true) => "blocked",
-            (false, false) => "",
-        };
+        let blocked =
+            |now: &Moment<'_, R, S, Z>| match (now.said.confirmed.contains(name), now.state.works.blocked.meets(it)) {
+                (true, _) => "confirmed",
+                (false, true) => "blocked",
+                (false, false) => "",
+            };
         film.channel(("circuit", name, "block"), moments.iter().map(blocked));
-        let told = |now: &Moment<'_>| {
+        let told = |now: &Moment<'_, R, S, Z>| {
             let Some(telegram) = now.said.telegrams.get(name).filter(|telegram| telegram.open) else {
                 return String::new();
             };
@@ -138,13 +170,18 @@ fn circuits(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
     }
 }
 
-fn routes(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
+fn routes<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    film: &mut Film,
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<'_, R, S, Z>],
+) {
     let names = machine.names();
-    let shows = |now: &Moment<'_>, route: &String| now.said.proceed.contains(route);
+    let shows = |now: &Moment<'_, R, S, Z>, route: &String| now.said.proceed.contains(route);
     for (name, signal) in names.routes.iter().zip(&names.signals) {
-        let phase = |now: &Moment<'_>| now.said.routes.get(name).map_or("", |phase| phase.name());
+        let phase = |now: &Moment<'_, R, S, Z>| now.said.routes.get(name).map_or("", |phase| phase.name());
         film.channel(("route", name, "phase"), moments.iter().map(phase));
-        let proceed = |now: &Moment<'_>| if shows(now, name) { format!("proceed at {signal}") } else { String::new() };
+        let proceed =
+            |now: &Moment<'_, R, S, Z>| if shows(now, name) { format!("proceed at {signal}") } else { String::new() };
         film.channel(("route", name, "signal"), moments.iter().map(proceed));
     }
     let mut seen = Vec::new();
@@ -153,7 +190,7 @@ fn routes(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
             continue;
         }
         seen.push(signal);
-        let any = |now: &Moment<'_>| {
+        let any = |now: &Moment<'_, R, S, Z>| {
             let of = names.routes.iter().zip(&names.signals).filter(|(_, other)| *other == signal);
             if of.map(|(route, _)| route).any(|route| shows(now, route)) { "proceed" } else { "stop" }
         };
@@ -161,16 +198,20 @@ fn routes(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
     }
 }
 
-fn points(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
+fn points<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    film: &mut Film,
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<'_, R, S, Z>],
+) {
     let plan = machine.layout().plan();
     for (number, name) in machine.names().points.iter().enumerate() {
         let detected =
-            |now: &Moment<'_>| now.step.detected.0.get(name).copied().flatten().map_or("none", |at| at.name());
+            |now: &Moment<'_, R, S, Z>| now.step.detected.0.get(name).copied().flatten().map_or("none", |at| at.name());
         film.channel(("point", name, "detected"), moments.iter().map(detected));
-        let driven = |now: &Moment<'_>| now.said.drives.get(name).map_or("", |side| side.name());
+        let driven = |now: &Moment<'_, R, S, Z>| now.said.drives.get(name).map_or("", |side| side.name());
         film.channel(("point", name, "driven"), moments.iter().map(driven));
         let it = PointSet::nth(number);
-        let locked = |now: &Moment<'_>| {
+        let locked = |now: &Moment<'_, R, S, Z>| {
             let mut by = Vec::new();
             for ((route, of), state) in machine.names().routes.iter().zip(&plan.routes).zip(&now.state.routes) {
                 let positions = state.positions(of);
@@ -187,10 +228,14 @@ fn points(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
     }
 }
 
-fn segments(film: &mut Film, machine: &Interlocked, moments: &[Moment<'_>]) {
+fn segments<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    film: &mut Film,
+    machine: &Interlocked<R, P, N, S, Z>,
+    moments: &[Moment<'_, R, S, Z>],
+) {
     for (number, name) in machine.names().segments.iter().enumerate() {
         let it = SegmentSet::nth(number);
-        let direction = |now: &Moment<'_>| {
+        let direction = |now: &Moment<'_, R, S, Z>| {
             let directions = now.state.directions;
             match (directions.toward.meets(it), directions.away.meets(it)) {
                 (true, _) => Travel(kernel::Travel::Toward).name(),

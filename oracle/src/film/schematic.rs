@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use atc_film::Plan;
-use atc_kernel::interlocking::{CircuitSet, Heading};
+use atc_kernel::interlocking::{CircuitSet, Heading, Size};
 
 use atc_protocol::machine::interlocking::Interlocked;
 
@@ -76,11 +76,13 @@ impl Order {
     }
 }
 
-fn members(set: CircuitSet, count: usize) -> Vec<usize> {
+fn members<Z: Size>(set: CircuitSet<Z>, count: usize) -> Vec<usize> {
     (0..count).filter(|number| set.meets(CircuitSet::nth(*number))).collect()
 }
 
-fn order(machine: &Interlocked) -> Order {
+fn order<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+) -> Order {
     let plan = machine.layout().plan();
     let count = machine.names().circuits.len();
     let mut order = Order { after: Vec::new(), count };
@@ -108,7 +110,9 @@ fn order(machine: &Interlocked) -> Order {
 }
 
 /// The schematic of a plan.
-pub(super) fn plan(machine: &Interlocked) -> Plan {
+pub(super) fn plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    machine: &Interlocked<R, P, N, S, Z>,
+) -> Plan {
     let names = machine.names();
     let order = order(machine);
     let columns = order.columns();
@@ -147,7 +151,11 @@ pub(super) fn plan(machine: &Interlocked) -> Plan {
 type Place<'a> = (&'a dyn Fn(usize) -> usize, &'a dyn Fn(usize) -> usize);
 
 /// The name of each point below its first detector.
-fn points(svg: &mut String, machine: &Interlocked, (left, high): Place<'_>) {
+fn points<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    svg: &mut String,
+    machine: &Interlocked<R, P, N, S, Z>,
+    (left, high): Place<'_>,
+) {
     let names = machine.names();
     let mut below: BTreeMap<usize, usize> = BTreeMap::new();
     for (name, point) in names.points.iter().zip(&machine.layout().plan().points) {
@@ -160,7 +168,11 @@ fn points(svg: &mut String, machine: &Interlocked, (left, high): Place<'_>) {
 }
 
 /// A signal at the end of the entry circuit of each route; those of one circuit and direction beside each other.
-fn signals(svg: &mut String, machine: &Interlocked, (left, high): Place<'_>) {
+fn signals<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    svg: &mut String,
+    machine: &Interlocked<R, P, N, S, Z>,
+    (left, high): Place<'_>,
+) {
     let names = machine.names();
     let mut there: BTreeMap<(usize, bool), usize> = BTreeMap::new();
     for (signal, route) in names.signals.iter().zip(&machine.layout().plan().routes) {

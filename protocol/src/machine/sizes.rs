@@ -14,6 +14,18 @@ pub const POINTS: usize = 128;
 /// The segments of a large station.
 pub const SEGMENTS: usize = 32;
 
+/// Runs what moves large stations about, on a stack with room for them.
+///
+/// # Errors
+/// There is no thread for it, or it ended badly.
+pub fn with_room<T: Send>(run: impl FnOnce() -> T + Send) -> Result<T, String> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
+        let thread = thread.map_err(|error| format!("a large station needs a thread of its own: {error}"))?;
+        thread.join().map_err(|_| "a large station cannot be opened here".to_owned())
+    })
+}
+
 /// A configuration with a layout.
 pub trait Stationed {
     /// Whether a small station has no room for it.
@@ -32,7 +44,7 @@ pub enum Sizes<A, B> {
 impl<A, B> Machine for Sizes<A, B>
 where
     A: Machine<Config: Stationed + Sync>,
-    B: Machine<Config = A::Config, Step = A::Step, Output = A::Output>,
+    B: Machine<Config = A::Config, Step = A::Step, Output = A::Output> + Send,
 {
     const NAME: &'static str = A::NAME;
     const STEP: &'static str = A::STEP;
@@ -46,12 +58,7 @@ where
         if !config.is_large() {
             return A::open(config).map(|machine| Self::Small(Box::new(machine)));
         }
-        std::thread::scope(|scope| {
-            let opens = || B::open(config).map(|machine| Self::Large(Box::new(machine)));
-            let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, opens);
-            let thread = thread.map_err(|error| format!("a large station needs a thread of its own: {error}"))?;
-            thread.join().unwrap_or_else(|_| Err("a large station cannot be opened here".to_owned()))
-        })
+        with_room(|| B::open(config).map(|machine| Self::Large(Box::new(machine))))?
     }
 
     fn step(&mut self, step: &Self::Step) -> Result<Self::Output, String> {

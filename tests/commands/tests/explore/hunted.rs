@@ -9,7 +9,9 @@ use atc_adversary::judge::{Accident, Family};
 use atc_adversary::world::World;
 use atc_adversary::{device, stations, trace};
 use atc_film::Class;
+use atc_oracle::chart::{self, View};
 use atc_oracle::film::{self, Setting};
+use atc_oracle::trace::Replies;
 
 /// An episode with every weapon, said to end in an accident. (There is none: it is the kernel as it is.)
 fn episode(station: &str, seed: u64, cycles: i64) -> String {
@@ -32,6 +34,22 @@ fn episode(station: &str, seed: u64, cycles: i64) -> String {
     let scenario = Scenario { setting, moves };
     let find = Find { accident, after: 0, seed, scenario, measured: Measured::default() };
     trace::of(&mut *kernel, &ground, &description, &find).expect("a trace").to_string()
+}
+
+/// A station of 102 routes: its chart has a row for each circuit, and its film the drawing of its layout. The kernel in a page has no room for it.
+#[test]
+fn a_large_station_is_drawn() {
+    let traced = film::read(&episode("central", 1, 300), None).expect("a trace");
+    let recorded = &traced.trace.cases[0];
+    let setting = Setting { words: traced.words.clone(), ..Setting::default() };
+    let film = film::film(recorded, &setting).expect("the kernel answers as it did");
+    assert_eq!((film.frames, film.plans[0].name.as_str()), (300, "Central"));
+    assert!(film.plans[0].svg.contains("WSD") && film.events.iter().any(|event| event.class == Class::Output));
+    let kernel = Setting { kernel: Some(vec![0]), ..setting };
+    let refused = film::film(recorded, &kernel).expect_err("too large").to_string();
+    assert!(refused.contains("small stations"), "{refused}");
+    let chart = chart::svg(&traced.trace, Replies::MustAgree, &View::default()).expect("a chart");
+    assert!(["WSD", "9W", "EL8"].iter().all(|circuit| chart.contains(circuit)) && !chart.contains("differs"));
 }
 
 #[test]
