@@ -184,7 +184,8 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize, Z: S
         }
         let plan = machine.layout().plan();
         let mut names = Vec::new();
-        for ((name, route), state) in machine.names().routes.iter().zip(&plan.routes).zip(&moment.state.routes) {
+        let routes = machine.names().routes.iter().zip(&plan.routes).zip(&moment.state.routes);
+        for ((name, route), state) in routes.filter(|(_, state)| state.is_held()) {
             if state.path(route).circuits.meets(circuit) {
                 names.push(name.clone());
             } else if state.overlap(route).circuits.meets(circuit) {

@@ -127,7 +127,8 @@ fn circuits<const R: usize, const P: usize, const N: usize, const S: usize, Z: S
     // Who holds a circuit, and how: by its path before its overlap.
     let holder = |now: &Moment<'_, R, S, Z>, circuit: CircuitSet<Z>| {
         let mut found = (String::new(), "");
-        for ((name, route), state) in names.routes.iter().zip(&plan.routes).zip(&now.state.routes) {
+        let routes = names.routes.iter().zip(&plan.routes).zip(&now.state.routes);
+        for ((name, route), state) in routes.filter(|(_, state)| state.is_held()) {
             if state.path(route).circuits.meets(circuit) {
                 return (format!("{name}, {}", Phase(state.phase).name()), Phase(state.phase).name());
             }
@@ -213,7 +214,8 @@ fn points<const R: usize, const P: usize, const N: usize, const S: usize, Z: Siz
         let it = PointSet::nth(number);
         let locked = |now: &Moment<'_, R, S, Z>| {
             let mut by = Vec::new();
-            for ((route, of), state) in machine.names().routes.iter().zip(&plan.routes).zip(&now.state.routes) {
+            let routes = machine.names().routes.iter().zip(&plan.routes).zip(&now.state.routes);
+            for ((route, of), state) in routes.filter(|(_, state)| state.is_held()) {
                 let positions = state.positions(of);
                 for (set, position) in [(positions.normal, Position::Normal), (positions.reverse, Position::Reverse)] {
                     if set.meets(it) {
