@@ -263,7 +263,7 @@ pub struct Route {
     /// Why the overlap may be shorter than the least one, or missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short_overlap: Option<At<String>>,
-    /// Why no train changes ends where the route ends; asked only where a point lies between there and the first signal on the way back.
+    /// Why no train changes ends where the route ends; asked only where a point or a crossing lies between there and the first signal on the way back.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_reversal: Option<At<String>>,
     /// The circuits on which a train may be that counts on the signal [default: back to where a braking train is covered, and all of the track before

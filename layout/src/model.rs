@@ -332,6 +332,11 @@ impl Route {
         self.path.iter().map(|place| place.circuit)
     }
 
+    /// The circuits that it holds: path and overlap.
+    pub fn held(&self) -> Circuits {
+        self.circuits().chain(self.overlap.iter().copied()).collect()
+    }
+
     /// The last circuit of the path.
     pub fn last(&self) -> Option<usize> {
         self.path.last().map(|place| place.circuit)

@@ -150,7 +150,7 @@ impl Rule {
             Self::LineWithoutSegment => "where the line goes on unseen, the outermost circuit of a segment ends",
             Self::EntryNotPlain => "no point and no crossing lies in the entry of a route",
             Self::PointBeforeSignal => {
-                "no point lies between the end of a route and the first signal on the way back, or the file says why no train changes ends there"
+                "no point and no crossing lies between the end of a route and the first signal on the way back, or the file says why no train changes ends there"
             }
             Self::SegmentElsewhere => {
                 "a route comes from the segment that it enters from, and goes out to the one that follows its end"

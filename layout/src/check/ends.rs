@@ -6,7 +6,7 @@ use crate::derive::{Shortfall, back, signals_behind_points};
 use crate::form;
 use crate::form::EndKind;
 use crate::graph::Kind;
-use crate::model::{Circuits, Model, Route};
+use crate::model::{Model, Route};
 use crate::problem::Problem;
 use crate::rule::Rule;
 
@@ -105,7 +105,7 @@ fn approach(given: &form::Route, model: &Model, route: &Route, problems: &mut Ve
         );
         problems.push(Problem::new(Rule::ApproachTooShort, span, what, right));
     }
-    let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
+    let ahead = route.held();
     let everything = back(model, route, u32::MAX, Some(&route.approach));
     for apart in route.approach.difference(&everything.circuits).filter(|apart| !ahead.contains(apart)) {
         let what = format!(

@@ -29,7 +29,7 @@ pub enum Shortfall {
 /// buffer stops and at the circuits that the route holds; uses no circuit that is not in `within`, if that is given.
 pub fn back(model: &Model, route: &Route, needed: u32, within: Option<&Circuits>) -> Back {
     let graph = &model.graph;
-    let ahead: Circuits = route.circuits().chain(route.overlap.iter().copied()).collect();
+    let ahead = route.held();
     let mut found = Back { circuits: BTreeSet::new(), short: None };
     // The least distance from the signal at which a way back enters a circuit by a joint, on the track before the signal or farther back.
     let mut nearest: BTreeMap<(usize, usize, bool), u32> = BTreeMap::new();

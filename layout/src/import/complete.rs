@@ -37,10 +37,10 @@ pub fn complete(station: &mut Station, form: &str, report: &mut Report) {
         if route.is_sound() && !derive::signals_behind_points(&model, route).is_empty() {
             let given = &mut station.routes[number];
             given.no_reversal = Some(At::derived(format!(
-                "assumed on import: no route of the {form} file begins there for the way back"
+                "assumed on import: the {form} file does not show that each train has a signal ahead there before the next point"
             )));
             report.defaulted.push(format!(
-                "route {}: no train is taken to change ends where it ends: a point lies before the next signal back",
+                "route {}: no train is taken to change ends where it ends: a point may lie before the signal that it comes to first",
                 given.name
             ));
         }

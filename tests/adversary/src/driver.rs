@@ -106,8 +106,14 @@ pub fn decide(train: &mut Train, ground: &Ground, points: &Points, (proceed, oth
     next_speed(train.speed, wanted, distance - gap - MARGIN_MM, ground.brake, ground.cycle_ms)
 }
 
-/// Looks ahead from signal to signal.
-fn look(train: &Train, ground: &Ground, points: &Points, (proceed, others): (Mask, Mask)) -> Sight {
+/// Looks ahead from signal to signal. Who waits for the signal ahead may not move.
+fn look(train: &Train, ground: &Ground, points: &Points, aspects: (Mask, Mask)) -> Sight {
+    let (sight, waits) = seen(train, ground, points, aspects);
+    if waits { Sight { distance: 0, ahead: 0, ..sight } } else { sight }
+}
+
+/// What the driver sees ahead, and whether he has changed ends and waits for a signal.
+fn seen(train: &Train, ground: &Ground, points: &Points, (proceed, others): (Mask, Mask)) -> (Sight, bool) {
     let front = train.front();
     let here = train.front_circuit(ground);
     let on_line = ground.lines.iter().any(|line| line.mask & bit(here) != 0);
@@ -135,29 +141,26 @@ fn look(train: &Train, ground: &Ground, points: &Points, (proceed, others): (Mas
             };
             match (0..ground.routes.len()).find(shown) {
                 Some(number) => (route, waits) = (Some(number), false),
-                None if waits && circuit != here => return Sight { distance: 0, ahead: 0, ..sight },
-                None => return sight,
+                None => return (sight, waits && circuit != here),
             }
         }
         // Where no route goes on, a board stands (`signal-at-the-end`).
         let ends = |route: &super::ground::Route| {
             route.exit == joint && route.path.last() == Some(&circuit) && route.lines[1].is_none()
         };
-        let waiting = Sight { distance: 0, ahead: 0, ..sight };
-        let ends_here = !at_signal(joint, circuit) && ground.routes.iter().any(ends);
-        if ends_here {
-            return if waits && circuit != here { waiting } else { sight };
+        if !at_signal(joint, circuit) && ground.routes.iter().any(ends) {
+            return (sight, waits && circuit != here);
         }
-        let Some(next) = ground.across(joint, piece) else { return if waits { waiting } else { sight } };
+        let Some(next) = ground.across(joint, piece) else { return (sight, waits) };
         let to = ground.pieces[next].circuit;
         if waits && (others & bit(to) != 0 || ground.pieces[next].point.is_some() && !from_an_end) {
-            return waiting;
+            return (sight, true);
         }
         // Onto plain line, and off it where no signal stands, he keeps to the telegram.
         let is_line = |circuit: usize| ground.lines.iter().any(|line| line.mask & bit(circuit) != 0);
         let by_telegram = to >= ground.seen || is_line(to) || is_line(circuit) && !at_signal(joint, circuit);
         if by_telegram && train.heard.hold & bit(to) == 0 {
-            return if waits { waiting } else { sight };
+            return (sight, waits);
         }
         if route.is_some_and(|route| ground.routes[route].mask & bit(to) == 0) {
             route = None;
@@ -171,7 +174,7 @@ fn look(train: &Train, ground: &Ground, points: &Points, (proceed, others): (Mas
         sight.distance += under.length;
         (piece, joint) = (next, under.exit);
     }
-    if waits { Sight { distance: 0, ahead: 0, ..sight } } else { sight }
+    (sight, waits)
 }
 
 /// The square root, rounded down.
