@@ -109,7 +109,7 @@
 #define ATC_RECEPTION_NOTHING 2
 
 /// The size of an interlocking in bytes.
-#define ATC_INTERLOCKING_SIZE 23352
+#define ATC_INTERLOCKING_SIZE 32056
 
 /// The alignment of an interlocking in bytes.
 #define ATC_INTERLOCKING_ALIGN 8
@@ -734,6 +734,8 @@ typedef struct atc_element {
   uint32_t normal;
   /// The points that must stand reverse, flank points included.
   uint32_t reverse;
+  /// The circuits beside it that are proved clear and not run over, as a set.
+  uint64_t beside;
 } atc_element;
 
 /// A route: from the signal at the exit of `entry` over its path to the end of its last circuit.
@@ -839,7 +841,7 @@ typedef struct atc_place {
 /// An interlocking with its plan and its state. Its bytes are the library's; it may be moved and copied as a whole.
 typedef struct atc_interlocking {
   /// Not to be read or written.
-  uint64_t opaque[2919];
+  uint64_t opaque[4007];
 } atc_interlocking;
 
 /// One logic cycle's input. A set has bit `i` for the thing of number `i`.

@@ -253,6 +253,7 @@ fn route_of<const P: usize, Z: Size>(route: &model::Route) -> Route<P, Z> {
         overlap: Element {
             circuits: circuits(route.overlap.iter().copied()),
             positions: positions(&route.overlap_positions),
+            beside: circuits(route.overlap_beside.iter().copied()),
         },
         beyond: circuits(route.beyond.iter().copied()),
         continuing: routes(route.continuing.iter().copied()),
@@ -268,7 +269,11 @@ fn route_of<const P: usize, Z: Size>(route: &model::Route) -> Route<P, Z> {
         ..Route::NONE
     };
     for (element, place) in made.path.iter_mut().zip(&route.path) {
-        *element = Element { circuits: CircuitSet::nth(place.circuit), positions: positions(&place.positions) };
+        *element = Element {
+            circuits: CircuitSet::nth(place.circuit),
+            positions: positions(&place.positions),
+            beside: circuits(place.beside.iter().copied()),
+        };
     }
     made
 }

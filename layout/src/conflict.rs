@@ -11,6 +11,8 @@ pub enum Reason {
     Point,
     /// The overlap of one has a circuit of the other's path or overlap, and the other does not continue it.
     Overlap,
+    /// A circuit beside the path or overlap of one is the other's, or fouls it.
+    Beside,
     /// The berth of one has the last circuit of the other, until the other's train stands there and its overlap is given up.
     Berth,
     /// They start from one circuit in opposite directions.
@@ -28,6 +30,7 @@ impl Reason {
             Self::Circuit => "circuit",
             Self::Point => "point",
             Self::Overlap => "overlap",
+            Self::Beside => "beside",
             Self::Berth => "berth",
             Self::Start => "start",
             Self::Declared => "declared",
@@ -41,6 +44,7 @@ impl Reason {
             Self::Circuit => 'c',
             Self::Point => 'p',
             Self::Overlap => 'o',
+            Self::Beside => 'f',
             Self::Berth => 'e',
             Self::Start => 'b',
             Self::Declared => 'd',
@@ -65,6 +69,12 @@ pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
         let touched = touches(overlap, path, false) || touches(overlap, path, true) && !overlap.calling_on;
         touched && !overlap.continuing.contains(&number)
     };
+    let beside = |a: &Route, number: usize, b: &Route| {
+        let beside = a.beside();
+        let goes_on = a.continuing.contains(&number);
+        b.circuits().any(|over| beside.contains(&over)) && !goes_on
+            || b.overlap.iter().any(|over| beside.contains(over))
+    };
     let overlaps = a.overlap.iter().any(|circuit| b.overlap.contains(circuit));
     let opposed =
         a.positions().any(|(point, position)| b.positions().any(|(same, needed)| same == point && needed != position));
@@ -74,6 +84,7 @@ pub fn reasons(model: &Model, one: usize, other: usize) -> Vec<Reason> {
         (meets(a, b), Reason::Circuit),
         (opposed, Reason::Point),
         (overlaps || under(a, other, b) || under(b, one, a), Reason::Overlap),
+        (beside(a, other, b) || beside(b, one, a), Reason::Beside),
         (ends(a, b) || ends(b, a), Reason::Berth),
         (starts, Reason::Start),
         (!starts && (a.conflicts.contains(&other) || b.conflicts.contains(&one)), Reason::Declared),

@@ -223,7 +223,7 @@ pub struct Segment {
     pub speed_kmh: Option<At<u16>>,
 }
 
-/// Two circuits between which there is no room for two trains.
+/// Two circuits between which there is no room for two trains: a route over one of them proves the other clear.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fouling {
@@ -260,6 +260,10 @@ pub struct Route {
     /// A calling-on route: the occupied track behind the end, in order of travel, into which its train goes on sight. Such a route has no overlap.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub berth: Vec<At<Element>>,
+    /// Circuits that are proved clear and not run over, as long as any of the path is held. What a pair in `[[fouling]]` says need not be said here: it
+    /// is released place by place.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub proved_clear: Vec<At<String>>,
     /// Why the overlap may be shorter than the least one, or missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short_overlap: Option<At<String>>,

@@ -213,6 +213,8 @@ pub struct Place {
     pub tracks: Vec<usize>,
     /// Every position that is needed there, flank included.
     pub positions: Positions,
+    /// The circuits beside it, which are proved clear and not run over.
+    pub beside: Circuits,
     /// Where the place is named.
     pub span: Range<usize>,
 }
@@ -242,6 +244,8 @@ pub struct Route {
     pub overlap: Vec<usize>,
     /// The positions of points in the overlap.
     pub overlap_positions: Positions,
+    /// The circuits beside the overlap.
+    pub overlap_beside: Circuits,
     /// The points that the overlap runs over.
     pub overlap_passed: Vec<Passed>,
     /// Why the overlap may be short or missing.
@@ -294,6 +298,7 @@ impl Default for Route {
             berth_end: 0,
             overlap: Vec::new(),
             overlap_positions: Positions::new(),
+            overlap_beside: Circuits::new(),
             overlap_passed: Vec::new(),
             short_overlap: None,
             no_reversal: None,
@@ -335,6 +340,11 @@ impl Route {
     /// The circuits that it holds: path and overlap.
     pub fn held(&self) -> Circuits {
         self.circuits().chain(self.overlap.iter().copied()).collect()
+    }
+
+    /// The circuits beside path and overlap.
+    pub fn beside(&self) -> Circuits {
+        self.path.iter().flat_map(|place| &place.beside).chain(&self.overlap_beside).copied().collect()
     }
 
     /// The last circuit of the path.

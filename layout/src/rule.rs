@@ -48,8 +48,10 @@ pub enum Rule {
     NoFlank,
     /// The overlap is as long as the least one, or the file says why not.
     OverlapTooShort,
-    /// A route over one of two circuits that foul each other goes over the other, too.
+    /// Two circuits that foul each other are of routes, and not of plain line.
     FoulingNotHeld,
+    /// What a route proves clear beside its path is not its own.
+    ProvedClearOwn,
     /// T_clear is longer than the longest tolerated loss of shunt.
     ClearUnderShunt,
     /// No train runs through a whole circuit while it is lost, or between two cycles.
@@ -131,7 +133,8 @@ impl Rule {
             }
             Self::NoFlank => "a track from which a vehicle can run into the path is kept off, or the file says why not",
             Self::OverlapTooShort => "the overlap is as long as the least one, or the file says why not",
-            Self::FoulingNotHeld => "a route over one of two circuits that foul each other goes over the other, too",
+            Self::FoulingNotHeld => "two circuits that foul each other are of routes, and not of plain line",
+            Self::ProvedClearOwn => "what a route proves clear beside its path is not its own path, overlap or entry",
             Self::ClearUnderShunt => "T_clear is at least twice the longest tolerated loss of shunt",
             Self::CircuitTooShort => "no train runs through a whole circuit while it is lost, or between two cycles",
             Self::TurnUnderTelegram => "plain line turns only after telegrams are too old to be acted on",
@@ -189,7 +192,9 @@ const fn of_plan(rule: Kernel) -> &'static str {
             "a berth is the track from the end of its calling-on route to the next signal, and no throat of a line; drivers see the aspect"
         }
         Kernel::ThroatsDiffer => "all routes out to a segment end at the segment's throat",
-        Kernel::SegmentShared => "a segment shares no circuit with a path, an overlap or another segment",
+        Kernel::SegmentShared => {
+            "a segment shares no circuit with a path, an overlap, what is beside them or another segment"
+        }
         Kernel::PointInSegment => "no circuit of a segment is a detector of a point",
         Kernel::NotOneCircuit => "each place of a path or a segment is one circuit",
         Kernel::CircuitTwice => "no circuit comes twice in a path or a segment",

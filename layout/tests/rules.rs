@@ -1,6 +1,7 @@
 //! Each rule of a layout file is broken by a file that breaks nothing else, and the message says where.
 
 use atc_kernel::interlocking::{Heading, Rule as Kernel, Small};
+use atc_layout::model::Circuits;
 use atc_layout::{Description, Errors, Rule};
 use std::time::{Duration, Instant};
 
@@ -431,19 +432,74 @@ fn overlap_too_short() {
 /// The circuit where a train may stand that fouls the route is kept clear only as a circuit of that route.
 #[test]
 fn fouling_not_held() {
-    let fouls =
-        |text: &str, one: &str, other: &str| format!("{text}\n[[fouling]]\nbetween = [\"{one}\", \"{other}\"]\n");
-    breaks(&fouls(JUNCTION, "P1T", "P3T"), Rule::FoulingNotHeld, "is set while a train stands in");
-    // The routes exclude each other by P1T, which is released while the train stands in 1T.
-    breaks(&fouls(LOOP, "1T", "2T"), Rule::FoulingNotHeld, "route W-1 over 1T is set while a train stands in 2T");
-    // A train at the signal in W1 is in no route.
-    breaks(&fouls(LOOP, "W1", "2T"), Rule::FoulingNotHeld, "over 2T is set while a train stands in W1, which fouls it");
-    breaks(&fouls(LOOP, "W2", "E2"), Rule::FoulingNotHeld, "W2 and E2 foul each other, and no route goes over them");
-    // A point that is run over while a train stands beside it; the same as a detector.
-    for given in ["fouled_in = [\"1T\"]", "detectors = [\"P1T\", \"1T\"]"] {
+    // Trains come onto plain line without a route, though none runs over both.
+    breaks(&fouls(LOOP, "W1", "2T"), Rule::FoulingNotHeld, "W1 and 2T foul each other, and W1 is plain line");
+    breaks(&fouls(LOOP, "W2", "E2"), Rule::FoulingNotHeld, "W2 and E2 foul each other, and W2 is plain line");
+    for given in ["fouled_in = [\"W1\"]", "detectors = [\"P1T\", \"W1\"]"] {
         let text = change(LOOP, "name = \"P1\"", "toe", &format!("{given}\ntoe"));
-        breaks(&text, Rule::FoulingNotHeld, "over P1T is set while a train stands in 1T");
+        breaks(&text, Rule::FoulingNotHeld, "P1T and W1 foul each other, and W1 is plain line");
     }
+    // A siding that no route leads into.
+    let siding = "[[circuit]]\nname = \"S1\"\nlength_m = 200\nleft = \"s\"\nright = \"u\"\n
+        [[end]]\njoint = \"s\"\nkind = \"buffer\"\n[[end]]\njoint = \"u\"\nkind = \"buffer\"\n";
+    breaks(
+        &fouls(&format!("{LOOP}\n{siding}"), "S1", "2T"),
+        Rule::FoulingNotHeld,
+        "S1 and 2T foul each other, and no route runs over S1",
+    );
+}
+
+fn fouls(text: &str, one: &str, other: &str) -> String {
+    format!("{text}\n[[fouling]]\nbetween = [\"{one}\", \"{other}\"]\n")
+}
+
+/// What a route of a layout proves clear beside its path, by places, and beside its overlap.
+fn beside(text: &str, route: &str) -> Vec<String> {
+    let model =
+        Description::from_toml("station.toml", text).and_then(|it| it.model()).unwrap_or_else(|all| panic!("{all}"));
+    let route = model.routes.iter().find(|it| it.name == route).expect("a route");
+    let named =
+        |all: &Circuits| all.iter().map(|circuit| model.circuits[*circuit].name.as_str()).collect::<Vec<_>>().join(" ");
+    route.path.iter().map(|place| named(&place.beside)).chain([named(&route.overlap_beside)]).collect()
+}
+
+/// A train stands in one of two circuits that foul each other: a route over the other proves it clear; who runs over both, or starts there, has it
+/// anyway.
+#[test]
+fn what_fouls_is_proved_clear() {
+    assert_eq!(beside(LOOP, "W-1"), ["", "", ""]);
+    let all = [
+        ("W-1", vec!["2T", "", ""]),
+        ("W-2", vec!["", "", ""]),
+        ("1-W", vec!["2T", ""]),
+        ("2-W", vec!["", ""]),
+        ("2-E", vec!["", ""]),
+        ("1-E", vec!["", ""]),
+        ("E-1", vec!["", "", "2T"]),
+        ("E-2", vec!["", "", ""]),
+    ];
+    let fouled = |given: &str| change(LOOP, "name = \"P1\"", "toe", &format!("{given}\ntoe"));
+    // The same of a point, and of a detector.
+    let pair = fouls(LOOP, "P1T", "2T");
+    for text in [pair, fouled("fouled_in = [\"2T\"]"), fouled("detectors = [\"P1T\", \"2T\"]")] {
+        for (route, expected) in &all {
+            assert_eq!(beside(&text, route), *expected, "{route}");
+        }
+    }
+    // More than that is named for a route, and held with all of its path.
+    let more = change(LOOP, "name = \"W-2\"", "path", "proved_clear = [\"1T\"]\npath");
+    assert_eq!(beside(&more, "W-2"), ["1T", "1T", ""]);
+}
+
+#[test]
+fn proved_clear_own() {
+    for own in ["P1T", "1T", "W1"] {
+        let text = change(LOOP, "name = \"W-1\"", "path", &format!("proved_clear = [\"{own}\"]\npath"));
+        breaks(&text, Rule::ProvedClearOwn, &format!("route W-1: {own} is its own"));
+    }
+    let text = change(LOOP, "name = \"W-1\"", "path", "proved_clear = [\"E1\"]\npath");
+    let shared = Rule::Plan(Kernel::SegmentShared);
+    breaks(&text, shared, "what is beside them or another segment");
 }
 
 #[test]
@@ -544,7 +600,7 @@ fn point_in_segment() {
     );
     // One that lies elsewhere and is fouled from the line.
     let fouled = change(LOOP, "name = \"P1\"", "toe", "fouled_in = [\"W1\"]\ntoe");
-    breaks(&fouled, Rule::FoulingNotHeld, "route W-1 over P1T is set while a train stands in W1");
+    breaks(&fouled, Rule::FoulingNotHeld, "P1T and W1 foul each other, and W1 is plain line");
 }
 
 /// Who waits at the signal may stand on the other leg of the point, or on the other track.

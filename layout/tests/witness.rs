@@ -19,6 +19,9 @@ const CROSSOVER: &str = include_str!("files/crossover.toml");
 /// Two circuits in line between which there is no room for two trains.
 const FOULING: &str = include_str!("files/fouling.toml");
 
+/// A passing loop where a train that stands in 2T is in the way of one in P1T.
+const SHORT_JOINT: &str = include_str!("files/short-joint.toml");
+
 /// A single line that a track crosses on the level.
 const DIAMOND: &str = include_str!("files/diamond.toml");
 const LONG_TRACK: &str = include_str!("files/long-track.toml");
@@ -176,7 +179,19 @@ const WRONG: &[Wrong] = &[
         "one of two circuits that foul each other is not held",
         FOULING,
         |plan, it| plan.routes[it.route("W-M")].length = 1,
-        "foul each other, and it holds one of them",
+        "foul each other, and it holds M1 without proving M2 clear",
+    ),
+    (
+        "what fouls a place is not proved clear",
+        SHORT_JOINT,
+        |plan, it| plan.routes[it.route("W-1")].path[0].beside = CircuitSet::EMPTY,
+        "P1T and 2T foul each other, and it holds P1T without proving 2T clear",
+    ),
+    (
+        "what a route names is proved clear for a part of its path",
+        SHORT_JOINT,
+        |plan, it| plan.routes[it.route("W-2")].path[1].beside = CircuitSet::EMPTY,
+        "the file has 1T proved clear, and the plan has not",
     ),
     (
         "no signal at the end of a track",

@@ -22,6 +22,7 @@ struct route {
     set approach, path, overlap, beyond, continuing, conflicts;
     int place[PLACES];
     struct needs needs[PLACES], overlap_needs;
+    set beside[PLACES], overlap_beside; // where a vehicle would be in the way, and the route does not run
     int64_t drive, release, stay;
     int code, overlap_code;
 };
@@ -72,7 +73,7 @@ static struct {
 static enum position detected[POINTS], settled[POINTS];
 static set consent; // of segments
 static bool proceed[ROUTES];
-static set kept[ROUTES], running; // by each route; routes
+static set kept[ROUTES], kept_beside, running; // by each route; beside that; routes
 static bool kept_point[POINTS];
 
 static set one(int circuit) { return (set)1 << circuit; }
@@ -122,9 +123,12 @@ static bool position(const struct json *value, enum position *out) {
     return true;
 }
 
-static bool element(const struct json *value, set *circuits, struct needs *needs) {
+static bool element(const struct json *value, set *circuits, struct needs *needs, set *beside) {
     const struct json *points = value->kind == J_OBJECT ? json_field(value, "points") : NULL;
     if (!points || points->kind != J_OBJECT || !names(json_field(value, "circuits"), find_circuit, circuits)) return false;
+    const struct json *near = json_field(value, "beside");
+    *beside = 0;
+    if (near && !names(near, find_circuit, beside)) return false;
     for (const struct json *item = json_first(points); item; item = json_next(item)) {
         struct json key = {.kind = J_STRING, .text = item->key};
         int at = find_point(&key);
@@ -155,7 +159,7 @@ static bool read_route(const struct json *value, struct route *route) {
         !json_whole(json_field(value, "stay_cycles"), 65535, &route->stay) || !json_whole(json_field(value, "speed_code"), 7, &code) ||
         (beside && beside->kind != J_NULL && !json_whole(beside, 7, &beyond)) ||
         (cab && !json_bool(cab, &route->cab)) || (calling && !json_bool(calling, &route->calling)) || !path || path->kind != J_ARRAY || path->size < 1 || path->size > PLACES || !overlap ||
-        !element(overlap, &route->overlap, &route->overlap_needs) || !entry)
+        !element(overlap, &route->overlap, &route->overlap_needs, &route->overlap_beside) || !entry)
         return false;
     route->entry = lowest(entry);
     route->from = from ? lowest(from) : -1;
@@ -163,7 +167,7 @@ static bool read_route(const struct json *value, struct route *route) {
     route->code = (int)code;
     route->overlap_code = beyond < 0 ? (int)code : (int)beyond;
     for (const struct json *item = json_first(path); item; item = json_next(item)) {
-        if (!element(item, &circuits, &route->needs[route->length]) || !circuits) return false;
+        if (!element(item, &circuits, &route->needs[route->length], &route->beside[route->length]) || !circuits) return false;
         route->place[route->length++] = lowest(circuits);
         route->path |= circuits;
     }
@@ -256,6 +260,20 @@ static set held_path(int r) {
 }
 
 static set held_overlap(int r) { return now.route[r].phase != IDLE && now.route[r].overlap ? plan.route[r].overlap : 0; }
+
+// What must be clear beside what a route holds; of a route that holds nothing, nothing.
+static set held_beside(int r) {
+    set circuits = 0;
+    if (now.route[r].phase == IDLE || FAULTY(41)) return 0;
+    for (int i = now.route[r].tail; i < plan.route[r].length; i++) circuits |= plan.route[r].beside[i];
+    return circuits | (now.route[r].overlap ? plan.route[r].overlap_beside : 0);
+}
+
+static set all_beside(int r) {
+    set circuits = plan.route[r].overlap_beside;
+    for (int i = 0; i < plan.route[r].length; i++) circuits |= plan.route[r].beside[i];
+    return circuits;
+}
 
 static enum position held_point(int r, int point) {
     if (now.route[r].phase == IDLE) return NOWHERE;
@@ -367,6 +385,8 @@ static void keep(int r, set *circuits) {
     if (!runs && !called && !(stops && (first >= 0 || (route->overlap & now.occupied)))) return;
     if (runs) running |= one(r);
     *circuits = route->overlap;
+    kept_beside |= route->overlap_beside;
+    for (int i = first; i >= 0 && i < route->length; i++) kept_beside |= route->beside[i];
     for (int i = first; i >= 0 && i < route->length; i++) *circuits |= one(route->place[i]);
     for (int p = 0; p < plan.points; p++) {
         if (route->overlap_needs.of[p]) kept_point[p] = true;
@@ -380,6 +400,7 @@ static void sweep(bool starting) {
     set all = 0, routes = 0;
     memset(kept, 0, sizeof kept);
     memset(kept_point, 0, sizeof kept_point);
+    kept_beside = 0;
     running = 0;
     if (starting) return;
     for (int r = 0; r < plan.routes; r++) {
@@ -397,7 +418,7 @@ static void sweep(bool starting) {
 // Whether what a route keeps is in the way of another one.
 static bool in_the_way(int r) {
     const struct route *route = &plan.route[r];
-    set needed = route->path | route->overlap;
+    set needed = route->path | route->overlap, near = all_beside(r);
     for (int other = 0; other < plan.routes; other++) {
         const struct route *its = &plan.route[other];
         bool own = false, begins = false;
@@ -407,7 +428,13 @@ static bool in_the_way(int r) {
             if (meets && !own && (kept[other] & one(its->place[i]))) return true;
             if (its->place[i] == route->entry && its->right == route->right) own = begins = true;
             own = own && !route->calling;
+            // At the end of its route the train may be the one that goes on.
+            bool ends = i == its->length - 1 && its->to < 0 && !(its->overlap & now.occupied);
+            bool his = ends && own && its->place[i] == route->entry && its->right == route->right;
+            bool strikes = (its->beside[i] & needed) || (near & one(its->place[i]));
+            if (strikes && !his && (kept[other] & one(its->place[i]))) return true;
         }
+        if (kept[other] && ((its->overlap_beside & needed) || (near & its->overlap))) return true;
         if ((needed & its->overlap & kept[other]) && (!own || (its->overlap & now.occupied))) return true;
         if (kept[other] && (route->conflicts & one(other)) && !begins && !(needed & (its->path | its->overlap))) return true;
     }
@@ -430,8 +457,11 @@ static const char *set_route(int r) {
         set path = held_path(other), overlap = held_overlap(other);
         if ((route->conflicts & one(other)) && !FAULTY(11)) return "conflict";
         bool stands = !now.route[other].overlap && now.route[other].tail == plan.route[other].length - 1;
-        bool beside = (route->continuing & one(other)) || (route->calling && stands);
-        if ((route->path & path) || ((route->path & overlap) && !(plan.route[other].continuing & one(r)))) return "path-held";
+        bool after = route->continuing & one(other), before = plan.route[other].continuing & one(r);
+        bool beside = after || (route->calling && stands);
+        set theirs = overlap | (after ? 0 : path), mine = route->overlap | (before ? 0 : route->path);
+        if ((route->path & path) || ((route->path & overlap) && !before)) return "path-held";
+        if (((all_beside(r) & theirs) || (held_beside(other) & mine)) && !FAULTY(42)) return "path-held";
         if (((route->overlap & overlap) && !FAULTY(12)) || ((route->overlap & path) && !beside)) return "overlap-held";
         for (int p = 0; p < plan.points; p++) {
             enum position want = wanted_point(r, p), held = held_point(other, p);
@@ -439,14 +469,14 @@ static const char *set_route(int r) {
         }
     }
     if (FAULTY(14) && ((route->path | route->overlap) & now.blocked)) return "blocked";
-    if ((route->path | (route->calling ? 0 : route->overlap)) & now.occupied) return "occupied";
+    if ((route->path | all_beside(r) | (route->calling ? 0 : route->overlap)) & now.occupied) return "occupied";
     if (route->calling && (!(now.occupied & one(route->entry)) || !(now.occupied & route->overlap))) return "not-called-for";
     if (in_the_way(r)) return "unswept";
     for (int p = 0; p < plan.points; p++) {
         enum position want = wanted_point(r, p);
         if (want && want != detected[p] && kept_point[p]) return "unswept";
     }
-    if (((route->path | route->overlap) & now.blocked) || cut_off(route) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
+    if (((route->path | route->overlap | all_beside(r)) & now.blocked) || cut_off(route) || (route->to >= 0 && line_blocked(route->to))) return "blocked";
     for (int p = 0; p < plan.points; p++) {
         enum position want = wanted_point(r, p);
         if (want && want != detected[p] && (plan.detectors[p] & now.blocked)) return "blocked";
@@ -521,6 +551,7 @@ static const char *turn_away(int s) {
 static bool point_sound(int p, enum position need) { return !need || (settled[p] == need && !now.drives[p]); }
 
 static bool points_sound(int r, int place) {
+    if (plan.route[r].beside[place] & (now.occupied | now.blocked) && !FAULTY(41)) return false;
     for (int p = 0; p < plan.points; p++)
         if (!point_sound(p, plan.route[r].needs[place].of[p])) return false;
     return true;
@@ -536,7 +567,8 @@ static bool all_points_sound(int r) {
 
 static bool clear_and_unblocked(int r) {
     set clear = held_path(r) | (plan.route[r].calling ? 0 : held_overlap(r));
-    return !(clear & now.occupied) && !cut_off(&plan.route[r]) && !((held_path(r) | held_overlap(r)) & now.blocked);
+    set near = held_beside(r);
+    return !((clear | near) & now.occupied) && !cut_off(&plan.route[r]) && !((held_path(r) | held_overlap(r) | near) & now.blocked);
 }
 
 static struct grant grants[ROUTES + CIRCUITS];
@@ -844,12 +876,18 @@ static bool step(const struct json *input) {
     }
 
     // Confirmation.
-    set held = 0;
+    set held = kept_beside;
     for (int p = 0; p < plan.points; p++) held |= settled[p] == NOWHERE || now.drives[p] ? plan.detectors[p] : 0;
     for (int r = 0; r < plan.routes; r++) {
-        held |= held_path(r) | held_overlap(r);
+        held |= held_path(r) | held_overlap(r) | held_beside(r);
         if (now.route[r].proved && now.route[r].rear == APPROACH && somebody_behind_entry(&plan.route[r])) held |= plan.route[r].approach;
         for (int p = 0; p < plan.points; p++) held |= held_point(r, p) ? plan.detectors[p] : 0;
+        // Nobody works beside what stands there.
+        for (int i = 0; i <= plan.route[r].length; i++) {
+            bool last = i == plan.route[r].length;
+            set own = last ? plan.route[r].overlap : one(plan.route[r].place[i]), near = last ? plan.route[r].overlap_beside : plan.route[r].beside[i];
+            held |= (near & now.occupied ? own : 0) | (own & now.occupied ? near : 0);
+        }
     }
     for (int c = 0; c < plan.circuits && !starting; c++) {
         if (!(now.blocked & one(c)) || ((held | (FAULTY(38) ? 0 : now.unswept)) & one(c)) || (now.occupied & one(c))) continue;

@@ -193,6 +193,14 @@ mod tests {
     /// Every route that is asked for is set, in every period: the trains run.
     #[test]
     fn the_trains_run() {
+        // A layout of this size is moved some times.
+        let thread = std::thread::Builder::new().stack_size(64 << 20).spawn(run_them).expect("a thread");
+        if let Err(panic) = thread.join() {
+            std::panic::resume_unwind(panic);
+        }
+    }
+
+    fn run_them() {
         let period = PERIOD as u64;
         let station = station();
         assert_eq!(run(&station, &traffic(SMALL), period).1, 16);

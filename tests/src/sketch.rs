@@ -125,7 +125,7 @@ fn routes<Z: Size>(numbers: &[usize]) -> RouteSet<Z> {
 }
 
 fn place<Z: Size>(circuits_of: &[usize], needs: &[Need]) -> Element<Z> {
-    Element { circuits: circuits(circuits_of), positions: positions(needs) }
+    Element { circuits: circuits(circuits_of), positions: positions(needs), ..Element::NONE }
 }
 
 impl Sketch {

@@ -52,7 +52,7 @@ fn positions(of: Positions) -> Positions<Large> {
 }
 
 fn element(of: Element) -> Element<Large> {
-    Element { circuits: circuits(of.circuits), positions: positions(of.positions) }
+    Element { circuits: circuits(of.circuits), positions: positions(of.positions), ..Element::NONE }
 }
 
 fn id(number: usize) -> u8 {

@@ -13,10 +13,10 @@ use crate::memory::{Reader, Writer};
 
 type KernelPlan = atc_kernel::interlocking::Plan<64, 16, 32, 8>;
 
-/// The bytes of a plan: 64 routes of 325, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times
+/// The bytes of a plan: 64 routes of 461, 8 segments of 139, 32 points of 8, 64 lengths, limits, distances, times
 /// and counts;
 /// 1 to fill.
-pub(super) const PARAMETERS: usize = 22456;
+pub(super) const PARAMETERS: usize = 31160;
 
 fn put_positions(positions: Positions, to: &mut Writer<'_>) {
     to.u32(positions.normal.bits());
@@ -30,6 +30,7 @@ fn take_positions(from: &mut Reader<'_>) -> Option<Positions> {
 fn put_element(element: Element, to: &mut Writer<'_>) {
     to.u64(element.circuits.bits());
     put_positions(element.positions, to);
+    to.u64(element.beside.bits());
 }
 
 fn circuits(from: &mut Reader<'_>) -> Option<CircuitSet> {
@@ -53,7 +54,7 @@ fn heading(from: &mut Reader<'_>) -> Option<Heading> {
 }
 
 fn take_element(from: &mut Reader<'_>) -> Option<Element> {
-    Some(Element { circuits: circuits(from)?, positions: take_positions(from)? })
+    Some(Element { circuits: circuits(from)?, positions: take_positions(from)?, beside: circuits(from)? })
 }
 
 fn put_limits(limits: SpeedLimits, to: &mut Writer<'_>) {

@@ -1,7 +1,7 @@
 //! What C gives and gets: the plan in flat arrays, a cycle's input and its output.
 
 /// The size of an interlocking in bytes.
-pub const ATC_INTERLOCKING_SIZE: usize = 23352;
+pub const ATC_INTERLOCKING_SIZE: usize = 32056;
 /// The alignment of an interlocking in bytes.
 pub const ATC_INTERLOCKING_ALIGN: usize = 8;
 
@@ -116,7 +116,7 @@ pub const ATC_PLACE_CIRCUIT: u32 = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct atc_interlocking {
     /// Not to be read or written.
-    pub opaque: [u64; 2919],
+    pub opaque: [u64; 4007],
 }
 
 /// One place of a route's path, or its overlap: what is held there.
@@ -129,6 +129,8 @@ pub struct atc_element {
     pub normal: u32,
     /// The points that must stand reverse, flank points included.
     pub reverse: u32,
+    /// The circuits beside it that are proved clear and not run over, as a set.
+    pub beside: u64,
 }
 
 /// A route: from the signal at the exit of `entry` over its path to the end of its last circuit.

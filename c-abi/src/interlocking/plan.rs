@@ -111,7 +111,8 @@ fn part<T>(array: &[T], first: u16, length: u16) -> Result<(&[T], u8), atc_statu
 
 fn element(counts: Counts, given: &atc_element) -> Result<Element, atc_status> {
     let (normal, reverse) = (counts.points(given.normal)?, counts.points(given.reverse)?);
-    Ok(Element { circuits: counts.circuits(given.circuits)?, positions: Positions { normal, reverse } })
+    let (circuits, beside) = (counts.circuits(given.circuits)?, counts.circuits(given.beside)?);
+    Ok(Element { circuits, positions: Positions { normal, reverse }, beside })
 }
 
 fn segment(counts: Counts, given: &atc_segment, circuits: &[u8], kept: &mut Segment<16>) -> Result<(), atc_status> {

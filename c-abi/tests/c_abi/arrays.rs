@@ -29,7 +29,8 @@ pub fn heading(heading: Heading) -> u8 {
 
 fn element(element: &Element) -> atc_element {
     let Positions { normal, reverse } = element.positions;
-    atc_element { circuits: element.circuits.bits(), normal: normal.bits(), reverse: reverse.bits() }
+    let (circuits, beside) = (element.circuits.bits(), element.beside.bits());
+    atc_element { circuits, normal: normal.bits(), reverse: reverse.bits(), beside }
 }
 
 impl Arrays {

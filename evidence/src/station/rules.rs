@@ -77,6 +77,7 @@ rules! { FILE, file_is_complete, Rule, (Asked, Stage, Scope), [Rule::Plan(_) | R
     SegmentElsewhere => (Asked::Engineering, Stage::Model, Scope::Routes);
     BeyondApart => (Asked::Engineering, Stage::Model, Scope::Routes);
     FoulingNotHeld => (Asked::Engineering, Stage::Model, Scope::Pairs);
+    ProvedClearOwn => (Asked::Form, Stage::Model, Scope::Routes);
     ClearUnderShunt => (Asked::Engineering, Stage::Model, Scope::File);
     CircuitTooShort => (Asked::Engineering, Stage::Model, Scope::File);
     TurnUnderTelegram => (Asked::Engineering, Stage::Model, Scope::File);

@@ -6,7 +6,7 @@ use crate::device::{Device, OUTPUT};
 use crate::words::INPUT;
 
 /// Room for a plan of the greatest size, or for the words of a cycle.
-const ROOM: usize = 4096;
+const ROOM: usize = 8192;
 
 thread_local! {
     static DEVICE: RefCell<Option<Device>> = const { RefCell::new(None) };

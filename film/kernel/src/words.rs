@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
     }
 
     fn element(&mut self) -> Element {
-        Element { circuits: self.circuits(), positions: self.positions() }
+        Element { circuits: self.circuits(), positions: self.positions(), beside: self.circuits() }
     }
 }
 
@@ -101,7 +101,8 @@ pub fn plan_words(plan: &Whole) -> Vec<u64> {
 }
 
 fn route_words(words: &mut Vec<u64>, route: &Route<16>) {
-    let element = |element: &Element| [element.circuits.bits(), positions_word(element.positions)];
+    let element =
+        |element: &Element| [element.circuits.bits(), positions_word(element.positions), element.beside.bits()];
     words.extend([heading_word(route.heading), route.entry.bits(), route.approach.bits()]);
     words.extend(route.path.iter().flat_map(element));
     words.extend(element(&route.overlap));

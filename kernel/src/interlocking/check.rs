@@ -70,7 +70,7 @@ pub enum Rule {
     TurnsBack,
     /// Engineering: all routes out to a segment end at the segment's throat.
     ThroatsDiffer,
-    /// Needed: a segment shares no circuit with a path, an overlap, a throat or another segment.
+    /// Needed: a segment shares no circuit with a path, an overlap, what is beside them, a throat or another segment.
     SegmentShared,
     /// Engineering: no circuit of a segment is a detector of a point: nothing holds the point for a train on the line.
     PointInSegment,
@@ -212,14 +212,14 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Pl
         all
     }
 
-    /// The circuits of all paths and overlaps.
+    /// The circuits of all paths and overlaps, and beside them.
     #[inline]
     fn all_paths(&self) -> CircuitSet<Z> {
-        let mut all = CircuitSet::EMPTY;
+        let mut all = Element::NONE;
         for route in &self.routes {
-            all = all.or(route.held_from(0).circuits).or(route.overlap.circuits.only_if(route.exists()));
+            all = all.or(route.held_from(0)).or(route.overlap.only_if(route.exists()));
         }
-        all
+        all.circuits.or(all.beside)
     }
 
     /// The rules that no theorem of the machine rests on, but that safe running does.

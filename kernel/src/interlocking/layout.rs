@@ -21,6 +21,41 @@ pub struct Element<Z: Size = Small> {
     pub circuits: CircuitSet<Z>,
     /// The points that must stand so, flank points included.
     pub positions: Positions<Z>,
+    /// The circuits beside it, which are not run over: a vehicle there would foul it. They are proved clear, and kept from other routes.
+    pub beside: CircuitSet<Z>,
+}
+
+impl<Z: Size> Element<Z> {
+    /// Nothing.
+    pub const NONE: Self = Self { circuits: CircuitSet::EMPTY, positions: Positions::NONE, beside: CircuitSet::EMPTY };
+
+    /// What this and `other` hold together.
+    #[inline]
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            circuits: self.circuits.or(other.circuits),
+            positions: self.positions.or(other.positions),
+            beside: self.beside.or(other.beside),
+        }
+    }
+
+    /// This, or nothing.
+    #[inline]
+    #[must_use]
+    pub fn only_if(self, condition: bool) -> Self {
+        Self {
+            circuits: self.circuits.only_if(condition),
+            positions: self.positions.only_if(condition),
+            beside: self.beside.only_if(condition),
+        }
+    }
+
+    /// Whether a train in this place and one in `other` foul each other, without running over a common circuit.
+    #[inline]
+    pub fn fouls(&self, other: &Self) -> bool {
+        self.beside.meets(other.circuits) || other.beside.meets(self.circuits)
+    }
 }
 
 /// A route: from the signal at the exit of `entry` over `path` to the end of its last circuit.
@@ -71,9 +106,9 @@ impl<const P: usize, Z: Size> Route<P, Z> {
         heading: Heading::Right,
         entry: CircuitSet::EMPTY,
         approach: CircuitSet::EMPTY,
-        path: [Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE }; P],
+        path: [Element::NONE; P],
         length: 0,
-        overlap: Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE },
+        overlap: Element::NONE,
         beyond: CircuitSet::EMPTY,
         continuing: RouteSet::EMPTY,
         conflicts: RouteSet::EMPTY,
@@ -96,11 +131,10 @@ impl<const P: usize, Z: Size> Route<P, Z> {
     /// What the places from `first` on hold, without the overlap.
     #[inline]
     pub fn held_from(&self, first: u8) -> Element<Z> {
-        let mut held = Element::default();
+        let mut held = Element::NONE;
         for (place, element) in (0_u8..).zip(Z::used(&self.path, self.length)) {
             if place >= first && place < self.length {
-                held.circuits = held.circuits.or(element.circuits);
-                held.positions = held.positions.or(element.positions);
+                held = held.or(*element);
             }
         }
         held

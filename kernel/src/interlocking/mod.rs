@@ -158,18 +158,20 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         let needs = Needs::of(self, &state.routes).and_out_to(ways.outward);
         //= spec/interlocking.md#ilk-31-blocks-ahead
         //# A block on an unswept circuit MUST NOT be confirmed.
-        let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits);
+        let mut circuits = direction::open_line(self, &waited, (occupied, needs)).or(unswept.circuits).or(ways.beside);
         // Their strokes may begin, or go on.
         let mut moving = PointSet::ALL.without(firm.points());
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
             let ready = held.phase == Phase::Provisional && signal::ready(route, *held, view);
             *held = held.reserve(route, occupied, ready);
             moving = moving.or(held.positions(route).points());
-            circuits = circuits.or(held.circuits(route)).or(held.before_signal(route, occupied));
+            let kept = held.circuits(route).or(held.beside(route));
+            circuits = circuits.or(kept).or(held.before_signal(route, occupied));
         }
         circuits = circuits.or(point::detectors(self, moving));
         if !starting {
-            state.works = state.works.confirm(circuits, occupied);
+            let struck = works::struck(self, state.works, occupied);
+            state.works = state.works.confirm(circuits.or(struck), occupied);
         }
         state.epoch = state.epoch.next();
         let (proceed, grants) = signal::all(self, &state.routes, view);

@@ -5,7 +5,7 @@ use super::route::RouteState;
 use super::set::{CircuitSet, PointId, PointSet, Position, Positions, RouteId, RouteSet, SegmentId, SegmentSet};
 use super::size::{Size, Small};
 use super::unswept::{Unswept, Ways};
-use super::{Travel, point};
+use super::{Travel, point, route};
 
 /// What may be asked for; one thing a cycle. Nothing that is refused is remembered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,17 +33,17 @@ pub enum Refusal {
     NotHeld,
     /// A route that is declared to conflict is held.
     Conflict,
-    /// A circuit of the path, or the point's detector, is held by another route.
+    /// A circuit of the path, or one beside path or overlap, or the point's detector, is held by another route, or is beside one.
     PathHeld,
     /// A circuit of the overlap is held by another route.
     OverlapHeld,
     /// A point is needed or locked in another position by a route.
     PointLocked,
-    /// A circuit of path or overlap is occupied; a berth may be.
+    /// A circuit of path or overlap, or beside them, is occupied; a berth may be.
     Occupied,
-    /// A train from before the start may still be on its way over a circuit of path or overlap, or over the point.
+    /// A train from before the start may still be on its way over a circuit of path or overlap, or beside them, or over the point.
     Unswept,
-    /// A circuit of path or overlap, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked;
+    /// A circuit of path or overlap, or beside them, the detector of a point that must move, or a circuit of the segment that the route leads to is blocked;
     /// or one of the approach, with a train behind the entry.
     Blocked,
     /// A point must move, and a train stands on it.
@@ -103,8 +103,9 @@ pub fn refuse_route<const R: usize, const P: usize, const N: usize, const S: usi
             refusal = against(route, numbers, other, *state);
         }
     }
-    let ahead = path.circuits.or(overlap.circuits);
-    let clear = path.circuits.or(overlap.circuits.only_if(!route.calling_on));
+    let beside = path.beside.or(overlap.beside);
+    let ahead = path.circuits.or(overlap.circuits).or(beside);
+    let clear = path.circuits.or(overlap.circuits.only_if(!route.calling_on)).or(beside);
     //= spec/interlocking.md#ilk-33-calling-on
     //# A calling-on route MUST be refused unless its entry and its berth are occupied.
     let called_for = route.entry.meets(sight.occupied) && overlap.circuits.meets(sight.occupied);
@@ -164,11 +165,15 @@ fn against<const P: usize, Z: Size>(
     let path_under_kept = path.circuits.meets(kept.circuits) && !other.continuing.meets(asked);
     //= spec/interlocking.md#ilk-34-who-is-in-the-berth
     //# A berth MUST be held together with the path of another route over a common circuit only if that is the last one, and the overlap of that route was given up.
-    let beside = route.calling_on && state.stands(other) || route.continuing.meets(number);
-    let held_over_mine = overlap.circuits.meets(held.circuits) && !beside;
+    let together = route.calling_on && state.stands(other) || route.continuing.meets(number);
+    let held_over_mine = overlap.circuits.meets(held.circuits) && !together;
+    //= spec/interlocking.md#ilk-36-beside
+    //# A path or an overlap MUST be held together with what another route has beside its own only if it is a path, and its route is listed as continuing at the end of the other.
+    let (mine, theirs) = (other.continuing.meets(asked), route.continuing.meets(number));
+    let fouls = route::foul((path, overlap, mine), (held, kept, theirs));
     if route.conflicts.meets(number) {
         Some(Refusal::Conflict)
-    } else if path.circuits.meets(held.circuits) || path_under_kept {
+    } else if path.circuits.meets(held.circuits) || path_under_kept || fouls {
         Some(Refusal::PathHeld)
     } else if overlap.circuits.meets(kept.circuits) || held_over_mine {
         Some(Refusal::OverlapHeld)

@@ -84,22 +84,25 @@ impl RouteState {
     /// What the route holds of its path: nothing if it is idle.
     #[inline]
     pub fn path<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Element<Z> {
-        if self.is_held() { route.held_from(self.tail) } else { Element::default() }
+        if self.is_held() { route.held_from(self.tail) } else { Element::NONE }
     }
 
     /// What the route holds beyond its path.
     #[inline]
     pub fn overlap<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> Element<Z> {
-        Element {
-            circuits: route.overlap.circuits.only_if(self.overlap),
-            positions: route.overlap.positions.only_if(self.overlap),
-        }
+        route.overlap.only_if(self.overlap)
     }
 
     /// The circuits that the route holds, overlap included.
     #[inline]
     pub fn circuits<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> CircuitSet<Z> {
         self.path(route).circuits.or(self.overlap(route).circuits)
+    }
+
+    /// The circuits beside what the route holds, overlap included.
+    #[inline]
+    pub fn beside<const P: usize, Z: Size>(&self, route: &Route<P, Z>) -> CircuitSet<Z> {
+        self.path(route).beside.or(self.overlap(route).beside)
     }
 
     /// Whether the route has been left but for its last circuit, and its overlap was given up: whoever came by it stands there, or goes on by
@@ -303,4 +306,16 @@ impl RouteState {
             Self { time, ..self }
         }
     }
+}
+
+/// Whether two routes foul each other by what they hold, path and overlap, without a common circuit. The path of one that goes on at the end of the other
+/// does not: the train beside it is its own.
+#[inline]
+pub(super) fn foul<Z: Size>(
+    (path, overlap, goes_on): (Element<Z>, Element<Z>, bool),
+    (other, beyond, follows): (Element<Z>, Element<Z>, bool),
+) -> bool {
+    let mine = overlap.circuits.or(path.circuits.only_if(!goes_on));
+    let theirs = beyond.circuits.or(other.circuits.only_if(!follows));
+    path.beside.or(overlap.beside).meets(theirs) || other.beside.or(beyond.beside).meets(mine)
 }

@@ -63,8 +63,11 @@ pub fn shows_proceed<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteS
 pub fn ready<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view: View<Z>) -> bool {
     let circuits = state.circuits(route);
     let clear = if route.calling_on { state.path(route).circuits } else { circuits };
-    !clear.meets(view.occupied)
-        && !circuits.meets(view.blocked)
+    //= spec/interlocking.md#ilk-37-proved-clear
+    //# While a circuit beside what a route needs is occupied or blocked, the route MUST be refused, its signal show stop, and no place beside it be granted; and no block there be confirmed.
+    let beside = state.beside(route);
+    !clear.or(beside).meets(view.occupied)
+        && !circuits.or(beside).meets(view.blocked)
         && !route.is_approached_over(view.blocked, view.occupied)
         && !route.to.meets(view.closed)
         && state.positions(route).missing_in(view.firm).is_empty()
@@ -92,7 +95,8 @@ fn granted<const P: usize, Z: Size>(route: &Route<P, Z>, state: RouteState, view
     let mut open = proceed;
     for (place, element) in (0_u8..).zip(Z::used(&route.path, route.length)) {
         if place < route.length && place >= state.tail {
-            let sound = element.positions.missing_in(view.firm).is_empty();
+            let sound = element.positions.missing_in(view.firm).is_empty()
+                && !element.beside.meets(view.occupied.or(view.blocked));
             if entered && element.circuits.meets(view.occupied) {
                 train = element.circuits;
                 circuits = CircuitSet::EMPTY;

@@ -3,7 +3,7 @@
 use super::direction::{Directions, Needs};
 use super::layout::Layout;
 use super::point::Settling;
-use super::route::RouteState;
+use super::route::{self, RouteState};
 use super::set::{CircuitSet, RouteSet};
 use super::size::{Size, Small};
 use super::table::Epoch;
@@ -57,7 +57,7 @@ impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
         let mut held = CircuitSet::EMPTY;
         for (route, state) in plan.routes.iter().zip(&self.routes) {
             valid &= state.is_valid(route) && (!starts || !state.is_held());
-            held = held.or(state.circuits(route));
+            held = held.or(state.circuits(route)).or(state.beside(route));
         }
         let needs = Needs::of(layout, &self.routes);
         valid &= self.directions.toward.contains(needs.toward) && self.directions.away.contains(needs.away);
@@ -76,7 +76,7 @@ impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
     }
 
     /// Whether two routes hold what they may hold together: no common circuit but an overlap under a continuing route, or a berth with the train of
-    /// the other one at a stand; no point both ways, no declared conflict.
+    /// the other one at a stand; nothing beside what the other holds, but the path of a continuing route; no point both ways, no declared conflict.
     pub fn compatible<const P: usize, const N: usize>(
         &self,
         layout: &Layout<R, P, N, S, Z>,
@@ -86,16 +86,18 @@ impl<const R: usize, const S: usize, Z: Size> State<R, S, Z> {
         let routes = &layout.plan().routes;
         let (states, pair) = ((self.routes[one], self.routes[other]), (&routes[one], &routes[other]));
         let numbers = (RouteSet::nth(one), RouteSet::nth(other));
-        let paths = (states.0.path(pair.0).circuits, states.1.path(pair.1).circuits);
-        let overlaps = (states.0.overlap(pair.0).circuits, states.1.overlap(pair.1).circuits);
-        let beside = (
-            pair.0.calling_on && states.1.stands(pair.1) || pair.0.continuing.meets(numbers.1),
-            pair.1.calling_on && states.0.stands(pair.0) || pair.1.continuing.meets(numbers.0),
+        let paths = (states.0.path(pair.0), states.1.path(pair.1));
+        let overlaps = (states.0.overlap(pair.0), states.1.overlap(pair.1));
+        let goes_on = (pair.1.continuing.meets(numbers.0), pair.0.continuing.meets(numbers.1));
+        let together = (
+            pair.0.calling_on && states.1.stands(pair.1) || goes_on.1,
+            pair.1.calling_on && states.0.stands(pair.0) || goes_on.0,
         );
-        let apart = !paths.0.meets(paths.1)
-            && !overlaps.0.meets(overlaps.1)
-            && (!paths.0.meets(overlaps.1) || beside.1)
-            && (!paths.1.meets(overlaps.0) || beside.0);
+        let apart = !paths.0.circuits.meets(paths.1.circuits)
+            && !overlaps.0.circuits.meets(overlaps.1.circuits)
+            && (!paths.0.circuits.meets(overlaps.1.circuits) || together.1)
+            && (!paths.1.circuits.meets(overlaps.0.circuits) || together.0)
+            && !route::foul((paths.0, overlaps.0, goes_on.0), (paths.1, overlaps.1, goes_on.1));
         let agree = !states.0.positions(pair.0).opposes(states.1.positions(pair.1));
         let both = states.0.is_held() && states.1.is_held();
         let declared = pair.0.conflicts.meets(numbers.1) || pair.1.conflicts.meets(numbers.0);

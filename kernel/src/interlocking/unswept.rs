@@ -23,6 +23,8 @@ pub struct Ways<Z: Size = Small> {
     pub points: PointSet<Z>,
     /// The segments that they may be on their way out to.
     pub outward: SegmentSet<Z>,
+    /// The circuits beside their ways.
+    pub beside: CircuitSet<Z>,
 }
 
 /// What one route keeps unswept.
@@ -60,6 +62,7 @@ impl<Z: Size> Unswept<Z> {
             after.running = after.running.or(it.only_if(kept.running));
             ways.points = ways.points.or(kept.held.positions.points());
             ways.outward = ways.outward.or(route.to.only_if(kept.running));
+            ways.beside = ways.beside.or(kept.held.beside);
             ended |= route.exists() && self.running.meets(it) && !kept.running;
             longest = if route.stay > longest { route.stay } else { longest };
         }
@@ -82,7 +85,7 @@ impl<Z: Size> Unswept<Z> {
         let overlap = route.overlap;
         let mut seen = false;
         let mut kept = Kept::default();
-        let mut end = Element::default();
+        let mut end = Element::NONE;
         for (place, element) in (0_u8..).zip(Z::used(&route.path, route.length)) {
             if place < route.length {
                 let unswept = self.circuits.contains(element.circuits);
@@ -92,13 +95,9 @@ impl<Z: Size> Unswept<Z> {
                 // Behind the last place of a calling-on route the way goes on into the berth.
                 if place + 1 < route.length || route.calling_on {
                     kept.running |= seen;
-                    kept.held.circuits = kept.held.circuits.or(element.circuits.only_if(seen));
-                    kept.held.positions = kept.held.positions.or(element.positions.only_if(seen));
+                    kept.held = kept.held.or(element.only_if(seen));
                 } else {
-                    end = Element {
-                        circuits: element.circuits.only_if(seen),
-                        positions: element.positions.only_if(seen),
-                    };
+                    end = element.only_if(seen);
                 }
             }
         }
@@ -112,8 +111,7 @@ impl<Z: Size> Unswept<Z> {
         if route.cab_signalled || !keeps || !self.circuits.contains(overlap.circuits) {
             return Kept::default();
         }
-        kept.held.circuits = kept.held.circuits.or(end.circuits).or(overlap.circuits);
-        kept.held.positions = kept.held.positions.or(end.positions).or(overlap.positions);
+        kept.held = kept.held.or(end).or(overlap);
         kept
     }
 
@@ -128,11 +126,13 @@ impl<Z: Size> Unswept<Z> {
     ) -> bool {
         let routes = &layout.plan().routes;
         let route = &routes[asked];
-        let needed = route.held_from(0).circuits.or(route.overlap.circuits);
+        let whole = route.held_from(0).or(route.overlap);
+        let needed = whole.circuits;
         let mut in_the_way = false;
         for (number, other) in routes.iter().enumerate() {
             let it = RouteSet::nth(number);
             let kept = self.kept_by(other, it, occupied).held.circuits;
+            let beyond = other.overlap.circuits;
             let (mut own, mut shares) = (false, false);
             for (place, element) in (0_u8..).zip(Z::used(&other.path, other.length)) {
                 if place < other.length {
@@ -142,11 +142,16 @@ impl<Z: Size> Unswept<Z> {
                     shares |= meets || begins;
                     // A berth need not be clear: the train that is called may not be the one that is there.
                     own = (begins || own && meets) && !route.calling_on;
+                    //= spec/interlocking.md#ilk-38-beside-a-way
+                    //# A route MUST be refused if it and what a route keeps foul each other, unless it begins in the last circuit of that route, which leads to no line, and nothing is in its overlap; and no block be confirmed beside what a route keeps.
+                    // Beside the last place is the train that the route begins for, unless it has gone on.
+                    let last = place + 1 == other.length && other.to.is_empty() && !beyond.meets(occupied);
+                    in_the_way |= kept.meets(element.circuits) && whole.fouls(element) && !(last && begins && own);
                 }
             }
-            let beyond = other.overlap.circuits;
             // A train that has slid there is not the one that waits where the route begins.
             in_the_way |= needed.meets(beyond.and(kept)) && (!own || beyond.meets(occupied));
+            in_the_way |= !kept.is_empty() && whole.fouls(&other.overlap);
             // What two routes share says it all; where they share nothing the declared conflict alone does.
             let apart = !shares && !needed.meets(beyond);
             in_the_way |= apart && route.conflicts.meets(it) && !kept.is_empty();

@@ -1,6 +1,7 @@
 //! Maintenance: blocks of circuits and temporary speed restrictions. Only commands change them.
 
 use super::code::SpeedCode;
+use super::layout::{Element, Layout};
 use super::limits::SpeedLimits;
 use super::set::CircuitSet;
 use super::size::{Size, Small};
@@ -62,4 +63,31 @@ impl<Z: Size> Works<Z> {
         self.confirmed = self.confirmed.or(self.blocked.without(held.or(occupied)));
         self
     }
+}
+
+/// Where somebody stands in the way of those who work: of two circuits that foul each other the one, while the other is occupied. Nothing where no block is to
+/// be confirmed.
+#[inline]
+pub(super) fn struck<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
+    layout: &Layout<R, P, N, S, Z>,
+    works: Works<Z>,
+    occupied: CircuitSet<Z>,
+) -> CircuitSet<Z> {
+    //= spec/interlocking.md#ilk-39-block-beside-a-vehicle
+    //# A block MUST be confirmed only while no circuit is occupied that a route has beside the circuit of the block, or beside which a route has that.
+    let mut struck = CircuitSet::EMPTY;
+    if works.blocked.without(works.confirmed).is_empty() {
+        return struck;
+    }
+    let strikes = |element: &Element<Z>| {
+        let one = element.circuits.only_if(element.beside.meets(occupied));
+        one.or(element.beside.only_if(element.circuits.meets(occupied)))
+    };
+    for route in &layout.plan().routes {
+        for (place, element) in (0_u8..).zip(Z::used(&route.path, route.length)) {
+            struck = struck.or(strikes(element).only_if(place < route.length));
+        }
+        struck = struck.or(strikes(&route.overlap).only_if(route.exists()));
+    }
+    struck
 }

@@ -272,8 +272,8 @@ fn segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The kernel keeps a route's own circuits clear and no others: that a train stands in the one of two circuits keeps trains out of the other
-/// only where every route holds both. A declared conflict does not: it ends with the route, and the train stands on.
+/// A route over one of two circuits that foul each other proves the other clear, and keeps other routes from it. That keeps trains apart only where no
+/// train comes into either of them without a route.
 fn fouling(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
     for (given, (one, other)) in station.fouling.iter().zip(&model.fouling) {
         foul(model, (*one, *other), &given.between[0].span, problems);
@@ -290,34 +290,23 @@ fn fouling(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
 
 fn foul(model: &Model, (one, other): (usize, usize), span: &Range<usize>, problems: &mut Vec<Problem>) {
     let name = |circuit: usize| &model.circuits[circuit].name;
-    let right = "move the joint beyond the fouling point, or make the two one circuit: the kernel proves only those clear that a route runs over";
-    let mut held = false;
-    for route in &model.routes {
-        let (over, not_over) = match (holds(route, one), holds(route, other)) {
-            (true, true) => {
-                held = true;
-                continue;
-            }
-            (true, false) => (one, other),
-            (false, true) => (other, one),
-            (false, false) => continue,
-        };
-        let (over, not_over) = (name(over), name(not_over));
-        let what =
-            format!("route {} over {over} is set while a train stands in {not_over}, which fouls it", route.name);
-        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
-        return;
-    }
-    if !held {
-        let what = format!(
-            "{} and {} foul each other, and no route goes over them: nothing keeps trains apart",
-            name(one),
-            name(other)
-        );
-        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
-    }
-}
-
-fn holds(route: &Route, circuit: usize) -> bool {
-    route.circuits().any(|held| held == circuit) || route.overlap.contains(&circuit)
+    let on_line = |circuit: &usize| model.segments.iter().any(|segment| segment.circuits.contains(circuit));
+    let held = |circuit: &usize| model.routes.iter().any(|route| route.circuits().any(|over| over == *circuit));
+    let pair = [one, other];
+    let why = match (pair.iter().find(|it| on_line(it)), pair.iter().find(|it| !held(it))) {
+        (Some(line), _) => format!("{} is plain line", name(*line)),
+        (None, Some(loose)) => format!("no route runs over {}", name(*loose)),
+        (None, None) => return,
+    };
+    let what = format!(
+        "{} and {} foul each other, and {why}: trains come there without a route, and nothing keeps them apart",
+        name(one),
+        name(other)
+    );
+    problems.push(Problem::new(
+        Rule::FoulingNotHeld,
+        span,
+        what,
+        "move the joint beyond the fouling point, or let routes run over both",
+    ));
 }

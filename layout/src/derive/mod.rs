@@ -1,6 +1,7 @@
 //! From names to numbers, and everything that the file leaves out.
 
 mod approach;
+mod beside;
 mod ends;
 mod flank;
 pub mod heading;
@@ -11,6 +12,7 @@ pub mod values;
 pub(crate) mod way;
 
 pub use approach::{Back, Shortfall, back};
+pub use beside::fouling;
 pub use reversal::signals_behind_points;
 
 use crate::at::At;
@@ -61,6 +63,7 @@ pub fn model(station: &Station, problems: &mut Vec<Problem>) -> Model {
     ends::ends(station, &names, &mut model, problems);
     heading::segments_and_starts(&mut model, &turned);
     positions::positions(&mut model);
+    beside::beside(station, &names, &mut model, problems);
     approaches(station, &names, &mut model, problems);
     model
 }

@@ -6,7 +6,7 @@ use super::values::{self, Rounding, ticks};
 use super::way::{Step, Through, through};
 use crate::at::At;
 use crate::form::{self, Station};
-use crate::model::{Model, Place, Positions, Route};
+use crate::model::{Circuits, Model, Place, Positions, Route};
 use crate::names::Names;
 use crate::problem::Problem;
 use crate::rule::Rule;
@@ -114,7 +114,8 @@ fn places(path: Vec<Step>, way: Through) -> Vec<Place> {
     let made = path.into_iter().zip(way.ways).map(|(step, way)| {
         let mut positions = step.positions;
         positions.extend(way.passed.iter().map(|passed| (passed.point, passed.position)));
-        Place { circuit: step.circuit, passed: way.passed, tracks: way.tracks, positions, span: step.span }
+        let (passed, tracks) = (way.passed, way.tracks);
+        Place { circuit: step.circuit, passed, tracks, positions, beside: Circuits::new(), span: step.span }
     });
     made.collect()
 }

@@ -35,7 +35,7 @@ pub fn only(description: &Description, wanted: &[String]) -> Result<Description,
     let mut kept = BTreeSet::new();
     let mut points = BTreeSet::new();
     for route in model.routes.iter().filter(|route| is_wanted(&route.name)) {
-        kept.extend(route.held().into_iter().chain([route.entry]));
+        kept.extend(route.held().into_iter().chain(route.beside()).chain([route.entry]));
         kept.extend(route.approach.iter().chain(&route.beyond));
         points.extend(route.positions().map(|(point, _)| point));
     }

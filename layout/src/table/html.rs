@@ -133,7 +133,7 @@ fn points(page: &mut String, model: &Model) {
 
 fn circuits(page: &mut String, model: &Model) {
     let heads: Vec<&str> = model.circuits.iter().map(|circuit| circuit.name.as_str()).collect();
-    let key = "A number: the place in the path. E: entry. a: approach. o: overlap. b: beyond the end.";
+    let key = "A number: the place in the path. E: entry. a: approach. o: overlap. f: beside, proved clear. b: beyond the end.";
     matrix(page, model, ("circuits", "Routes and track circuits", key), &heads, &|route, circuit| {
         let route = &model.routes[route];
         if let Some(place) = route.circuits().position(|held| held == circuit) {
@@ -143,6 +143,7 @@ fn circuits(page: &mut String, model: &Model) {
             (circuit == route.entry, "E"),
             (route.overlap.contains(&circuit), "o"),
             (route.approach.contains(&circuit) && circuit != route.entry, "a"),
+            (route.beside().contains(&circuit), "f"),
             (route.beyond.contains(&circuit), "b"),
         ];
         let text: String = letters.into_iter().filter_map(|(holds, letter)| holds.then_some(letter)).collect();
@@ -156,6 +157,7 @@ fn conflicts(page: &mut String, model: &Model) {
         Reason::Circuit,
         Reason::Point,
         Reason::Overlap,
+        Reason::Beside,
         Reason::Berth,
         Reason::Start,
         Reason::Declared,

@@ -55,7 +55,7 @@ fn cells(model: &Model, number: usize) -> [String; 7] {
         route.name.clone(),
         route.signal.clone(),
         locking.join(" "),
-        names(&mut route.circuits().chain(clear)),
+        names(&mut route.circuits().chain(clear).chain(route.beside())),
         over.into_iter().map(point).collect::<Vec<_>>().join(" "),
         names(&mut route.circuits()),
         format!("{approach} {seconds}秒"),

@@ -9,7 +9,7 @@ use crate::form::Position;
 use crate::model::{Model, Positions, Route};
 
 /// The heads of the columns of [`csv`](super::csv()).
-pub const COLUMNS: [&str; 20] = [
+pub const COLUMNS: [&str; 21] = [
     "route",
     "signal",
     "heading",
@@ -22,6 +22,7 @@ pub const COLUMNS: [&str; 20] = [
     "overlap",
     "overlap normal",
     "overlap reverse",
+    "proved clear beside",
     "beyond",
     "approach",
     "conflicts",
@@ -78,6 +79,7 @@ impl<'a> Row<'a> {
             overlap,
             points(&route.overlap_positions, Position::Normal),
             points(&route.overlap_positions, Position::Reverse),
+            self.circuits(route.beside().into_iter()),
             self.circuits(route.beyond.iter().copied()),
             self.circuits(route.approach.iter().copied()),
             self.conflicts(),

@@ -197,16 +197,38 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> Si
                 );
             }
         }
+        self.beside(number, found);
+    }
+
+    /// Of two circuits that foul each other a route over the one holds the other, or proves it clear, for as long.
+    fn beside(&self, number: usize, found: &mut Vec<Problem>) {
+        let (given, route) = (&self.station.routes[number], &self.plan.routes[number]);
         let Some(path) = self.path(number) else { return };
+        let places = path.iter().zip(&route.path).map(|(circuit, place)| (CircuitSet::nth(*circuit), place.beside));
+        let overlap = (route.overlap.circuits, route.overlap.beside);
+        let own = path.iter().fold(route.entry.or(overlap.0), |own, circuit| own.or(CircuitSet::nth(*circuit)));
+        let all: Vec<(CircuitSet<Z>, CircuitSet<Z>)> = places.chain([overlap]).collect();
+        let set = |name: &str| self.place_of(name).map_or(CircuitSet::EMPTY, CircuitSet::nth);
+        let mut pairs: Vec<(&str, &str)> = Vec::new();
         for fouling in &self.station.fouling {
-            let kept =
-                |circuit: usize| path.contains(&circuit) || route.overlap.circuits.meets(CircuitSet::nth(circuit));
-            let holds = |name: &str| self.place_of(name).is_some_and(kept);
             let [one, other] = &fouling.between;
-            if holds(one) != holds(other) {
-                found.push(
-                    self.differs(number, &format!("{one} and {other} foul each other, and it holds one of them")),
-                );
+            pairs.push((one, other));
+        }
+        for point in &self.station.points {
+            let others = point.fouled_in.iter().chain(point.detectors.iter().flatten());
+            pairs.extend(others.map(|other| (point.circuit.value.as_str(), other.value.as_str())));
+        }
+        for (one, other) in pairs.into_iter().flat_map(|(one, other)| [(one, other), (other, one)]) {
+            let needed = set(other).without(own);
+            if all.iter().any(|(over, beside)| over.meets(set(one)) && !beside.contains(needed)) {
+                let what =
+                    format!("{one} and {other} foul each other, and it holds {one} without proving {other} clear");
+                found.push(self.differs(number, &what));
+            }
+        }
+        for name in &given.proved_clear {
+            if all[..path.len()].iter().any(|(_, beside)| !beside.contains(set(name))) {
+                found.push(self.differs(number, &format!("the file has {name} proved clear, and the plan has not")));
             }
         }
     }

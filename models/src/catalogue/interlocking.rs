@@ -2,6 +2,7 @@
 
 use crate::check::Entry;
 
+mod beside;
 mod between;
 mod called;
 mod counted;
@@ -19,6 +20,7 @@ pub(super) fn entries() -> Vec<Entry> {
     entries.extend(others::entries());
     entries.extend(called::entries());
     entries.extend(reversal::entries());
+    entries.extend(beside::entries());
     entries.extend(line::entries());
     entries.extend(between::entries());
     entries.extend(counted::entries());

@@ -146,7 +146,7 @@ impl Pair {
     fn layout(&self) -> Small {
         let mut plan = Plan::EMPTY;
         let over = Route {
-            path: [Element { circuits: circuits(1 << 1), positions: Positions::NONE }],
+            path: [Element { circuits: circuits(1 << 1), ..Element::NONE }],
             length: 1,
             drive: Ticks(1),
             release: Ticks(1),

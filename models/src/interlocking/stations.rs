@@ -83,7 +83,7 @@ fn route(entry: u8, path: &[(u8, Positions)], beyond: u8) -> Route<PLACES> {
         ..Route::NONE
     };
     for (place, (circuit, positions)) in route.path.iter_mut().zip(path) {
-        *place = Element { circuits: circuits(1 << circuit), positions: *positions };
+        *place = Element { circuits: circuits(1 << circuit), positions: *positions, ..Element::NONE };
     }
     route
 }
@@ -270,8 +270,8 @@ pub fn passing_loop(overlaps: Overlaps) -> Station {
     ];
     for (platform, [up_in, up_out, down_in, down_out]) in ways {
         let overlap = |throat: u8, positions| match overlaps {
-            Overlaps::Throat => Element { circuits: circuits(1 << throat), positions },
-            Overlaps::None => Element::default(),
+            Overlaps::Throat => Element { circuits: circuits(1 << throat), positions, ..Element::NONE },
+            Overlaps::None => Element::NONE,
         };
         put(
             up_in,
@@ -297,4 +297,19 @@ pub fn passing_loop(overlaps: Overlaps) -> Station {
     plan.points = [Point { detectors: circuits(1 << WEST) }, Point { detectors: circuits(1 << EAST) }];
     plan.segments = [segment(W, 1 << WEST), segment(E, 1 << EAST)];
     checked("passing loop", ground, &plan)
+}
+
+/// The passing loop without overlaps, where a train in platform two also stands in the way of one in the western throat: the joint between them is
+/// too near to the point. Whoever runs over one of the two proves the other clear.
+pub fn short_joint() -> Station {
+    use loop_route::{DOWN_IN_TWO, DOWN_OUT_ONE, UP_IN_ONE};
+    use passing::{TWO, WEST};
+    let loop_of_one = passing_loop(Overlaps::None);
+    let mut ground = loop_of_one.ground;
+    ground.fouls = vec![(WEST, TWO)];
+    let mut plan = *loop_of_one.layout.plan();
+    for (route, place, beside) in [(UP_IN_ONE, 0, TWO), (DOWN_OUT_ONE, 0, TWO), (DOWN_IN_TWO, 1, WEST)] {
+        plan.routes[usize::from(route)].path[place].beside = circuits(1 << beside);
+    }
+    checked("passing loop with a short joint", ground, &plan)
 }

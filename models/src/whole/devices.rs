@@ -97,7 +97,7 @@ pub fn leads_to(track: u8) -> Positions {
 /// Routes 0 and 1 lead into the platforms, 2 and 3 out of them.
 fn plan(station: usize, times: Times) -> SmallPlan {
     let line = SegmentSet::nth(0);
-    let element = |circuit, positions| Element { circuits: set(circuit), positions };
+    let element = |circuit, positions| Element { circuits: set(circuit), positions, ..Element::NONE };
     let nothing = Element::default();
     let usual = Route {
         drive: Ticks(5),

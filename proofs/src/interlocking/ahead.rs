@@ -26,11 +26,12 @@ const POINTS_BUILT_IN: &[(&str, &str)] = &[
 
 /// What the route has prepared for the train that is still ahead of it, or under it.
 pub(super) fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, train: &Train) -> Element {
-    let (mut circuits, mut normal, mut reverse) = (0, 0, 0);
+    let (mut circuits, mut beside, mut normal, mut reverse) = (0, 0, 0, 0);
     let passed = train.tail.saturating_sub(FIRST);
     for (place, element) in (0..).zip(&scene.route.path) {
         if train.counts() && passed <= place && place < scene.route.length {
             circuits |= element.circuits.bits();
+            beside |= element.beside.bits();
             normal |= element.positions.normal.bits();
             reverse |= element.positions.reverse.bits();
         }
@@ -43,12 +44,14 @@ pub(super) fn needed<const R: usize, const N: usize>(scene: &Scene<R, N, 0>, tra
     if train.counts() && !stands && !goes_on {
         let overlap = scene.route.overlap;
         circuits |= overlap.circuits.bits();
+        beside |= overlap.beside.bits();
         normal |= overlap.positions.normal.bits();
         reverse |= overlap.positions.reverse.bits();
     }
     Element {
         circuits: CircuitSet::from_bits(circuits),
         positions: Positions { normal: PointSet::from_bits(normal), reverse: PointSet::from_bits(reverse) },
+        beside: CircuitSet::from_bits(beside),
     }
 }
 
@@ -174,10 +177,10 @@ harness! {
 
 harness! {
     /// While a train may enter a route or is in it, no circuit of the approach over which it may still run to the signal, no circuit of the path that
-    /// is not behind its tail, and none of the overlap into which it may slide, is confirmed to staff; whatever is blocked, falsely occupied or commanded.
+    /// is not behind its tail, none of the overlap into which it may slide, and none beside these, is confirmed to staff; whatever is blocked, falsely occupied or commanded.
     t_ilk_train_worker(e)
     theorem "T-ILK-8";
-    requirements ["ILK-5", "ILK-7", "ILK-15", "ILK-16", "ATC-1"];
+    requirements ["ILK-5", "ILK-7", "ILK-15", "ILK-16", "ILK-37", "ATC-1"];
     assumptions [
         "loss-of-shunt-within-clear", "approach-covers-braking", "release-covers-residual-running", "overlap-covers-sliding", "trains-obey-signals",
         "all-cab-signalled", "path-complete", "train-whole", "no-setting-back", "start-outlasts-running",
@@ -188,7 +191,7 @@ harness! {
     unwind 65 = 1 + crate::interlocking::LONGEST;
     under_kani UNDER_KANI;
     claims {
-        Apart: "no circuit that the train may still reach, or is in, is confirmed",
+        Apart: "no circuit that the train may still reach, or is in, or that is beside one of these, is confirmed",
         Kept: "nor does the device remember one as confirmed",
     }
     covers {
@@ -202,7 +205,10 @@ harness! {
         let Some(scene) = any_scene::<E, ROUTES, 0, 0>(e, beside) else { return };
         let (device, end) = &scene.devices;
         let confirmed = device.works.confirmed;
-        let reaches = |train: &Train| needed(&scene, train).circuits.or(before_signal(&scene, train));
+        let reaches = |train: &Train| {
+            let needed = needed(&scene, train);
+            needed.circuits.or(needed.beside).or(before_signal(&scene, train))
+        };
         let before = !confirmed.meets(reaches(&scene.earlier)) && device.works.is_valid();
         e.assume(before);
         let ahead = reaches(&scene.informed);

@@ -69,7 +69,7 @@ pub(super) fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u
     let path = core::array::from_fn(|_| {
         let circuits = any_circuits(e, "circuit of a place (bits)", place..=place);
         place = place.wrapping_shl(1);
-        Element { circuits, positions: any_positions(e) }
+        Element { circuits, positions: any_positions(e), beside: any_circuits(e, "beside a place (bits)", 0..=0) }
     });
     Route {
         heading: any_heading(e, "heading (odd: right)"),
@@ -77,7 +77,11 @@ pub(super) fn any_route<E: Engine + ?Sized, const P: usize>(e: &mut E, number: u
         approach: any_circuits(e, "approach (bits)", 0..=0),
         path,
         length: any_byte(e, "length (places)", 1..=4),
-        overlap: Element { circuits: any_circuits(e, "overlap (bits)", 0..=0), positions: any_positions(e) },
+        overlap: Element {
+            circuits: any_circuits(e, "overlap (bits)", 0..=0),
+            positions: any_positions(e),
+            beside: any_circuits(e, "beside the overlap (bits)", 0..=0),
+        },
         beyond: any_circuits(e, "beyond (bits)", 0x8000..=0x8000),
         continuing: any_routes(e, "continuing routes (bits)"),
         conflicts: any_routes(e, "conflicting routes (bits)"),
@@ -288,21 +292,36 @@ pub(super) fn bit(number: u16) -> u64 {
 
 /// What a route holds of its path, found place by place.
 pub(super) fn held<const P: usize>(route: &Route<P>, state: RouteState) -> Element {
-    let mut circuits = 0;
+    let (mut circuits, mut beside) = (0, 0);
     let (mut normal, mut reverse) = (0, 0);
     for place in 0..P {
         let element = route.path[place];
         if state.phase != Phase::Idle && place >= usize::from(state.tail) && place < usize::from(route.length) {
             circuits |= element.circuits.bits();
+            beside |= element.beside.bits();
             normal |= element.positions.normal.bits();
             reverse |= element.positions.reverse.bits();
         }
     }
     let positions = Positions { normal: PointSet::from_bits(normal), reverse: PointSet::from_bits(reverse) };
-    Element { circuits: CircuitSet::from_bits(circuits), positions }
+    Element { circuits: CircuitSet::from_bits(circuits), positions, beside: CircuitSet::from_bits(beside) }
 }
 
 /// What a route holds beyond its path.
 pub(super) fn kept<const P: usize>(route: &Route<P>, state: RouteState) -> Element {
-    if state.phase != Phase::Idle && state.overlap { route.overlap } else { Element::default() }
+    if state.phase != Phase::Idle && state.overlap { route.overlap } else { Element::NONE }
+}
+
+/// What two elements hold together.
+pub(super) fn both(one: Element, other: Element) -> Element {
+    let or = |one: CircuitSet, other: CircuitSet| CircuitSet::from_bits(one.bits() | other.bits());
+    let points = |one: PointSet, other: PointSet| PointSet::from_bits(one.bits() | other.bits());
+    let (mine, its) = (one.positions, other.positions);
+    let positions = Positions { normal: points(mine.normal, its.normal), reverse: points(mine.reverse, its.reverse) };
+    Element { circuits: or(one.circuits, other.circuits), positions, beside: or(one.beside, other.beside) }
+}
+
+/// Whether a train in one place and one in the other strike each other's side.
+pub(super) const fn fouls(one: &Element, other: &Element) -> bool {
+    one.beside.bits() & other.circuits.bits() | other.beside.bits() & one.circuits.bits() != 0
 }

@@ -22,7 +22,7 @@ fn any_path<E: crate::Engine + ?Sized>(e: &mut E, first: u16) -> Route<PATH> {
     let path = core::array::from_fn(|_| {
         let circuits = any_circuits(e, "circuit of a place (bits)", place..=place);
         place = place.wrapping_shl(1);
-        Element { circuits, ..Element::default() }
+        Element { circuits, ..Element::NONE }
     });
     let timed = Ticks(1);
     Route {

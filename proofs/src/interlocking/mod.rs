@@ -7,6 +7,7 @@ mod ahead;
 mod any;
 mod atc;
 mod berth;
+mod beside;
 mod border;
 mod cycle;
 mod device;
@@ -37,7 +38,7 @@ pub use any::{PATH, PLACES, POINTS};
 
 /// The bounds of the harnesses that are smaller when they are compiled for a wrong kernel.
 #[cfg(not(chosen))]
-pub const SMALLER: [&str; 10] = [
+pub const SMALLER: [&str; 13] = [
     berth::BOUND,
     direction::BOUND,
     pair::BOUND,
@@ -47,6 +48,9 @@ pub const SMALLER: [&str; 10] = [
     scene::ALONE,
     scene::BOUND,
     unswept::BOUND,
+    unswept::BESIDE,
+    beside::PAIR,
+    beside::TRAIN,
     works::BOUND,
 ];
 
@@ -55,6 +59,9 @@ pub const SMALLER: [&str; 10] = [
 pub const ALL: &[Harness] = &[
     pair::t_ilk_1::HARNESS,
     pair::t_ilk_1_three::HARNESS,
+    beside::t_ilk_12::HARNESS,
+    beside::t_ilk_12_train::HARNESS,
+    beside::t_ilk_12_block::HARNESS,
     cycle::t_ilk_1_local::HARNESS,
     cycle::t_ilk_1_line::HARNESS,
     cycle::t_ilk_1_valid::HARNESS,
@@ -109,4 +116,5 @@ pub const ALL: &[Harness] = &[
     meeting::t_ilk_train_line::HARNESS,
     start::t_ilk_train_start::HARNESS,
     unswept::t_ilk_train_unswept::HARNESS,
+    unswept::t_ilk_12_unswept::HARNESS,
 ];

@@ -5,7 +5,7 @@ use super::any::{
     held, kept,
 };
 use crate::Engine;
-use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, SegmentSet, Sight, Ways, refuse_route};
+use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, Sight, Ways, refuse_route};
 
 pub const BOUND: &str = match PATH {
     4 => "2 routes of up to 4 circuits, 32 circuits, 16 points",
@@ -17,7 +17,7 @@ pub const BOUND: &str = match PATH {
 const FEWER: usize = if cfg!(kani) && PATH > 2 { 2 } else { PATH };
 
 /// What the conflict check sees besides the routes: anything.
-fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
+pub(super) fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
     Sight {
         occupied: any_circuits(e, "occupied (bits)", 0..=0),
         blocked: any_circuits(e, "blocked (bits)", 0..=0),
@@ -31,7 +31,7 @@ fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
         from_before: any_unswept(e),
         ways: Ways {
             points: PointSet::from_bits(u32::from(e.word("points of trains from before the start (bits)", 0..=0))),
-            outward: SegmentSet::EMPTY,
+            ..Ways::default()
         },
     }
 }

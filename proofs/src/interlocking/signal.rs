@@ -37,18 +37,18 @@ fn any_scene<E: Engine + ?Sized, const P: usize>(e: &mut E) -> Option<Scene<P>> 
 }
 
 harness! {
-    /// A signal shows proceed exactly while its route is set, all that it holds is clear, but for a berth, and unblocked, and every point that it needs, in
+    /// A signal shows proceed exactly while its route is set, all that it holds, and what is beside that, is clear, but for a berth, and unblocked, and every point that it needs, in
     /// path, flank and overlap, is detected in position and not being driven.
     t_ilk_3(e)
     theorem "T-ILK-3";
-    requirements ["ILK-7"];
+    requirements ["ILK-7", "ILK-37"];
     assumptions [];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
         Set: "proceed is shown only for a set route: no train has entered it",
-        Clear: "no circuit of path or overlap is occupied, but one of a berth, or blocked, no segment that the route leads to is blocked, and no circuit of the approach with a train behind the entry",
+        Clear: "no circuit of path or overlap, or beside them, is occupied, but one of a berth, or blocked, no segment that the route leads to is blocked, and no circuit of the approach with a train behind the entry",
         Points: "every point of path, flank and overlap is detected in the position that it is needed in, and undriven",
         Shown: "and if all this is so, proceed is shown",
     }
@@ -61,11 +61,12 @@ harness! {
         let proceed = shows_proceed(&route, state, view);
         let mine = (held(&route, state), kept(&route, state));
         let circuits = mine.0.circuits.bits() | mine.1.circuits.bits();
+        let beside = mine.0.beside.bits() | mine.1.beside.bits();
         let normal = mine.0.positions.normal.bits() | mine.1.positions.normal.bits();
         let reverse = mine.0.positions.reverse.bits() | mine.1.positions.reverse.bits();
         let set = state.phase == Phase::Set && state.head == 0 && state.tail == 0 && state.proved;
-        let clear = if route.calling_on { mine.0.circuits.bits() } else { circuits };
-        let unblocked = circuits & view.blocked.bits() == 0 && route.to.bits() & view.closed.bits() == 0;
+        let clear = if route.calling_on { mine.0.circuits.bits() } else { circuits } | beside;
+        let unblocked = (circuits | beside) & view.blocked.bits() == 0 && route.to.bits() & view.closed.bits() == 0;
         let behind = route.approach.bits() & !route.entry.bits() & view.occupied.bits() != 0;
         let cut_off = behind && route.approach.bits() & view.blocked.bits() != 0;
         let clear = clear & view.occupied.bits() == 0 && unblocked && !cut_off;
@@ -130,7 +131,9 @@ fn found<const P: usize>(scene: &Scene<P>) -> Found {
         if here && element.circuits.bits() & scene.view.occupied.bits() != 0 {
             let normal = element.positions.normal.bits() & !scene.view.firm.normal.bits();
             let reverse = element.positions.reverse.bits() & !scene.view.firm.reverse.bits();
-            found = Found { front: place + 1, sound: normal | reverse == 0, circuit: element.circuits.bits() };
+            let beside = element.beside.bits() & (scene.view.occupied.bits() | scene.view.blocked.bits());
+            let sound = normal | reverse == 0 && beside == 0;
+            found = Found { front: place + 1, sound, circuit: element.circuits.bits() };
         }
     }
     found
@@ -141,7 +144,7 @@ harness! {
     /// in order, from the last circuit that is occupied.
     t_atc_1(e)
     theorem "T-ATC-1";
-    requirements ["ATC-1", "ATC-10", "ATC-13"];
+    requirements ["ATC-1", "ATC-10", "ATC-13", "ILK-37"];
     assumptions [];
     bound BOUND;
     cases 1;
@@ -150,11 +153,11 @@ harness! {
         Own: "every circuit that is granted is in the held path",
         Free: "it is neither occupied nor blocked",
         Entry: "before entry the grant is for the entry circuit, and proceed is shown",
-        Front: "after entry it is for the last occupied circuit of the path, which was entered in order, and whose own points are in position",
+        Front: "after entry it is for the last occupied circuit of the path, which was entered in order, whose own points are in position, and with nothing beside it occupied or blocked",
         Nobody: "in any other phase nothing is granted",
         Last: "the last circuit is one that is granted; without any it is the train's, or there is no grant",
         Heading: "a grant is for the route's direction of travel",
-        Out: "a grant of no circuit is for the train on the last circuit of a route out, which has entered it in order and whose points there are in position",
+        Out: "a grant of no circuit is for the train on the last circuit of a route out, which has entered it in order, whose points there are in position, and with nothing beside it occupied or blocked",
     }
     covers {
         Entry: "a train at the entry is granted a path",
@@ -195,13 +198,13 @@ harness! {
     /// is the end of the path.
     t_atc_1_sound(e)
     theorem "T-ATC-1";
-    requirements ["ATC-1"];
+    requirements ["ATC-1", "ILK-37"];
     assumptions [];
     bound BOUND;
     cases 1;
     unwind 65 = 1 + crate::interlocking::LONGEST;
     claims {
-        Sound: "the points of every place that is granted are in position",
+        Sound: "the points of every place that is granted are in position, and nothing beside it is occupied or blocked",
         Stretch: "a place is granted only if every place between it and the train is",
         Beyond: "no place behind the train is granted",
         End: "a grant is complete exactly if its last circuit is the last of the path",
@@ -229,7 +232,8 @@ harness! {
                     mine = element.circuits.bits();
                     let normal = element.positions.normal.bits() & !view.firm.normal.bits();
                     let reverse = element.positions.reverse.bits() & !view.firm.reverse.bits();
-                    sound = normal | reverse == 0;
+                    let beside = element.beside.bits() & (view.occupied.bits() | view.blocked.bits());
+                    sound = normal | reverse == 0 && beside == 0;
                 } else if place >= front && place < one {
                     between |= element.circuits.bits();
                 }

@@ -6,11 +6,13 @@
 //!
 //! The train is a ghost: the kernel sees nothing of it but the circuits in which it is reported, and any other may be reported at any time.
 
-use super::any::{any_input, any_plan, any_state, held, kept};
+use super::any::{any_input, any_plan, any_state, both, fouls, held, kept};
 use super::scene::{LENGTH, order};
 use crate::Engine;
 use crate::engine::{any_byte, any_flag};
-use atc_kernel::interlocking::{CircuitSet, Layout, Phase, Plan, Request, Route, RouteState, State};
+use atc_kernel::interlocking::{
+    CircuitSet, Element, Input, Layout, Output, Phase, Plan, Refusal, Request, Route, RouteState, State,
+};
 use atc_kernel::time::Ticks;
 
 /// That of the train, and another one.
@@ -20,6 +22,14 @@ const ROUTES: usize = 2;
 pub const BOUND: &str = match LENGTH {
     3 => "2 routes of up to 3 circuits, 32 circuits, 1 point, 1 segment of up to 3 circuits",
     _ => "2 routes of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 2 circuits",
+};
+
+/// The most places where what is beside them is looked at.
+const SHORT: u8 = 2;
+
+pub const BESIDE: &str = match LENGTH {
+    3 => "2 routes of up to 2 circuits, 32 circuits, 1 point, 1 segment of up to 3 circuits",
+    _ => BOUND,
 };
 
 const BUILT_IN: &[(&str, &str)] = &[
@@ -174,20 +184,15 @@ impl Ground {
     }
 }
 
-/// What the train still needs: circuits from its tail on, and points; the overlap with them.
-fn needed(train: Train, ground: &Ground) -> (CircuitSet, u32) {
-    let (mut circuits, mut points) = (0, 0);
+/// What the train still needs, and what is beside that: from its tail on, the overlap with it.
+fn needed(train: Train, ground: &Ground) -> Element {
+    let mut needed = Element::NONE;
     for (position, element) in (FIRST..).zip(&ground.route.path) {
         if train.goes(ground) && train.tail <= position && position <= ground.last {
-            circuits |= element.circuits.bits();
-            points |= element.positions.points().bits();
+            needed = both(needed, *element);
         }
     }
-    if train.goes(ground) {
-        circuits |= ground.route.overlap.circuits.bits();
-        points |= ground.route.overlap.positions.points().bits();
-    }
-    (CircuitSet::from_bits(circuits), points)
+    if train.goes(ground) { both(needed, ground.route.overlap) } else { needed }
 }
 
 /// The invariant of the train and what the device has not swept.
@@ -200,7 +205,7 @@ fn holds<const S: usize>(train: Train, ground: &Ground, device: &State<ROUTES, S
     let mut holds = !unseen || starting && late + u32::from(device.started.0) <= u32::from(ground.start);
     let (first, _) = train.seen();
     if train.goes(ground) {
-        holds &= unswept.circuits.contains(needed(train, ground).0);
+        holds &= unswept.circuits.contains(needed(train, ground).circuits);
         for (position, element) in (FIRST..).zip(&ground.route.path) {
             let there = first <= position && position <= ground.last;
             holds &= !there || unswept.circuits.contains(element.circuits);
@@ -257,6 +262,121 @@ fn any_device<E: Engine + ?Sized>(e: &mut E) -> Option<(Layout<ROUTES, LENGTH, 1
     valid.then_some((layout, device))
 }
 
+/// One cycle of a device and a train from before the start.
+struct Scene {
+    plan: Plan<ROUTES, LENGTH, 1, 1>,
+    ground: Ground,
+    earlier: Train,
+    /// The train after its move, and whether it had left the line before and after that.
+    train: Train,
+    left: (bool, bool),
+    before: State<ROUTES, 1>,
+    after: State<ROUTES, 1>,
+    input: Input,
+    output: Output<ROUTES>,
+}
+
+/// Any cycle before which the train and the device hold the invariant, and `beside` what a harness supposes besides.
+fn any_scene<E: Engine + ?Sized>(
+    e: &mut E,
+    besides: impl Fn(&Plan<ROUTES, LENGTH, 1, 1>, &State<ROUTES, 1>, Train, bool) -> bool,
+) -> Option<Scene> {
+    let (layout, mut before) = any_device(e)?;
+    let input = any_input(e);
+    let plan = *layout.plan();
+    let (route, segment) = (plan.routes[0], plan.segments[0]);
+    let ground = Ground::of(&plan);
+    let path = ground.path();
+    // Rules of engineering: LAY-2.
+    let apart =
+        (path & route.overlap.circuits.bits() | (path | route.overlap.circuits.bits()) & route.entry.bits()) == 0;
+    let engineered = route.exists()
+        && !route.cab_signalled
+        && route.entry.is_one()
+        && apart
+        && (!ground.out || segment.length > 0 && segment.throat == route.last() && route.overlap.circuits.is_empty());
+    e.assume(engineered);
+    let earlier = Train::any(e);
+    e.assume(earlier.is_one(&ground));
+    if !engineered || !earlier.is_one(&ground) {
+        return None;
+    }
+    // Where nothing else is drawn, what the train needs is unswept.
+    let whole = before.unswept.circuits == CircuitSet::ALL;
+    let own = needed(earlier, &ground).circuits;
+    before.unswept.circuits = if whole { CircuitSet::ALL } else { before.unswept.circuits.or(own) };
+    let gone = any_flag(e, "the train has left the line (odd: yes)") && ground.out && earlier.tail >= ground.over;
+    let invariant = holds(earlier, &ground, &before) && besides(&plan, &before, earlier, gone);
+    e.assume(invariant);
+    let train = earlier.moves(e, &ground);
+    let left = gone || any_flag(e, "the train leaves the line (odd: yes)") && ground.out && train.tail >= ground.over;
+    let occupied = input.occupied;
+    e.suppose("loss-of-shunt-within-clear", left || train.is_reported(&ground, occupied));
+    // Nobody passes a signal by what he saw before the start when that is over, nor is unreported since.
+    let unseen = train.front == FIRST && train.late > 0;
+    let ends = u32::from(train.late) + u32::from(before.started.0) < u32::from(ground.start);
+    e.suppose("start-outlasts-running", !unseen || ends);
+    let (after, output) = layout.interlock(before, input);
+    Some(Scene { plan, ground, earlier, train, left: (gone, left), before, after, input, output })
+}
+
+impl Scene {
+    /// The routes that are reserved in this cycle, by number.
+    fn is_reserved(&self, number: usize) -> bool {
+        let asked = matches!(self.input.request, Some(Request::Set(asked)) if usize::from(asked.number()) == number);
+        asked && self.output.answer == Some(Ok(())) && self.before.routes[number].phase == Phase::Idle
+    }
+
+    /// From where on a route may begin for the train. Its front may just have left the circuit where it begins, and not be reported.
+    const fn from(&self) -> u8 {
+        if self.train.late > 0 { self.train.front.wrapping_sub(1) } else { self.train.front }
+    }
+}
+
+/// What a route holds of circuits, and what is beside these.
+fn holding(route: &Route<LENGTH>, state: RouteState) -> Element {
+    both(held(route, state), kept(route, state))
+}
+
+/// Where the train is in its path.
+fn under(train: Train, ground: &Ground) -> CircuitSet {
+    let mut under = 0;
+    for (position, element) in (FIRST..).zip(&ground.route.path) {
+        let there = train.tail <= position && position <= train.front && position <= ground.last;
+        under |= if there { element.circuits.bits() } else { 0 };
+    }
+    CircuitSet::from_bits(under)
+}
+
+/// Whether the line is given to nobody who comes in, and no block is confirmed there, while the train is on its way out.
+fn quiet(ground: &Ground, device: &State<ROUTES, 1>, left: bool) -> bool {
+    let directions = device.directions;
+    let given = (directions.toward.bits() | directions.came.bits()) & 1 == 1;
+    !ground.goes_out(left) || !given && !device.works.confirmed.meets(ground.line)
+}
+
+/// Whether no block is confirmed on what the train needs, or under it, and no route holds it but one that begins in its path.
+fn free(plan: &Plan<ROUTES, LENGTH, 1, 1>, device: &State<ROUTES, 1>, train: Train) -> bool {
+    let ground = Ground::of(plan);
+    let ahead = needed(train, &ground).circuits;
+    let mut free = !device.works.confirmed.meets(ahead.or(under(train, &ground)));
+    for (other, state) in plan.routes.iter().zip(&device.routes) {
+        free &= !holding(other, *state).circuits.meets(ahead) || begins(other, &ground, FIRST);
+    }
+    free
+}
+
+/// The same of what is beside that.
+fn aside(plan: &Plan<ROUTES, LENGTH, 1, 1>, device: &State<ROUTES, 1>, train: Train) -> bool {
+    let ground = Ground::of(plan);
+    let ahead = needed(train, &ground);
+    let mut aside = !device.works.confirmed.meets(ahead.beside);
+    for (other, state) in plan.routes.iter().zip(&device.routes) {
+        aside &= !fouls(&ahead, &holding(other, *state)) || begins(other, &ground, FIRST);
+    }
+    aside
+}
+
 harness! {
     /// A ghost train is on its way through a route whose signal it passed before the start, slowly or standing for a while, and no driver in it looks
     /// at telegrams. As long as it may go on, nothing is done ahead of it or under it; and that is so again after the cycle.
@@ -289,95 +409,45 @@ harness! {
         Out: "the line is asked for from outside while the train is in the path of a route out",
     }
     {
-        let Some((layout, mut before)) = any_device(e) else { return };
-        let input = any_input(e);
-        let plan = layout.plan();
+        let Some(scene) = any_scene(e, |plan, device, train, left| {
+            quiet(&Ground::of(plan), device, left) && free(plan, device, train)
+        }) else { return };
+        let Scene { plan, ground, train, before, after, input, output, .. } = &scene;
+        let (train, left, occupied) = (*train, scene.left.1, input.occupied);
         let (route, segment) = (plan.routes[0], plan.segments[0]);
-        let ground = Ground::of(plan);
         let path = ground.path();
-        // Rules of engineering: LAY-2.
-        let apart = (path & route.overlap.circuits.bits() | (path | route.overlap.circuits.bits()) & route.entry.bits()) == 0;
-        let engineered = route.exists() && !route.cab_signalled && route.entry.is_one() && apart
-            && (!ground.out || segment.length > 0 && segment.throat == route.last() && route.overlap.circuits.is_empty());
-        e.assume(engineered);
-        let earlier = Train::any(e);
-        e.assume(earlier.is_one(&ground));
-        if !engineered || !earlier.is_one(&ground) {
-            return;
-        }
-        // Where nothing else is drawn, what the train needs is unswept.
-        let whole = before.unswept.circuits == CircuitSet::ALL;
-        let (own, _) = needed(earlier, &ground);
-        before.unswept.circuits = if whole { CircuitSet::ALL } else { before.unswept.circuits.or(own) };
-        let left = any_flag(e, "the train has left the line (odd: yes)") && ground.out && earlier.tail >= ground.over;
-        let quiet = |device: &State<ROUTES, 1>, left: bool| {
-            let directions = device.directions;
-            let given = (directions.toward.bits() | directions.came.bits()) & 1 == 1;
-            !ground.goes_out(left) || !given && !device.works.confirmed.meets(ground.line)
-        };
-        let under = |train: Train| {
-            let mut under = 0;
-            for (position, element) in (FIRST..).zip(&ground.route.path) {
-                under |= if train.tail <= position && position <= train.front && position <= ground.last { element.circuits.bits() } else { 0 };
-            }
-            CircuitSet::from_bits(under)
-        };
-        let free = |device: &State<ROUTES, 1>, train: Train| {
-            let (ahead, _) = needed(train, &ground);
-            let mut free = !device.works.confirmed.meets(ahead.or(under(train)));
-            for (number, state) in device.routes.iter().enumerate() {
-                let its = |route: &Route<LENGTH>, state: RouteState| held(route, state).circuits.or(kept(route, state).circuits);
-                let other = &plan.routes[number];
-                free &= !its(other, *state).meets(ahead) || begins(other, &ground, FIRST);
-            }
-            free
-        };
-        let invariant = holds(earlier, &ground, &before) && quiet(&before, left) && free(&before, earlier);
-        e.assume(invariant);
         let starting = before.started.0 < ground.start;
-        let train = earlier.moves(e, &ground);
-        let left = left || any_flag(e, "the train leaves the line (odd: yes)") && ground.out && train.tail >= ground.over;
-        let occupied = input.occupied;
-        e.suppose("loss-of-shunt-within-clear", left || train.is_reported(&ground, occupied));
-        // Nobody passes a signal by what he saw before the start when that is over, nor is unreported since.
-        let unseen = train.front == FIRST && train.late > 0;
-        let ends = u32::from(train.late) + u32::from(before.started.0) < u32::from(ground.start);
-        e.suppose("start-outlasts-running", !unseen || ends);
-
-        let (after, output) = layout.interlock(before, input);
-        e.claim(Claim::Holds as u32, holds(train, &ground, &after) && train.is_one(&ground));
-        let (ahead, points) = needed(train, &ground);
-        let done = output.answer == Some(Ok(()));
+        e.claim(Claim::Holds as u32, holds(train, ground, after) && train.is_one(ground));
+        let needs = needed(train, ground);
+        let ahead = needs.circuits;
         let (mut set, mut declared, mut own) = (true, true, false);
         for (number, other) in plan.routes.iter().enumerate() {
-            let asked = matches!(input.request, Some(Request::Set(asked)) if usize::from(asked.number()) == number);
-            let reserved = asked && done && before.routes[number].phase == Phase::Idle;
-            let its = held(other, RouteState::RESERVED).circuits.or(kept(other, RouteState::RESERVED).circuits);
-            // Its front may just have left the circuit where the route begins, and not be reported.
-            let from = if train.late > 0 { train.front.wrapping_sub(1) } else { train.front };
-            set &= !reserved || !its.meets(ahead) || begins(other, &ground, from);
+            let reserved = scene.is_reserved(number);
+            let its = holding(other, RouteState::RESERVED).circuits;
+            set &= !reserved || !its.meets(ahead) || begins(other, ground, scene.from());
             own |= reserved && its.meets(ahead);
-            let shares = its.bits() & (path | route.overlap.circuits.bits()) != 0 || begins(other, &ground, FIRST);
+            let shares = its.bits() & (path | route.overlap.circuits.bits()) != 0 || begins(other, ground, FIRST);
             let conflicts = other.conflicts.bits() & 1 == 1 && !shares;
-            declared &= !reserved || !conflicts || !train.goes(&ground);
+            declared &= !reserved || !conflicts || !train.goes(ground);
         }
         e.claim(Claim::Set as u32, set);
         e.claim(Claim::Declared as u32, declared);
         let (_, _, contents) = output.table.parts();
         let mut granted = false;
         for (other, grant) in plan.routes.iter().zip(&contents.grants) {
-            granted |= grant.circuits.meets(ahead) && !begins(other, &ground, FIRST);
+            granted |= grant.circuits.meets(ahead) && !begins(other, ground, FIRST);
         }
-        e.claim(Claim::Apart as u32, free(&after, train) && !granted);
-        let driven = output.drives.points().bits();
+        e.claim(Claim::Apart as u32, free(plan, after, train) && !granted);
+        let driven = output.drives.points();
         let over = plan.points[0].detectors.meets(ahead);
-        e.claim(Claim::Points as u32, driven & points == 0 && !(over && driven & 1 == 1));
-        e.claim(Claim::Staff as u32, !output.confirmed.meets(ahead.or(under(train))));
+        let moves = driven.meets(needs.positions.points()) || over && driven.bits() & 1 == 1;
+        e.claim(Claim::Points as u32, !moves);
+        e.claim(Claim::Staff as u32, !output.confirmed.meets(ahead.or(under(train, ground))));
         let goes_out = ground.goes_out(left);
         let taken = output.permits.bits() & 1 == 1 || output.confirmed.meets(ground.line);
-        e.claim(Claim::Line as u32, quiet(&after, left) && !(goes_out && taken));
+        e.claim(Claim::Line as u32, quiet(ground, after, left) && !(goes_out && taken));
 
-        let refused = output.answer == Some(Err(atc_kernel::interlocking::Refusal::Unswept));
+        let refused = output.answer == Some(Err(Refusal::Unswept));
         e.cover(Cover::Goes as u32, !starting && matches!(input.request, Some(Request::Set(_))) && refused && train.tail < ground.last);
         e.cover(Cover::Own as u32, own);
         let whole = train.tail == ground.last && train.front == ground.last && !route.overlap.circuits.is_empty();
@@ -390,5 +460,55 @@ harness! {
         let turns = matches!(input.request, Some(Request::Turn(_, atc_kernel::interlocking::Travel::Toward)));
         let clear = !occupied.meets(ground.line.or(segment.throat));
         e.cover(Cover::Out as u32, !starting && turns && clear && goes_out && train.tail >= FIRST);
+    }
+}
+
+harness! {
+    /// The same train, and what would strike its side: nothing is done beside what it still needs, as long as it may go on, and nothing of it is beside what
+    /// is done.
+    t_ilk_12_unswept(e)
+    theorem "T-ILK-12";
+    requirements ["ILK-38"];
+    assumptions [
+        "loss-of-shunt-within-clear", "start-outlasts-running", "overlap-covers-sliding", "path-complete", "train-whole", "no-setting-back",
+    ];
+    built_in BUILT_IN;
+    bound BESIDE;
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Set: "a route that the train's way fouls, or that fouls it, is set only if it begins where the train is or comes to, in its direction",
+        Apart: "no route holds, and no telegram grants, a circuit beside what the train still needs, and none has that beside its own, but such a route",
+        Staff: "no block is confirmed beside what it still needs",
+    }
+    covers {
+        Refused: "a route is refused because of the train, which shares no circuit with it",
+        Own: "a route is set for the train ahead of it, beside which it stands",
+    }
+    {
+        let short = |plan: &Plan<ROUTES, LENGTH, 1, 1>| plan.routes[0].length <= SHORT && plan.routes[1].length <= SHORT;
+        let Some(scene) = any_scene(e, |plan, device, train, _| short(plan) && aside(plan, device, train)) else { return };
+        let Scene { plan, ground, train, before, after, output, .. } = &scene;
+        let needs = needed(*train, ground);
+        let (mut set, mut own, mut near) = (true, false, false);
+        for (number, other) in plan.routes.iter().enumerate() {
+            let its = holding(other, RouteState::RESERVED);
+            let strikes = fouls(&its, &needs);
+            set &= !scene.is_reserved(number) || !strikes || begins(other, ground, scene.from());
+            own |= scene.is_reserved(number) && strikes;
+            let asked = matches!(scene.input.request, Some(Request::Set(asked)) if usize::from(asked.number()) == number);
+            near |= asked && strikes && !its.circuits.meets(needs.circuits);
+        }
+        let (_, _, contents) = output.table.parts();
+        let mut granted = false;
+        for (other, grant) in plan.routes.iter().zip(&contents.grants) {
+            granted |= grant.circuits.meets(needs.beside) && !begins(other, ground, FIRST);
+        }
+        e.claim(Claim::Set as u32, set);
+        e.claim(Claim::Apart as u32, aside(plan, after, *train) && !granted);
+        e.claim(Claim::Staff as u32, !output.confirmed.meets(needs.beside));
+        let refused = output.answer == Some(Err(Refusal::Unswept)) && before.started.0 >= ground.start;
+        e.cover(Cover::Refused as u32, refused && near && scene.earlier.tail < ground.last);
+        e.cover(Cover::Own as u32, own);
     }
 }

@@ -105,6 +105,8 @@ pub struct Ground {
     pub pieces: Vec<Piece>,
     /// The pieces at each joint.
     pub joints: Vec<Vec<usize>>,
+    /// The pairs of circuits in which two trains strike each other.
+    pub fouls: Vec<(usize, usize)>,
     /// The names of the points.
     pub points: Vec<String>,
     /// The time of each point's stroke.
@@ -162,7 +164,21 @@ const fn whole(brake: i64, cycle_ms: i64) -> i64 {
     (change * 1000 + cycle_ms - 1) / cycle_ms
 }
 
+/// Every two circuits of which the file says so.
+fn fouls(model: &Model) -> Vec<(usize, usize)> {
+    let of = |point: &atc_layout::model::Point| -> Vec<(usize, usize)> {
+        point.circuit.iter().flat_map(|own| point.fouled_in.iter().map(|other| (*own, *other))).collect()
+    };
+    model.fouling.iter().copied().chain(model.points.iter().flat_map(of)).collect()
+}
+
 impl Ground {
+    /// Whether two trains strike each other's side, one in circuits of either set.
+    pub fn strike(&self, one: Mask, other: Mask) -> bool {
+        let both = |a: usize, b: usize| one & bit(a) != 0 && other & bit(b) != 0;
+        self.fouls.iter().any(|(a, b)| both(*a, *b) || both(*b, *a))
+    }
+
     /// The ground that a layout describes. Times of the file are rounded so that the trains have the worst that it allows.
     pub fn of(description: &Description, model: &Model) -> Self {
         let station = &description.station;
@@ -175,6 +191,7 @@ impl Ground {
             seen: model.circuits.len(),
             pieces: Vec::new(),
             joints: model.graph.joints.iter().map(|joint| joint.tracks.clone()).collect(),
+            fouls: fouls(model),
             points: model.points.iter().map(|point| point.name.clone()).collect(),
             throw: model.points.iter().map(|point| cycles(point.throw_ms).max(1)).collect(),
             routes: Vec::new(),

@@ -127,6 +127,19 @@ pub fn judge(ground: &Ground, trains: &[Train], points: &Points, truth: &Truth, 
                 let text = format!("trains {} and {} meet on {}", train.number, other.number, ground.named(both));
                 return found(Family::Collision, text);
             }
+            if seek(Family::Collision) && ground.strike(train.under, other.under) {
+                let places = [train, other].map(|it| ground.named(it.under));
+                let text = format!(
+                    "trains {} and {} strike each other, on {} and {}",
+                    train.number, other.number, places[0], places[1]
+                );
+                return found(Family::Collision, text);
+            }
+            if seek(Family::Authority) && ground.strike(train.claim, other.claim) {
+                let text =
+                    format!("trains {} and {} may both run where they strike each other", train.number, other.number);
+                return found(Family::Authority, text);
+            }
             let both = train.claim & other.claim;
             if seek(Family::Authority) && both != 0 {
                 let place = ground.named(both);

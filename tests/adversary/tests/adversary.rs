@@ -10,7 +10,7 @@ use atc_adversary::conditions::broken;
 use atc_adversary::hunt::{Hunt, hunt, minimise, replay};
 use atc_adversary::judge::Family;
 use atc_adversary::{altered, device, known, stations, words};
-use atc_kernel::interlocking::{Layout, Small};
+use atc_kernel::interlocking::{CircuitSet, Layout, Small};
 
 /// With the weapons that were once enough for each known fault nothing is found in the kernel as it is.
 #[test]
@@ -85,6 +85,34 @@ fn trains_that_change_ends_far_behind_their_signal() {
     }
     let (find, _) = hunt(&mut *kernel, &ground, &wanted(300_000, 1, &staff));
     assert!(find.is_some(), "a point between the end of a route and the signal");
+}
+
+/// A joint too near to a point: a train that stands clear of the point is in the way of one on its other leg. Trains strike each other where the plan
+/// does not say so.
+#[test]
+fn trains_beside_each_other() {
+    const FILE: &str = include_str!("../../../layout/tests/files/short-joint.toml");
+    let description = atc_layout::Description::from_toml("short-joint.toml", FILE).expect("a layout");
+    let wanted = |sought: &[Family]| Hunt {
+        seed: 1,
+        cycles: 700_000,
+        episode: known::EPISODE,
+        arsenal: Arsenal::ALL,
+        sought: sought.to_vec(),
+    };
+    let (mut kernel, ground) = device::kernel(&description).expect("a sound layout");
+    let (find, tally) = hunt(&mut *kernel, &ground, &wanted(&Family::ALL));
+    assert_eq!(find.map(|find| words::tell(&mut *kernel, &ground, &find)), None);
+    assert!(tally.routes_set > 100 && tally.discarded == 0, "{tally:?}");
+    let mut plan = *description.compile_to::<8, 3, 2, 2, Small>().expect("a sound layout").plan;
+    for route in &mut plan.routes {
+        route.path.iter_mut().chain([&mut route.overlap]).for_each(|place| place.beside = CircuitSet::EMPTY);
+    }
+    let mut kernel = device::of(Layout::new(plan).expect("the kernel knows no tracks"));
+    let (find, _) = hunt(&mut *kernel, &ground, &wanted(&[Family::Collision]));
+    let told =
+        find.map(|find| words::tell(&mut *kernel, &ground, &find)).expect("nothing is proved clear beside a path");
+    assert!(told.contains("strike each other"), "{told}");
 }
 
 /// A file that was altered at random and breaks no rule is a station like any other. This attacks the rules of layouts. It is

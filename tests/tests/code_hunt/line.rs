@@ -100,7 +100,7 @@ impl Line<'_> {
                 metres += u32::from(*length);
             }
         }
-        let mut path = [Element { circuits: CircuitSet::EMPTY, positions: Positions::NONE }; PLACES];
+        let mut path = [Element::NONE; PLACES];
         path[0].circuits = CircuitSet::nth(count);
         plan.routes[0] = Route {
             heading: Heading::Right,

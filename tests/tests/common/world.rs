@@ -310,7 +310,7 @@ pub fn route(
         made.approach = made.approach.or(CircuitSet::nth(*circuit));
     }
     for (element, (circuit, positions)) in made.path.iter_mut().zip(path) {
-        *element = Element { circuits: CircuitSet::nth(*circuit), positions: *positions };
+        *element = Element { circuits: CircuitSet::nth(*circuit), positions: *positions, ..Element::NONE };
     }
     made.length = u8::try_from(path.len()).unwrap();
     (made.drive, made.release, made.stay) = (Ticks(12), Ticks(RESIDUAL + u16::from(LOSS)), Ticks(44));

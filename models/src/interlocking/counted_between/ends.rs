@@ -136,7 +136,7 @@ fn route_over(entry: u8, path: &[u8], beyond: u8, plan: &Plan<1, PLACES, 0, 1>) 
         ..Route::NONE
     };
     for (place, circuit) in route.path.iter_mut().zip(path) {
-        *place = Element { circuits: circuits(1 << circuit), positions: Positions::NONE };
+        *place = Element { circuits: circuits(1 << circuit), ..Element::NONE };
     }
     route
 }

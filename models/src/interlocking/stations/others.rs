@@ -342,7 +342,7 @@ pub fn berth() -> Station {
         waits: 0,
         catching: 0,
     };
-    let only = |circuit: u8| Element { circuits: circuits(1 << circuit), positions: Positions::NONE };
+    let only = |circuit: u8| Element { circuits: circuits(1 << circuit), ..Element::NONE };
     let at = |circuit: u8| (circuit, Positions::NONE);
     let mut plan = plan(5);
     let mut put = |number: u8, route: Route<PLACES>| {

@@ -168,7 +168,7 @@ impl<D: Device> Yard<D> {
                 Ahead::Nothing => return here != at,
                 Ahead::Between(_) | Ahead::Trailing(_) => return false,
             }
-            if taken(state, here, ground) || between(here, state, ground.points_in) {
+            if taken(state, (here, at), ground) || between(here, state, ground.points_in) {
                 return false;
             }
             if ground.signal(here, heading).is_some() {
@@ -183,7 +183,7 @@ impl<D: Device> Yard<D> {
         let (mut here, mut seen) = (from, 0_u8);
         while here != to {
             let Ahead::Circuit(next) = ground.ahead(here, heading, state.blades) else { return false };
-            if taken(state, next, ground)
+            if taken(state, (next, from), ground)
                 || hold >> next & 1 == 0
                 || seen >> next & 1 == 1
                 || between(next, state, ground.points_in)
@@ -197,14 +197,18 @@ impl<D: Device> Yard<D> {
     }
 }
 
-/// Whether a train is in the circuit, or touches it. A front that has just come into a circuit and was never reported there does not count:
+/// Whether a train is in the circuit, or touches it and is not the one in `own`. A front that has just come into a circuit and was never reported there does not count:
 /// nothing can know of it.
-fn taken(state: &State, circuit: u8, ground: &Ground) -> bool {
+fn taken(state: &State, (circuit, own): (u8, u8), ground: &Ground) -> bool {
     let there = |train: &Train| match train.place {
         Place::Here { front, rear } if front != rear && train.unheard[0] > 0 => 1 << rear,
         _ => train.occupies(),
     };
-    state.trains.iter().any(|train| ground.touch(there(train), 1 << circuit))
+    state
+        .trains
+        .iter()
+        .map(there)
+        .any(|there| there >> circuit & 1 == 1 || there >> own & 1 == 0 && ground.touch(there, 1 << circuit))
 }
 
 /// Whether a point in the circuit is between its positions.

@@ -48,7 +48,11 @@ fn plan(machine: &Interlocked, times: Times) -> Value {
         for (side, set) in [("normal", element.positions.normal), ("reverse", element.positions.reverse)] {
             at.extend(named(&names.points, points(set)).into_iter().map(|point| (point, side.into())));
         }
-        json!({"circuits": of_circuits(element.circuits), "points": at})
+        let mut form = json!({"circuits": of_circuits(element.circuits), "points": at});
+        if !element.beside.is_empty() {
+            form["beside"] = of_circuits(element.beside).into();
+        }
+        form
     };
     let circuit_forms = names.circuits.iter().zip(&plan.lengths);
     let point_forms = names.points.iter().zip(&plan.points);

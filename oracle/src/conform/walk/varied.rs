@@ -1,4 +1,4 @@
-//! Stations changed at random where engineering has a choice: times, lengths, speeds, overlaps, cab signalling. Braking distances are those
+//! Stations changed at random where engineering has a choice: times, lengths, speeds, overlaps, cab signalling, what is beside a path. Braking distances are those
 //! from one circuit of a route to another of it, and one metre more or less.
 
 use serde_json::{Value, json};
@@ -118,6 +118,33 @@ fn conflict(plan: &mut Value, random: &mut Random) {
     }
 }
 
+/// The circuits of a place, or of an overlap.
+fn circuits(at: &Value) -> impl Iterator<Item = &Value> {
+    at["circuits"].as_array().into_iter().flatten()
+}
+
+/// Circuits of other routes beside those of some, as where a joint is too near to a point.
+fn beside(plan: &mut Value, random: &mut Random) {
+    let places = |route: &Value| -> Vec<Value> {
+        let path = route["path"].as_array().into_iter().flatten();
+        path.chain([&route["overlap"]]).flat_map(circuits).cloned().collect()
+    };
+    let all: Vec<Value> = plan["routes"].as_array().into_iter().flatten().flat_map(places).collect();
+    for route in plan["routes"].as_array_mut().into_iter().flatten() {
+        if random.one_in(2) {
+            continue;
+        }
+        let mut own = places(route);
+        own.extend(route["entry"].as_array().cloned().unwrap_or_default());
+        let others: Vec<&Value> = all.iter().filter(|circuit| !own.contains(circuit)).collect();
+        let Some(circuit) = random.pick(&others).map(|circuit| (*circuit).clone()) else { continue };
+        let length = route["path"].as_array().map_or(0, Vec::len);
+        let place = random.below(length + 1);
+        let at = if place < length { &mut route["path"][place] } else { &mut route["overlap"] };
+        at["beside"] = json!([circuit]);
+    }
+}
+
 /// So many stations, each one of these with other values. The same for the same number.
 pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
     let one = |number: u64| {
@@ -139,6 +166,9 @@ pub(super) fn varied(stations: &[Value], count: u64) -> Vec<Value> {
             ends(plan, &mut random);
             if random.one_in(2) {
                 conflict(plan, &mut random);
+            }
+            if random.one_in(3) {
+                beside(plan, &mut random);
             }
             is_taken(&config).then_some(config)
         })

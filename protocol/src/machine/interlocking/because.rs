@@ -4,8 +4,7 @@
 use std::collections::BTreeSet;
 
 use atc_kernel::interlocking::{
-    CircuitSet, Element, Input, PointSet, Positions, Refusal, Request, Route, RouteSet, RouteState, SegmentSet, Size,
-    Travel,
+    CircuitSet, Input, PointSet, Positions, Refusal, Request, Route, RouteSet, RouteState, SegmentSet, Size, Travel,
 };
 
 use super::Interlocked;
@@ -15,6 +14,8 @@ struct Asked<Z: Size> {
     path: CircuitSet<Z>,
     overlap: CircuitSet<Z>,
     positions: Positions<Z>,
+    /// What is beside path and overlap.
+    beside: CircuitSet<Z>,
     number: RouteSet<Z>,
     conflicts: RouteSet<Z>,
     continuing: RouteSet<Z>,
@@ -30,7 +31,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
     pub(super) fn because(&self, input: Input<Z>, occupied: CircuitSet<Z>, refusal: Refusal) -> BTreeSet<String> {
         let Some(request) = input.request else { return BTreeSet::new() };
         let asked = self.asked(request);
-        let all = asked.path.or(asked.overlap);
+        let all = asked.path.or(asked.overlap).or(asked.beside);
         let detected = input.detected.without(input.detected.normal.and(input.detected.reverse));
         match refusal {
             Refusal::Unknown | Refusal::Starting | Refusal::AlreadyHeld | Refusal::NotHeld => match request {
@@ -41,10 +42,13 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
                 Request::Turn(segment, _) => self.segments_of(segment.alone()),
             },
             Refusal::Conflict => self.held_where(|number, _, _| asked.conflicts.meets(number)),
-            Refusal::PathHeld => self.held_where(|_, route, state| {
+            Refusal::PathHeld => self.held_where(|number, route, state| {
                 let goes_on = !asked.number.is_empty() && route.continuing.meets(asked.number);
-                let overlap = state.overlap(route).circuits;
-                state.path(route).circuits.meets(asked.path) || overlap.meets(asked.path) && !goes_on
+                let (path, overlap) = (state.path(route).circuits, state.overlap(route).circuits);
+                let theirs = overlap.or(path.only_if(!asked.continuing.meets(number)));
+                let mine = asked.overlap.or(asked.path.only_if(!goes_on));
+                let fouls = asked.beside.meets(theirs) || !asked.number.is_empty() && state.beside(route).meets(mine);
+                path.meets(asked.path) || overlap.meets(asked.path) && !goes_on || fouls
             }),
             Refusal::OverlapHeld => self.held_where(|number, route, state| {
                 let path = state.path(route).circuits;
@@ -58,7 +62,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
                     _ => held.opposes(asked.positions),
                 }
             }),
-            Refusal::Occupied if asked.calling_on => self.circuits_of(asked.path.and(occupied)),
+            Refusal::Occupied if asked.calling_on => self.circuits_of(asked.path.or(asked.beside).and(occupied)),
             Refusal::Occupied => self.circuits_of(all.and(occupied)),
             Refusal::NotCalledFor if asked.entry.meets(occupied) => self.circuits_of(asked.overlap),
             Refusal::NotCalledFor => self.circuits_of(asked.entry),
@@ -94,6 +98,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             path: CircuitSet::EMPTY,
             overlap: CircuitSet::EMPTY,
             positions: Positions::NONE,
+            beside: CircuitSet::EMPTY,
             number: RouteSet::EMPTY,
             conflicts: RouteSet::EMPTY,
             continuing: RouteSet::EMPTY,
@@ -106,11 +111,13 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> In
             Request::Set(route) => {
                 let number = route.alone();
                 let route = &plan.routes[usize::from(route.number())];
-                let Element { circuits: path, positions } = route.held_from(0);
+                let path = route.held_from(0);
+                let whole = path.or(route.overlap);
                 Asked {
-                    path,
+                    path: path.circuits,
                     overlap: route.overlap.circuits,
-                    positions: positions.or(route.overlap.positions),
+                    positions: whole.positions,
+                    beside: whole.beside,
                     number,
                     conflicts: route.conflicts,
                     continuing: route.continuing,

@@ -113,6 +113,9 @@ pub struct ElementForm {
     pub circuits: Vec<String>,
     /// The points.
     pub points: ByName<Side>,
+    /// The circuits beside it that are proved clear and not run over.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<String>,
 }
 
 /// A route.
@@ -189,6 +192,7 @@ impl PlanConfig {
         let element = |element: &Element<Z>| ElementForm {
             circuits: machine.circuits_of(element.circuits),
             points: ByName(machine.sides(element.positions)),
+            beside: machine.circuits_of(element.beside),
         };
         let routes = names.routes.iter().zip(&plan.routes).map(|(name, route)| RouteForm {
             name: name.clone(),
@@ -355,7 +359,8 @@ fn element<Z: Size>(names: &Names, form: &ElementForm, field: &str) -> Result<El
             kernel::Position::Reverse => positions.reverse = positions.reverse.or(point),
         }
     }
-    Ok(Element { circuits: circuits(names, &form.circuits, field)?, positions })
+    let beside = circuits(names, &form.beside, field)?;
+    Ok(Element { circuits: circuits(names, &form.circuits, field)?, positions, beside })
 }
 
 fn speed_code(field: &str, code: u8) -> Result<SpeedCode, String> {

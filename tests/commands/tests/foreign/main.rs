@@ -52,5 +52,5 @@ fn permitted_speed() {
 #[test]
 fn interlocking() {
     let (requests, replies) = station::interlocking(1, 90_000, side::oracle());
-    in_c("interlocking", 40, &requests, &replies);
+    in_c("interlocking", 42, &requests, &replies);
 }

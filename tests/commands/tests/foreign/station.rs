@@ -571,17 +571,41 @@ impl<'a> Walk<'a> {
 }
 
 /// The requests and the oracle's replies.
+/// Circuits of other routes beside those of some, as where a joint is too near to a point.
+fn beside(draw: &mut Draw, plan: &mut Value) {
+    let places = |route: &Value| -> Vec<Value> {
+        let path = route["path"].as_array().into_iter().flatten().chain([&route["overlap"]]);
+        path.flat_map(|at| at["circuits"].as_array().cloned().unwrap_or_default()).collect()
+    };
+    let all: Vec<Value> = plan["routes"].as_array().into_iter().flatten().flat_map(places).collect();
+    for route in plan["routes"].as_array_mut().into_iter().flatten() {
+        let mut own = places(route);
+        own.extend(route["entry"].as_array().cloned().unwrap_or_default());
+        let others: Vec<&Value> = all.iter().filter(|circuit| !own.contains(circuit)).collect();
+        if others.is_empty() || draw.chance(600) {
+            continue;
+        }
+        let last = route["path"].as_array().map_or(0, Vec::len);
+        let place = usize::try_from(draw.from(0, i64::try_from(last).expect("a few"))).expect("a few");
+        let at = if place < last { &mut route["path"][place] } else { &mut route["overlap"] };
+        at["beside"] = json!([draw.one(&others)]);
+    }
+}
+
 pub fn interlocking(seed: u64, steps: usize, oracle: Command) -> (Vec<String>, Vec<String>) {
     let mut draw = Draw::new(seed);
     let mut asked = Asked::new(oracle);
     let mut lines = small::malformed();
     let mut replies: Vec<String> = lines.iter().map(|line| asked.ask(line)).collect();
     while lines.len() < steps {
-        let plan = match draw.from(0, 9) {
+        let mut plan = match draw.from(0, 9) {
             0..4 => plan(&mut draw, true),
             4..7 => plan(&mut draw, false),
             _ => row(&mut draw),
         };
+        if draw.chance(300) {
+            beside(&mut draw, &mut plan.json);
+        }
         let start =
             json!({"start": {"protocol": 1, "machine": "interlocking", "config": {"plan": plan.json}}}).to_string();
         let reply = asked.ask(&start);
