@@ -160,7 +160,9 @@ fn every_harness_that_is_smaller_for_a_wrong_kernel_has_a_control() {
         }
         for body in text.split("harness! {").skip(1) {
             let name = body.lines().find_map(|line| line.trim().split_once("(e)")).unwrap().0.to_owned();
-            let by_size = ["BOUND", "ALONE"].iter().any(|bound| body.contains(&format!("    bound {bound};")));
+            let by_size = ["BOUND", "ALONE", "PAIR", "TRAIN", "BESIDE"]
+                .iter()
+                .any(|bound| body.contains(&format!("    bound {bound};")));
             assert_eq!(is_smaller(select(std::slice::from_ref(&name)).unwrap()[0]), by_size, "{name}");
             seen += usize::from(by_size);
         }
