@@ -2,7 +2,7 @@
 
 use super::contract::Machine;
 
-/// The stack on which a large station is opened: its layout has half a megabyte, and is moved some times.
+/// The stack on which a large station is opened: its layout has nearly a megabyte, and is moved some times.
 const STACK: usize = 64 << 20;
 
 /// The routes of a large station.
