@@ -449,6 +449,21 @@ fn fouling_not_held() {
     );
 }
 
+/// The twenty-third attack: a train that has left the one of two circuits, is not in the other yet, and still has it before it, or comes over it to its
+/// signal.
+#[test]
+fn fouling_that_occupation_does_not_show() {
+    breaks(
+        &fouls(LOOP, "P1T", "P2T"),
+        Rule::FoulingNotHeld,
+        "route W-1: its train has both before it, and is in neither while it is in 1T",
+    );
+    let fouls_long = |one: &str, other: &str| fouls(LONG_TRACK, one, other);
+    let over = "a train that comes up to its signal over 1A is let past 2T";
+    breaks(&fouls_long("1A", "2T"), Rule::FoulingNotHeld, over);
+    breaks(&fouls_long("P1T", "1B"), Rule::FoulingNotHeld, "is in neither while it is in 1A");
+}
+
 fn fouls(text: &str, one: &str, other: &str) -> String {
     format!("{text}\n[[fouling]]\nbetween = [\"{one}\", \"{other}\"]\n")
 }

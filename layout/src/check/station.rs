@@ -293,20 +293,54 @@ fn foul(model: &Model, (one, other): (usize, usize), span: &Range<usize>, proble
     let on_line = |circuit: &usize| model.segments.iter().any(|segment| segment.circuits.contains(circuit));
     let held = |circuit: &usize| model.routes.iter().any(|route| route.circuits().any(|over| over == *circuit));
     let pair = [one, other];
-    let why = match (pair.iter().find(|it| on_line(it)), pair.iter().find(|it| !held(it))) {
-        (Some(line), _) => format!("{} is plain line", name(*line)),
-        (None, Some(loose)) => format!("no route runs over {}", name(*loose)),
-        (None, None) => return,
+    let loose = match (pair.iter().find(|it| on_line(it)), pair.iter().find(|it| !held(it))) {
+        (Some(line), _) => Some(format!("{} is plain line", name(*line))),
+        (None, Some(loose)) => Some(format!("no route runs over {}", name(*loose))),
+        (None, None) => None,
     };
-    let what = format!(
-        "{} and {} foul each other, and {why}: trains come there without a route, and nothing keeps them apart",
-        name(one),
-        name(other)
-    );
-    problems.push(Problem::new(
-        Rule::FoulingNotHeld,
-        span,
-        what,
-        "move the joint beyond the fouling point, or let routes run over both",
-    ));
+    if let Some(why) = loose {
+        let (one, other) = (name(one), name(other));
+        let what = format!(
+            "{one} and {other} foul each other, and {why}: trains come there without a route, and nothing keeps them apart"
+        );
+        let right = "move the joint beyond the fouling point, or let routes run over both";
+        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
+        return;
+    }
+    for route in model.routes.iter().filter(|route| route.is_sound()) {
+        let why = uncovered(model, route, (one, other)).or_else(|| uncovered(model, route, (other, one)));
+        if let Some(why) = why {
+            let what = format!("{} and {} foul each other, and route {}: {why}", name(one), name(other), route.name);
+            let right = "move the joint beyond the fouling point, or make circuits one";
+            problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
+            return;
+        }
+    }
+}
+
+/// Why a train of the route, or on its way to the signal, may come into `one` while somebody is in `other`, or waits there for itself. Where it has
+/// both before it, it must be in one of them all the time: then its occupation speaks for it.
+fn uncovered(model: &Model, route: &Route, (one, other): (usize, usize)) -> Option<String> {
+    let name = |circuit: usize| &model.circuits[circuit].name;
+    let order: Vec<usize> =
+        [route.entry].into_iter().chain(route.circuits()).chain(route.overlap.iter().copied()).collect();
+    let at = |circuit: usize| order.iter().position(|held| *held == circuit);
+    if let (Some(first), Some(second)) = (at(one), at(other))
+        && first.abs_diff(second) > 1
+    {
+        let between = name(order[first.min(second) + 1]);
+        return Some(format!("its train has both before it, and is in neither while it is in {between}"));
+    }
+    if model.values.cab_signalled || !route.approach.contains(&one) || route.approach.contains(&other) {
+        return None;
+    }
+    let entry = one == route.entry;
+    if at(other).is_some() {
+        let stuck = format!("a train that reaches back to {} keeps itself from its own way", name(one));
+        return (!entry).then_some(stuck);
+    }
+    // From farther behind a driver comes over it by the signal ahead. At the far end of the approach he has stood in it before.
+    let behind = route.approach.iter().filter(|circuit| !model.graph.between(one, **circuit).is_empty()).count();
+    let passed = behind > usize::from(!entry);
+    passed.then(|| format!("a train that comes up to its signal over {} is let past {}", name(one), name(other)))
 }
