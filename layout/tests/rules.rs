@@ -10,6 +10,9 @@ const JUNCTION: &str = include_str!("../../layouts/junction.toml");
 const TERMINUS: &str = include_str!("../../layouts/terminus.toml");
 const LONG_TRACK: &str = include_str!("files/long-track.toml");
 
+/// Two circuits in line between which there is no room for two trains.
+const FOULING: &str = include_str!("files/fouling.toml");
+
 /// One track that leads to a line with a segment, and over a point to a line without.
 const LEG: &str = r#"name = "Leg at the line"
 longest_train_m = 200
@@ -459,6 +462,8 @@ fn fouling_that_occupation_does_not_show() {
         "route W-1: its train has both before it, and is in neither while it is in 1T",
     );
     let fouls_long = |one: &str, other: &str| fouls(LONG_TRACK, one, other);
+    // Every route over M1 runs over M2: no place of a path has one of them beside it.
+    breaks(FOULING, Rule::FoulingNotHeld, "every route over the one holds the other");
     let over = "a train that comes up to its signal over 1A is let past 2T";
     breaks(&fouls_long("1A", "2T"), Rule::FoulingNotHeld, over);
     breaks(&fouls_long("P1T", "1B"), Rule::FoulingNotHeld, "is in neither while it is in 1A");

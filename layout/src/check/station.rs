@@ -275,20 +275,28 @@ fn segments(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
 /// A route over one of two circuits that foul each other proves the other clear, and keeps other routes from it. That keeps trains apart only where no
 /// train comes into either of them without a route.
 fn fouling(station: &Station, model: &Model, problems: &mut Vec<Problem>) {
-    for (given, (one, other)) in station.fouling.iter().zip(&model.fouling) {
-        foul(model, (*one, *other), &given.between[0].span, problems);
+    let mut tell = |found: Option<(String, &'static str)>, (one, other): (usize, usize), span: &Range<usize>| {
+        if let Some((why, right)) = found {
+            let [one, other] = [one, other].map(|circuit| &model.circuits[circuit].name);
+            let what = format!("{one} and {other} foul each other, and {why}");
+            problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
+        }
+    };
+    for (given, pair) in station.fouling.iter().zip(&model.fouling) {
+        tell(unkept(model, *pair).or_else(|| unsaid(model, *pair)), *pair, &given.between[0].span);
     }
     for (given, point) in station.points.iter().zip(&model.points) {
         let Some(own) = point.circuit else { continue };
         let named = given.fouled_in.first().or_else(|| given.detectors.as_ref().and_then(|named| named.first()));
         let span = named.map_or(&point.span, |named| &named.span);
         for beside in point.detectors.iter().filter(|circuit| **circuit != own) {
-            foul(model, (own, *beside), span, problems);
+            tell(unkept(model, (own, *beside)), (own, *beside), span);
         }
     }
 }
 
-fn foul(model: &Model, (one, other): (usize, usize), span: &Range<usize>, problems: &mut Vec<Problem>) {
+/// Why two circuits that foul each other cannot be kept apart, and what would be right.
+fn unkept(model: &Model, (one, other): (usize, usize)) -> Option<(String, &'static str)> {
     let name = |circuit: usize| &model.circuits[circuit].name;
     let on_line = |circuit: &usize| model.segments.iter().any(|segment| segment.circuits.contains(circuit));
     let held = |circuit: &usize| model.routes.iter().any(|route| route.circuits().any(|over| over == *circuit));
@@ -299,23 +307,25 @@ fn foul(model: &Model, (one, other): (usize, usize), span: &Range<usize>, proble
         (None, None) => None,
     };
     if let Some(why) = loose {
-        let (one, other) = (name(one), name(other));
-        let what = format!(
-            "{one} and {other} foul each other, and {why}: trains come there without a route, and nothing keeps them apart"
-        );
         let right = "move the joint beyond the fouling point, or let routes run over both";
-        problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
-        return;
+        return Some((format!("{why}: trains come there without a route, and nothing keeps them apart"), right));
     }
-    for route in model.routes.iter().filter(|route| route.is_sound()) {
-        let why = uncovered(model, route, (one, other)).or_else(|| uncovered(model, route, (other, one)));
-        if let Some(why) = why {
-            let what = format!("{} and {} foul each other, and route {}: {why}", name(one), name(other), route.name);
-            let right = "move the joint beyond the fouling point, or make circuits one";
-            problems.push(Problem::new(Rule::FoulingNotHeld, span, what, right));
-            return;
-        }
-    }
+    let found = model.routes.iter().filter(|route| route.is_sound()).find_map(|route| {
+        let why = uncovered(model, route, (one, other)).or_else(|| uncovered(model, route, (other, one)))?;
+        Some(format!("route {}: {why}", route.name))
+    });
+    found.map(|why| (why, "move the joint beyond the fouling point, or make circuits one"))
+}
+
+/// Why the plan has nothing of it that the one is beside the other.
+fn unsaid(model: &Model, (one, other): (usize, usize)) -> Option<(String, &'static str)> {
+    let said = model.routes.iter().any(|route| {
+        let overlap = route.overlap.iter().map(|over| (*over, &route.overlap_beside));
+        let mut places = route.path.iter().map(|place| (place.circuit, &place.beside)).chain(overlap);
+        places.any(|(over, beside)| over == one && beside.contains(&other) || over == other && beside.contains(&one))
+    });
+    let why = "every route over the one holds the other: nothing keeps a block on the one from a train in the other";
+    (!said).then(|| (why.to_owned(), "make them one circuit"))
 }
 
 /// Why a train of the route, or on its way to the signal, may come into `one` while somebody is in `other`, or waits there for itself. Where it has

@@ -34,7 +34,7 @@ pub fn beside(station: &Station, names: &Names, model: &mut Model, problems: &mu
 }
 
 /// Every pair of circuits that foul each other: as the file has them, and of points those in which they are fouled.
-pub fn fouling(model: &Model) -> BTreeSet<(usize, usize)> {
+fn fouling(model: &Model) -> BTreeSet<(usize, usize)> {
     let of_points = model.points.iter().flat_map(|point| {
         let others = point.detectors.iter().copied();
         point.circuit.into_iter().flat_map(move |own| others.clone().map(move |other| (own, other)))

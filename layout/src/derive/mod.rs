@@ -12,7 +12,6 @@ pub mod values;
 pub(crate) mod way;
 
 pub use approach::{Back, Shortfall, back};
-pub use beside::fouling;
 pub use reversal::signals_behind_points;
 
 use crate::at::At;

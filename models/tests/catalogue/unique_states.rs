@@ -130,7 +130,7 @@ pub const UNIQUE_STATES: &[(&str, usize)] = &[
     ("interlocking-reversal-short-approach", 981),
     ("interlocking-beside", 32_527),
     ("interlocking-beside-falsely", 44_140),
-    ("interlocking-beside-left-out", 42_991),
+    ("interlocking-beside-left-out", 1_505),
     ("interlocking-line", 113),
     ("interlocking-line-overlapping", 217),
     ("interlocking-line-adjoining", 201),

@@ -153,6 +153,7 @@ fn every_harness_that_is_smaller_for_a_wrong_kernel_has_a_control() {
         let sized = !own && ["PLACES", "{PATH, ", " PATH, ", "super::PATH"].iter().any(|word| imports.contains(word));
         let smaller = text.contains("cfg!(small)")
             || imports.contains("super::scene::")
+            || imports.contains("super::forgotten::")
             || text.contains("cfg!(any(small, kani))")
             || sized && text.contains("use super::");
         if !smaller || text.contains("pub const ALL") {

@@ -6,10 +6,10 @@
 //! Who is beside the train is a second one that the kernel sees nothing of but an occupied circuit, or a route that is held for it.
 
 use super::ahead::needed;
-use super::any::{any_cycle, any_layout, any_route_state, bit, held, kept};
-use super::pair::any_sight;
+use super::any::{any_cycle, held, kept};
+use super::pair::{TwoRoutes, any_two};
 use super::scene::{BUILT_IN, Beside, FIRST, UNDER_KANI, any_scene};
-use atc_kernel::interlocking::{CircuitSet, Element, Phase, Route, RouteState, refuse_route};
+use atc_kernel::interlocking::{CircuitSet, Element, Phase, Route, RouteState};
 
 /// The places of a path in the harness of two routes of which one is asked for.
 const FEWER: usize = if cfg!(any(small, kani)) { 2 } else { 3 };
@@ -60,18 +60,8 @@ harness! {
         GoesOn: "a route is reserved over what is beside the one at whose end it goes on",
     }
     {
-        let Some(layout) = any_layout::<E, 2, FEWER, 0, 0>(e) else { return };
-        let asked = e.choose("the route that is asked for", 2);
-        let other = 1 - asked;
+        let Some(TwoRoutes { layout, asked, other, state, sight, reserved, circuit }) = any_two::<E, FEWER, 0>(e) else { return };
         let routes = &layout.plan().routes;
-        let state = any_route_state(e);
-        let valid = state.is_valid(&routes[other]);
-        e.assume(valid);
-        let mut states = [RouteState::IDLE; 2];
-        states[other] = state;
-        let sight = any_sight(e);
-        let reserved = refuse_route(&layout, &states, asked, sight).is_none();
-        let circuit = bit(e.word("a circuit that stands for all (number)", 0..=15));
         let (mine, its) = (all(&routes[asked], RouteState::RESERVED), all(&routes[other], state));
         let goes_on = |route: usize, behind: usize| routes[behind].continuing.bits() >> route & 1 == 1;
         e.claim(Claim::Beside as u32, !reserved || !strikes(mine, its, goes_on(other, asked), circuit));

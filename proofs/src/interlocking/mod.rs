@@ -12,6 +12,7 @@ mod border;
 mod cycle;
 mod device;
 mod direction;
+mod forgotten;
 mod heading;
 mod layout;
 mod line;
@@ -47,7 +48,7 @@ pub const SMALLER: [&str; 13] = [
     signal::BOUND,
     scene::ALONE,
     scene::BOUND,
-    unswept::BOUND,
+    forgotten::BOUND,
     unswept::BESIDE,
     beside::PAIR,
     beside::TRAIN,

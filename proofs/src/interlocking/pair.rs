@@ -5,7 +5,7 @@ use super::any::{
     held, kept,
 };
 use crate::Engine;
-use atc_kernel::interlocking::{CircuitSet, Phase, PointSet, Route, RouteState, Sight, Ways, refuse_route};
+use atc_kernel::interlocking::{CircuitSet, Layout, Phase, PointSet, Route, RouteState, Sight, Ways, refuse_route};
 
 pub const BOUND: &str = match PATH {
     4 => "2 routes of up to 4 circuits, 32 circuits, 16 points",
@@ -17,7 +17,7 @@ pub const BOUND: &str = match PATH {
 const FEWER: usize = if cfg!(kani) && PATH > 2 { 2 } else { PATH };
 
 /// What the conflict check sees besides the routes: anything.
-pub(super) fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
+fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
     Sight {
         occupied: any_circuits(e, "occupied (bits)", 0..=0),
         blocked: any_circuits(e, "blocked (bits)", 0..=0),
@@ -34,6 +34,35 @@ pub(super) fn any_sight<E: Engine + ?Sized>(e: &mut E) -> Sight {
             ..Ways::default()
         },
     }
+}
+
+/// One of two routes is asked for, while the other is in any state.
+pub(super) struct TwoRoutes<const P: usize, const N: usize> {
+    pub layout: Layout<2, P, N, 0>,
+    pub asked: usize,
+    pub other: usize,
+    /// The state of the other one.
+    pub state: RouteState,
+    pub sight: Sight,
+    pub reserved: bool,
+    /// A circuit that stands for all.
+    pub circuit: u64,
+}
+
+/// Any two routes of any layout, and any request for one.
+pub(super) fn any_two<E: Engine + ?Sized, const P: usize, const N: usize>(e: &mut E) -> Option<TwoRoutes<P, N>> {
+    let layout = any_layout::<E, 2, P, N, 0>(e)?;
+    let asked = e.choose("the route that is asked for", 2);
+    let other = 1 - asked;
+    let state = any_route_state(e);
+    let valid = state.is_valid(&layout.plan().routes[other]);
+    e.assume(valid);
+    let mut states = [RouteState::IDLE; 2];
+    states[other] = state;
+    let sight = any_sight(e);
+    let reserved = refuse_route(&layout, &states, asked, sight).is_none();
+    let circuit = bit(e.word("a circuit that stands for all (number)", 0..=15));
+    Some(TwoRoutes { layout, asked, other, state, sight, reserved, circuit })
 }
 
 /// Whether two routes may hold what they hold, for one circuit and one point that stand for all. The reserved one holds everything.
@@ -107,19 +136,9 @@ harness! {
     }
     {
         // One point has detectors; the others are positions only.
-        let Some(layout) = any_layout::<E, 2, FEWER, 1, 0>(e) else { return };
-        let asked = e.choose("the route that is asked for", 2);
-        let other = 1 - asked;
+        let Some(TwoRoutes { layout, asked, other, state, sight, reserved, circuit }) = any_two::<E, FEWER, 1>(e) else { return };
         let routes = &layout.plan().routes;
-        let state = any_route_state(e);
-        let valid = state.is_valid(&routes[other]);
-        e.assume(valid);
-        let mut states = [RouteState::IDLE; 2];
-        states[other] = state;
-        let sight = any_sight(e);
-        let reserved = refuse_route(&layout, &states, asked, sight).is_none();
         let numbers = if asked == 0 { (1, 2) } else { (2, 1) };
-        let circuit = bit(e.word("a circuit that stands for all (number)", 0..=15));
         let point = bit(e.word("a point that stands for all (number)", 0..=1));
         let pair = together((&routes[asked], numbers.0), (&routes[other], state, numbers.1), (circuit, point));
         e.claim(Claim::Paths as u32, !reserved || pair.paths);

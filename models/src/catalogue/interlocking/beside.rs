@@ -1,6 +1,6 @@
 //! Trains that foul each other in two circuits: the one in rear of a joint that is too near to a point, and the one with the point.
 
-use super::shared::{DOWN, PASSING, SOUND, UP, dispatch, turns, without, yard};
+use super::shared::{DOWN, PASSING, SOUND, UP, dispatch, sets, turns, without, yard};
 use crate::catalogue::about::{Conditions, about};
 use crate::check::Entry;
 use crate::interlocking::environment::Environment;
@@ -59,7 +59,7 @@ pub(super) fn entries() -> Vec<Entry> {
             about(
                 "interlocking-beside-left-out",
                 "The layout does not say that the two foul each other: a train is let in past the one that stands.",
-                WORDS,
+                "routes are set and segments turned in any cycle; trains move and stand in any cycle",
                 REQUIREMENTS,
                 NOT_SAID,
             ),
@@ -68,7 +68,7 @@ pub(super) fn entries() -> Vec<Entry> {
                     place.beside = CircuitSet::EMPTY;
                 }
             }),
-            meeting(),
+            Environment { requests: [sets(&PASSING), turns(&[0, 1])].concat(), ..meeting() },
             Purpose::Accident(Harm::Collision, &["fouling-declared"]),
         ),
     ]
