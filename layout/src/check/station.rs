@@ -335,9 +335,8 @@ fn uncovered(model: &Model, route: &Route, (one, other): (usize, usize)) -> Opti
     let order: Vec<usize> =
         [route.entry].into_iter().chain(route.circuits()).chain(route.overlap.iter().copied()).collect();
     let at = |circuit: usize| order.iter().position(|held| *held == circuit);
-    if let (Some(first), Some(second)) = (at(one), at(other))
-        && first.abs_diff(second) > 1
-    {
+    let apart = at(one).zip(at(other)).filter(|(first, second)| first.abs_diff(*second) > 1);
+    if let Some((first, second)) = apart {
         let between = name(order[first.min(second) + 1]);
         return Some(format!("its train has both before it, and is in neither while it is in {between}"));
     }
