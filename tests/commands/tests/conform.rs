@@ -346,6 +346,30 @@ fn walks_are_taken_and_reach_the_limits() {
     }
 }
 
+/// On the layout of somebody's own station, of either size, trains run and routes are used. A walk without them would agree with anything.
+#[test]
+fn walks_on_a_station_of_ones_own_are_lively() {
+    use atc_oracle::conform::walk::{Sizes, case};
+    for (name, most, due) in [
+        ("coupling", 60, ["accepted", "in-use", r#""permits":["#, r#"c":"in-use""#].as_slice()),
+        ("central", 3, ["accepted", "in-use", r#""permits":["#].as_slice()),
+    ] {
+        let path = format!("{}/../../layouts/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).expect("a layout");
+        let config: serde_json::Value = toml::from_str(&text).expect("TOML");
+        let mut missing = due.to_vec();
+        for number in 0..most {
+            let expected = case("interlocking", 1, number, Sizes::Mixed, Some(&config)).expect("a case");
+            let text = expected.outputs.concat();
+            missing.retain(|word| !text.contains(word));
+            if missing.is_empty() {
+                break;
+            }
+        }
+        assert!(missing.is_empty(), "{name}: no walk reaches {missing:?}");
+    }
+}
+
 /// The page for newcomers: its implementation differs, and agrees once the fault is mended. Without a Python here it is not run.
 #[test]
 fn the_example_in_python() {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::plan::{Times, layout, with_times};
 use super::source::{Source, Walk};
-use super::station::{Segment, Station};
+use super::station::{Route, Segment, Station};
 use super::varied::varied;
 use super::{rows, wrong_plans};
 use crate::conform::random::Random;
@@ -97,10 +97,18 @@ fn wrong() -> Vec<Value> {
     wrong_plans::wrong(&fork())
 }
 
+/// A station of so many routes is asked twice as often as a small one, and one of twice as many three times.
+const MANY: u64 = 40;
+
+/// By how much rarer than on a small plan something is taken back or disturbed on a layout.
+const PACE: u64 = 20;
+
 /// A train: the circuits that it stands on, its front first, and those that it may go on to.
 struct Train {
     on: VecDeque<usize>,
     next: VecDeque<usize>,
+    /// The berth that it was called on to: it goes there though another one stands in it.
+    berth: Option<usize>,
     /// Cycles until it moves.
     left: i64,
 }
@@ -122,6 +130,8 @@ struct Ground {
     consent: Vec<bool>,
     /// What is asked for first, a cycle each, the last one first: each line has its direction before a train comes.
     agenda: Vec<Value>,
+    /// What was asked last of it, on a layout: once more, if that was too early.
+    asked: Option<Value>,
     begun: bool,
     /// How often a request is made: once in so many cycles.
     requests: u64,
@@ -129,6 +139,10 @@ struct Ground {
     wrong: u64,
     /// How long a train stays in a circuit.
     stay: i64,
+    /// The most trains at a time.
+    most: usize,
+    /// By how much rarer than on a small plan something is taken back or disturbed: a layout's own times are hundreds of cycles.
+    pace: u64,
 }
 
 fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
@@ -138,18 +152,22 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
     let points =
         station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
     let points = points.collect();
-    let agenda = if plan && random.one_in(2) { directions(config, &station, random) } else { Vec::new() };
+    let agenda = if random.one_in(2) { directions(config, &station, random) } else { Vec::new() };
     let stay = if plan { random.between(1, 4) } else { random.between(5, 40) };
+    let (routes, pace) = (station.routes.len(), if plan { 1 } else { PACE });
     Box::new(Ground {
         trains: if agenda.is_empty() { standing(&station, stay, random) } else { Vec::new() },
         points,
         disturbed: None,
         consent: station.segments.iter().map(|_| !agenda.is_empty() || !random.one_in(4)).collect(),
         agenda,
+        asked: None,
         begun: random.one_in(10),
-        requests: if plan { 2 } else { 12 },
-        wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
+        requests: if plan { 2 } else { (12 / (1 + routes as u64 / MANY)).max(2) },
+        wrong: pace * random.one_of(&[0, 20, 8]).unsigned_abs(),
         stay,
+        most: 3.max(routes / 12),
+        pace,
         station,
     })
 }
@@ -179,7 +197,7 @@ fn standing(station: &Station, stay: i64, random: &mut Random) -> Vec<Train> {
         on.extend(rear.copied().filter(|_| random.one_in(3)));
         if on.iter().all(|circuit| !trains.iter().any(|train| train.on.contains(circuit))) {
             let next = way.iter().skip(place + 1).copied().filter(|_| random.one_in(2)).collect();
-            trains.push(Train { on, next, left: random.between(0, 3 * stay) });
+            trains.push(Train { on, next, berth: None, left: random.between(0, 3 * stay) });
         }
     }
     trains
@@ -217,16 +235,17 @@ impl Ground {
         }
     }
 
-    /// Where a train at this circuit may go: the path of a route that shows proceed, and the line behind it.
-    fn way(&self, from: usize, last: Option<&Value>, ignores: bool) -> VecDeque<usize> {
+    /// Where a train at this circuit may go: the path of a route that shows proceed, and the line or the berth behind it; and that berth.
+    fn way(&self, from: usize, last: Option<&Value>, ignores: bool) -> (VecDeque<usize>, Option<usize>) {
         let shows = |name: &str| {
             ignores
                 || last.is_some_and(|last| last["proceed"].as_array().into_iter().flatten().any(|route| route == name))
         };
         let route = self.station.routes.iter().find(|route| route.entry.contains(&from) && shows(&route.name));
-        let Some(route) = route else { return VecDeque::new() };
+        let Some(route) = route else { return (VecDeque::new(), None) };
         let line = route.to.map(|segment| self.station.segments[segment].circuits.clone()).unwrap_or_default();
-        route.path.iter().copied().chain(line).collect()
+        let berth = route.overlap.first().copied().filter(|_| route.calling_on);
+        (route.path.iter().copied().chain(line).chain(berth).collect(), berth)
     }
 
     fn move_trains(&mut self, random: &mut Random, last: Option<&Value>) {
@@ -241,14 +260,14 @@ impl Ground {
             if self.trains[number].on.len() > 1 && !random.one_in(4) {
                 self.trains[number].on.pop_back();
             } else if let Some(next) = self.trains[number].next.pop_front() {
-                if self.is_free(next) {
+                if self.is_free(next) || self.trains[number].berth == Some(next) {
                     self.trains[number].on.push_front(next);
                 } else {
                     self.trains[number].next.push_front(next);
                 }
             } else if let Some(front) = self.trains[number].on.front().copied() {
                 let ignores = self.goes_wrong(random) && random.one_in(4);
-                let mut way = self.way(front, last, ignores);
+                let (mut way, berth) = self.way(front, last, ignores);
                 if way.is_empty() && random.one_in(12) {
                     // It slides on over the end of its route.
                     let ends = self.station.routes.iter().filter(|route| route.path.last() == Some(&front));
@@ -257,14 +276,14 @@ impl Ground {
                 if way.is_empty() && outermost.contains(&front) || way.is_empty() && random.one_in(30) {
                     gone.push(number);
                 }
-                self.trains[number].next = way;
+                (self.trains[number].next, self.trains[number].berth) = (way, berth);
             }
             self.trains[number].left = random.between(0, self.stay);
         }
         for number in gone.into_iter().rev() {
             self.trains.remove(number);
         }
-        if self.trains.len() < 3 && random.one_in(6) {
+        if self.trains.len() < self.most && random.one_in(6) {
             self.enter(random);
         }
     }
@@ -282,7 +301,8 @@ impl Ground {
             && self.is_free(*first)
         {
             let next = rest.iter().copied().collect();
-            self.trains.push(Train { on: VecDeque::from([*first]), next, left: random.between(0, self.stay) });
+            let left = random.between(0, self.stay);
+            self.trains.push(Train { on: VecDeque::from([*first]), next, berth: None, left });
         }
     }
 
@@ -305,8 +325,15 @@ impl Ground {
 
     fn request(&self, random: &mut Random, last: Option<&Value>) -> Option<Value> {
         let route = |random: &mut Random| random.pick(&self.station.routes).map(|route| route.name.clone());
+        let rarely = self.pace > 1 && !random.one_in(self.pace);
         match random.below(10) {
-            0..=4 => {
+            kind if kind <= 4 || rarely => {
+                let stands = |all: &[usize]| all.iter().any(|at| !self.is_free(*at));
+                let called = |route: &&Route| route.calling_on && stands(&route.entry) && stands(&route.overlap);
+                let called: Vec<_> = self.station.routes.iter().filter(called).collect();
+                if let Some(called) = random.pick(&called).filter(|_| random.one_in(8)) {
+                    return Some(json!({"set": called.name}));
+                }
                 // Rather one that a train waits for.
                 let waits: Vec<_> = self
                     .station
@@ -340,7 +367,7 @@ impl Ground {
             return Some(json!({"unblock": all, "lift": all}));
         }
         let one = random.pick(all)?.clone();
-        match random.below(60) {
+        match random.number() % (60 * self.pace) {
             0 => Some(json!({"block": [one]})),
             1 | 2 => Some(json!({"unblock": all})),
             3 => {
@@ -370,12 +397,20 @@ impl Walk for Ground {
             }
         }
         for number in 0..self.consent.len() {
-            if self.agenda.is_empty() && random.one_in(12) {
+            if self.agenda.is_empty() && random.one_in(12 * self.pace) {
                 self.consent[number] = !self.consent[number];
             }
         }
+        if let Some(asked) =
+            self.asked.take().filter(|_| last.is_some_and(|last| last["answer"]["refused"] == "starting"))
+        {
+            self.agenda.push(asked);
+        }
         let request = match self.agenda.pop() {
-            Some(asked) => Some(asked).filter(|asked| !asked.is_null()),
+            Some(asked) => {
+                self.asked = Some(asked.clone()).filter(|_| self.pace > 1);
+                Some(asked).filter(|asked| !asked.is_null())
+            }
             None if random.one_in(self.requests) => self.request(random, last),
             None => None,
         };
