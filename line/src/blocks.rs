@@ -129,6 +129,11 @@ fn line(blocks: &[Block], lengths: &[Metres], train: Metres) -> Result<(), LineE
 }
 
 impl Detection {
+    /// The configuration of each block, from the low end of the line.
+    pub fn configs(&self) -> Vec<block::Config> {
+        self.blocks.iter().map(|(block, _)| block::Config::of(*block, self.cycle)).collect()
+    }
+
     /// Its blocks, for the case.
     pub fn blocks(&self) -> Vec<LineBlock> {
         let block = |(block, lengths): &(Block, Vec<Metres>)| LineBlock {

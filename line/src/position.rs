@@ -102,6 +102,23 @@ impl TableConfig {
 }
 
 impl Config {
+    /// These parameters of the kernel.
+    pub fn of(position: &Position) -> Self {
+        let decibels = |level: Millibels| Decibels(level.0.into());
+        let curve = |levels: &[Millibels; KNOTS]| levels.iter().copied().map(decibels).collect();
+        let (table, correction) = (position.table(), position.correction());
+        Self {
+            table: TableConfig {
+                spacing_m: Metres(i64::from(table.spacing().decimetres()) * 100),
+                lowest_db: curve(table.lowest()),
+                highest_db: curve(table.highest()),
+            },
+            tolerance_db: decibels(position.tolerance()),
+            floor_db: decibels(position.floor()),
+            correction_db: [decibels(correction.least()), decibels(correction.most())],
+        }
+    }
+
     /// The parameters in the kernel's form.
     ///
     /// # Errors

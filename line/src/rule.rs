@@ -86,6 +86,8 @@ rules! {
     RankMissing, "rank-missing", Engineering, "Every speed code of a station has a speed in the line's table.";
     RankFaster, "rank-faster", Engineering, "A telegram names no higher speed than the station's code.";
     RankStop, "rank-stop", Engineering, "The lowest rank in telegrams means 0 km/h, as the station's code 0 does.";
+    RankRises, "rank-rises", Theorems, "Telegrams name no lower speed for a higher code of a station.";
+    CodeMissing, "code-missing", Theorems, "Every speed that a station's telegrams name, and 0 km/h, has a pair of codes.";
     SpeedPlausible, "speed-plausible", Engineering, "No speed of a station is implausible to a train.";
     TelegramCircuit, "telegram-circuit", Form, "A telegram section belongs to a circuit of a station.";
     TelegramTwice, "telegram-twice", Engineering, "A section number is sent in one circuit, for one direction of travel.";
@@ -101,4 +103,5 @@ rules! {
     BorderViews, "border-views", Engineering, "Two stations see the line between them so that no stretch of it is seen by neither.";
     BorderJoint, "border-joint", Engineering, "A segment ends at the joint where the counted blocks begin.";
     BorderTail, "border-tail", Engineering, "The circuits that counted blocks ask a station to hold are as long as the longest train.";
+    DeviceStarts, "device-starts", Theorems, "The kernel accepts every device of the line, with what its file says.";
 }

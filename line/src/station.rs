@@ -85,6 +85,11 @@ impl Station {
         &self.description.station.braking.speeds_kmh.value
     }
 
+    /// What the file says that telegrams name for each of its codes; none if it says nothing.
+    pub fn code_speeds(&self) -> Option<&[Kmh]> {
+        self.code_speeds.as_deref()
+    }
+
     /// What telegrams name for each of its codes.
     pub(crate) fn named(&self) -> Vec<Kmh> {
         let own = || self.codes().iter().map(|speed| Kmh(i32::from(*speed) * 10)).collect();

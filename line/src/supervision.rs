@@ -22,12 +22,16 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        let kernel = Supervision::default();
-        Self { maximum_km_h: kernel.maximum().into(), release_margin_km_h: kernel.margin().into() }
+        Self::of(Supervision::default())
     }
 }
 
 impl Config {
+    /// These parameters of the kernel.
+    pub fn of(kernel: Supervision) -> Self {
+        Self { maximum_km_h: kernel.maximum().into(), release_margin_km_h: kernel.margin().into() }
+    }
+
     /// The parameters in the kernel's form.
     ///
     /// # Errors

@@ -1,10 +1,11 @@
-//! `oracle line`: a line's file is checked, with the layouts that it names.
+//! `oracle line`: a line's file is checked, with the layouts that it names, and its devices' configurations are written.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use atc_line::{DataCheck, Line, Outcome, Problems};
+use atc_protocol::devices::{self, Devices};
 use clap::Subcommand;
 use serde::Serialize;
 
@@ -25,6 +26,17 @@ pub enum LineCommand {
         #[arg(long, conflicts_with = "derived")]
         json: bool,
     },
+    /// Writes the configuration of each device: what `serve` takes in a start, and `conform` as --config. Nothing is written where a rule is broken
+    #[command(
+        after_help = "Exit code: 0 written, 1 a rule is broken or a file cannot be written, 2 a file cannot be read as what it should be."
+    )]
+    Configs {
+        /// The line (TOML); layouts of stations are named in it
+        file: PathBuf,
+        /// The folder; made if it is not there. Files of the same names are replaced
+        #[arg(short, long, value_name = "FOLDER")]
+        output: PathBuf,
+    },
 }
 
 /// What the command has to say.
@@ -35,6 +47,8 @@ pub struct Done {
     pub remarks: String,
     /// 0, 1 or 2.
     pub code: u8,
+    /// Files to be written, before anything is said.
+    pub files: Vec<(PathBuf, String)>,
 }
 
 /// What `check --json` says.
@@ -60,11 +74,46 @@ struct Problem<'a> {
 
 /// Does what the command says. Nothing is written here.
 pub fn run(command: &LineCommand) -> Done {
-    let LineCommand::Check { file, derived, json } = command;
-    match atc_line::read(file) {
-        Ok(line) => check(file, &line, *derived, *json),
-        Err(problems) => refused(file, &problems, *json),
+    let (LineCommand::Check { file, .. } | LineCommand::Configs { file, .. }) = command;
+    match (atc_line::read(file), command) {
+        (Ok(line), LineCommand::Check { derived, json, .. }) => check(file, &line, *derived, *json),
+        (Ok(line), LineCommand::Configs { output, .. }) => configs(file, &line, output),
+        (Err(problems), LineCommand::Check { json, .. }) => refused(file, &problems, *json),
+        (Err(problems), LineCommand::Configs { .. }) => refused(file, &problems, false),
     }
+}
+
+/// The configuration of each device, if no rule of the line is broken.
+fn configs(file: &Path, line: &Line, folder: &Path) -> Done {
+    let checked = check(file, line, false, false);
+    if checked.code != 0 {
+        return checked;
+    }
+    let Devices { all, without } = Devices::of(line);
+    let (mut text, mut files) = (String::new(), Vec::new());
+    for device in &all {
+        // What cannot be made is a broken rule.
+        let Ok(config) = &device.config else { continue };
+        let path = folder.join(format!("{}.json", plain(&device.name())));
+        let _ = writeln!(text, "{}", path.display());
+        files.push((
+            path,
+            serde_json::to_string_pretty(config).map_or_else(|error| error.to_string(), |text| text + "\n"),
+        ));
+    }
+    let mut lacking: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for one in without {
+        lacking.entry(one.why).or_default().push(one.machine);
+    }
+    for (why, machines) in lacking {
+        let _ = writeln!(text, "not made, as {why}: {}", machines.join(", "));
+    }
+    Done { text, remarks: checked.remarks, code: 0, files }
+}
+
+/// A name that every file system takes.
+fn plain(name: &str) -> String {
+    name.chars().map(|one| if one.is_alphanumeric() || "-_.".contains(one) { one } else { '-' }).collect()
 }
 
 fn refused(file: &Path, problems: &Problems, json: bool) -> Done {
@@ -72,11 +121,11 @@ fn refused(file: &Path, problems: &Problems, json: bool) -> Done {
     let all = problems.0.iter().map(|one| Problem { rule: one.rule.id(), at: &one.at, what: &one.what }).collect();
     let told = Told { file: file.display().to_string(), line: None, sound: false, problems: all, checks: Vec::new() };
     let text = if json { written(&told) } else { String::new() };
-    Done { text, remarks: format!("{problems}\n"), code }
+    Done { text, remarks: format!("{problems}\n"), code, files: Vec::new() }
 }
 
 fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
-    let checks = line.checks();
+    let checks = devices::checks(line);
     let mut remarks = String::new();
     for (check, finding) in checks.iter().flat_map(|check| check.findings().iter().map(move |finding| (check, finding)))
     {
@@ -87,7 +136,7 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
     if json {
         let (file, name) = (file.display().to_string(), Some(line.name()));
         let told = Told { file, line: name, sound, problems: Vec::new(), checks };
-        return Done { text: written(&told), remarks, code };
+        return Done { text: written(&told), remarks, code, files: Vec::new() };
     }
     let count = |one: fn(&Outcome) -> bool| checks.iter().filter(|check| one(&check.outcome)).count();
     let met = count(|outcome| *outcome == Outcome::Met);
@@ -100,7 +149,7 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
     };
     let mut text = format!("{}: {told}; {met} checks met", file.display());
     if unchecked > 0 {
-        let _ = write!(text, ", {unchecked} not made where a station is refused");
+        let _ = write!(text, ", {unchecked} not made, as a rule is broken");
     }
     text.push('\n');
     let mut without: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -120,7 +169,7 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
             let _ = writeln!(text, "to look at: {note}");
         }
     }
-    Done { text, remarks, code }
+    Done { text, remarks, code, files: Vec::new() }
 }
 
 fn written(told: &Told<'_>) -> String {

@@ -350,6 +350,12 @@ fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {
 
 fn line(command: &line::LineCommand) -> Result<(), Failure> {
     let done = line::run(command);
+    for (path, text) in &done.files {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.to_owned(), error))?;
+        }
+        write(path, text)?;
+    }
     print(&done.text)?;
     remark(&done.remarks);
     if done.code == 0 { Ok(()) } else { Err(Failure::Told(done.code)) }

@@ -2,6 +2,7 @@
 //!
 //! * [`form`]: the forms of a line, requests and replies.
 //! * [`machine`]: what each machine reads and puts out, how that becomes the kernel's own types, and the other way round.
+//! * [`devices`]: the devices of a line's file, each as the configuration of its machine; whether the kernel takes them.
 //! * [`Session`]: request lines in, reply lines out, one for one.
 //! * [`schema`]: the JSON Schema of all of it, generated from the types.
 //!
@@ -12,6 +13,7 @@
 //! Uses `atc-kernel`, `atc-layout`, `atc-line`. Used by `atc-adversary`, `atc-commands`, `atc-evidence`, `atc-fmi`,
 //! `atc-models`, `atc-oracle`, `atc-python`, `atc-tests`, `atc-wasm`. Begin with [`Session`] and [`machine`].
 
+pub mod devices;
 pub mod form;
 pub mod machine;
 pub mod names;

@@ -52,7 +52,7 @@ pub fn case(line: &Data, evidence: &[Evidence]) -> Line {
         derived: line.derived(),
         notes,
         theorems: harnesses.map(|one| (one.id.clone(), one.verdict)).collect(),
-        checks: line.checks(),
+        checks: atc_protocol::devices::checks(line),
     }
 }
 

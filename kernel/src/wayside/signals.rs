@@ -161,20 +161,20 @@ pub fn words(
     wrong.map_or(Ok(words), Err)
 }
 
-/// Whether code 0 is of speed 0, and the speeds rise with the codes.
+/// Whether code 0 is of speed 0, and no speed is under that of a lower code.
 ///
 /// # Errors
 /// [`WaysideError::StopMoves`] or [`WaysideError::SpeedsFall`].
 #[inline]
 pub fn check_speeds(speeds: &[Option<KmhTenths>; MAX_CODES]) -> Result<(), WaysideError> {
     //= spec/wayside.md#way-16-the-codes
-    //# The constructor MUST reject signals whose code 0 is not of speed 0, whose speeds do not rise with the codes, or with a speed that is not in the trains' table of speeds or has no pair of codes.
+    //# The constructor MUST reject signals whose code 0 is not of speed 0, with a code whose speed is under that of a lower code, or with a speed that is not in the trains' table of speeds or has no pair of codes.
     let stops = speeds[0] == Some(KmhTenths(0));
     let mut wrong = if stops { None } else { Some(WaysideError::StopMoves) };
     let mut before = None;
     for (number, speed) in (0_u8..).zip(speeds) {
         if let Some(speed) = *speed {
-            if before.is_some_and(|before| speed <= before) {
+            if before.is_some_and(|before| speed < before) {
                 wrong = wrong.or(Some(WaysideError::SpeedsFall(SpeedCode(number))));
             }
             before = Some(speed);

@@ -20,6 +20,7 @@ pub(super) fn finding(at: String, against: String, what: String, right: impl Int
 
 pub(super) const NO_STATION: &str = "the line names no station";
 pub(super) const NO_SIGNAL: &str = "the line sends no telegrams";
+pub(super) const NO_CODES: &str = "the file has no [codes]";
 pub(super) const NO_TRAIN: &str = "the file has no [train]";
 
 pub(super) fn count(number: usize, one: &str) -> String {

@@ -1,11 +1,14 @@
-//! The speed codes of stations and the ranks in telegrams: one table, or a mapping that is never faster.
+//! The speed codes of stations and the ranks in telegrams: one table, or a mapping that is never faster; and the pairs of codes.
 
 use atc_kernel::aspect::AspectTable;
+use atc_kernel::code::CodeTable;
+use atc_kernel::interlocking::SpeedCode;
+use atc_kernel::wayside::{WaysideError, spell};
 
-use super::judged::{Judged, NO_SIGNAL, NO_STATION, count, finding, judged};
+use super::judged::{Judged, NO_CODES, NO_SIGNAL, NO_STATION, count, finding, judged};
 use super::sound::Sound;
 use crate::check::{DataCheck, Finding};
-use crate::kmh::Kmh;
+use crate::kmh::{Kmh, tenths};
 use crate::line::Line;
 use crate::permitted::{list, rank};
 use crate::rule::Rule;
@@ -20,10 +23,16 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
         Ok(stations.iter().flat_map(|station| one(&speeds, *station)).collect())
     };
     let codes: usize = stations.iter().map(|one| one.station.codes().len()).sum();
+    let with_codes = || {
+        let table = line.codes().ok_or(NO_CODES)?;
+        each(&|speeds, one| without_pair(line, speeds, table, one))
+    };
     vec![
         judged(Rule::RankMissing, count(codes, "speed code"), each(&|speeds, one| missing(line, speeds, one))),
         judged(Rule::RankFaster, count(codes, "speed code"), each(&|_, one| faster(line, one))),
         judged(Rule::RankStop, count(stations.len(), "station"), each(&|speeds, one| stop(line, speeds, one))),
+        judged(Rule::RankRises, count(codes, "speed code"), each(&|_, one| falling(line, one))),
+        judged(Rule::CodeMissing, count(codes, "speed code"), with_codes()),
     ]
 }
 
@@ -85,4 +94,41 @@ fn stop(line: &Line, speeds: &AspectTable, one: Sound<'_>) -> Vec<Finding> {
     let what = format!("code 0 of {} is a stop, and the lowest rank means {} km/h", one.name(), Kmh::from(lowest));
     let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
     vec![finding(table(line), codes_at, what, "let speeds_km_h of [signal] begin with 0")]
+}
+
+/// What the kernel does not take: the lower code would not be the lower speed.
+fn falling(line: &Line, one: Sound<'_>) -> Vec<Finding> {
+    let named = one.station.named();
+    let pairs = named.iter().zip(named.iter().skip(1)).enumerate().filter(|(_, (lower, higher))| higher < lower);
+    pairs
+        .map(|(place, (lower, higher))| {
+            let code = place + 2;
+            let what = format!(
+                "{}: telegrams name {higher} km/h for code {code}, and {lower} km/h for code {}",
+                one.name(),
+                code - 1
+            );
+            let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
+            finding(at(line, one, place + 1), codes_at, what, "name no lower speed for a higher code")
+        })
+        .collect()
+}
+
+/// Speeds that a device of the ground cannot send, 0 km/h among them: it tells a stop, too, by telegram and by codes.
+fn without_pair(line: &Line, speeds: &AspectTable, table: &CodeTable, one: Sound<'_>) -> Vec<Finding> {
+    let named = [Kmh(0)].into_iter().chain(one.station.named());
+    let unpaired = named.zip(0_u8..).filter(|(speed, code)| {
+        let speed = tenths("", *speed).unwrap_or_default();
+        matches!(spell(speeds, table, SpeedCode(*code), speed), Err(WaysideError::NoPair(_)))
+    });
+    unpaired
+        .map(|(speed, code)| {
+            let what = format!("{}: no pair of codes names {speed} km/h, the speed of code {code}", one.name());
+            let codes_at = match usize::from(code).checked_sub(1) {
+                Some(place) => at(line, one, place),
+                None => one.station.at(&one.station.description().station.braking.speeds_kmh.span),
+            };
+            finding(line.places().at("codes.pairs"), codes_at, what, "add a pair for it, and its aspect")
+        })
+        .collect()
 }

@@ -10,6 +10,12 @@ const FILES: [(&str, &str); 3] = [
     ("eastham.toml", include_str!("../../examples/eastham.toml")),
 ];
 
+/// What telegrams name.
+const TELEGRAMS: &str = "speeds_km_h = [0, 15, 25, 45, 55, 65, 75, 90]";
+
+/// The pair of codes of a stop.
+const STOP_PAIR: &str = "    { main_hz = 47, sub_hz = 44, speed_km_h = 0 },\n";
+
 /// A train is lost for one cycle at most, and Eastham counts to two.
 const SHORT_LOSS: [(&str, &str, &str); 3] = [
     ("line.toml", "shunt_loss_ms = 1000", "shunt_loss_ms = 100"),
@@ -93,7 +99,7 @@ fn what_a_part_of_the_line_breaks_alone() {
         ("form", "cycle_ms = 10", "cycle = 10"),
         ("range", "worst_gradient_permille = -35", "worst_gradient_permille = -129"),
         ("TIME-2", "shortened_operate_ms = 100", "shortened_operate_ms = 300"),
-        ("TIME-4", "aspects_km_h = [15, 25", "aspects_km_h = [25, 25"),
+        ("TIME-4", "aspects_km_h = [0, 15, 25", "aspects_km_h = [0, 25, 25"),
         ("SUP-3", "release_margin_km_h = 0", "release_margin_km_h = 401"),
         ("BLK-8", "max_trains = 2", "max_trains = 3"),
         ("BLK-9", "sections_m = [300, 250]", "sections_m = [300, 0]"),
@@ -121,7 +127,6 @@ fn what_a_part_of_the_line_breaks_alone() {
 fn what_two_parts_of_the_line_break_together() {
     let line = "line.toml";
     for (rule, from, to) in [
-        ("code-speed", "sub_hz = 32, speed_km_h = 75", "sub_hz = 32, speed_km_h = 65"),
         ("train-brake", "brake_mm_s2 = 850", "brake_mm_s2 = 799"),
         ("telegram-section", "circuit = \"W2\", left = 1,", "circuit = \"W2\", left = 99,"),
         ("telegram-twice", "circuit = \"W2\", left = 1,", "circuit = \"W2\", left = 3,"),
@@ -135,6 +140,9 @@ fn what_two_parts_of_the_line_break_together() {
         let more = "    { number = 1001, length_m = 300, gradient_permille = -12, limit_km_h = 75 },\n]\n\n[times]";
         found(rule, &[(line, from, to), (line, "]\n\n[times]", more)], line, line);
     }
+    // Of no station's codes, and of no section.
+    let both = [(line, "aspects_km_h = [0, 15,", "aspects_km_h = [0, 5, 15,")];
+    found("code-speed", &both, line, line);
     let other = ("circuit = \"W2\", left = 1, right = 2", "circuit = \"W2\", left = 2, right = 1");
     found("telegram-direction", &[(line, other.0, other.1)], line, "westham.toml");
     found("one-wrong-code", &[(line, "{ main_hz = 15, sub_hz = 16.5,", "{ main_hz = 15, sub_hz = 12,")], line, "");
@@ -302,7 +310,18 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
             line,
             west,
         ),
-        ("rank-missing", &[(line, "[0, 15, 25, 45, 55, 65, 75, 90]", "[0, 15, 25, 45, 55, 75, 90]")], west, line),
+        ("rank-missing", &[(line, TELEGRAMS, "speeds_km_h = [0, 15, 25, 45, 55, 75, 90]")], west, line),
+        (
+            "rank-rises",
+            &[(
+                line,
+                "file = \"westham.toml\"",
+                "file = \"westham.toml\"\ncode_speeds_km_h = [15, 25, 15, 55, 65, 75, 90]",
+            )],
+            line,
+            west,
+        ),
+        ("code-missing", &[(line, STOP_PAIR, ""), (line, "aspects_km_h = [0, 15,", "aspects_km_h = [15,")], line, west),
         (
             "rank-faster",
             &[(
@@ -313,7 +332,7 @@ fn what_a_station_counts_on_and_its_trains_do_not_do() {
             line,
             west,
         ),
-        ("rank-stop", &[(line, "[0, 15, 25, 45, 55, 65, 75, 90]", "[15, 25, 45, 55, 65, 75, 90]")], line, west),
+        ("rank-stop", &[(line, TELEGRAMS, "speeds_km_h = [15, 25, 45, 55, 65, 75, 90]")], line, west),
         ("speed-plausible", &[(line, "maximum_km_h = 400", "maximum_km_h = 89.9")], line, west),
         ("station", &[(west, "turn_ms = 49000", "turn_ms = 48500")], west, line),
     ] {
@@ -365,7 +384,7 @@ fn a_layout_that_cannot_be_read_is_told_at_the_line_that_names_it() {
 /// Three codes without a speed are three findings, though all stand at one place.
 #[test]
 fn nothing_is_folded_away() {
-    let (rules, findings) = broken(&[("line.toml", "[0, 15, 25, 45, 55, 65, 75, 90]", "[0, 15, 25, 75, 90]")]);
+    let (rules, findings) = broken(&[("line.toml", TELEGRAMS, "speeds_km_h = [0, 15, 25, 75, 90]")]);
     assert_eq!(rules, ["rank-missing".to_owned()].into());
     assert_eq!(findings.len(), 6, "three codes in each of two stations: {findings:?}");
 }

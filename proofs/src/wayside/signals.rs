@@ -41,7 +41,8 @@ harness! {
     }
     covers {
         Accepted: "three speeds are accepted",
-        Falls: "a speed that does not rise over one that is two codes below",
+        Falls: "a speed under that of two codes below",
+        Equal: "two codes of one speed are accepted",
         Moves: "code 0 is of another speed",
     }
     {
@@ -60,7 +61,7 @@ harness! {
         for higher in 1..MAX_CODES {
             for lower in 0..MAX_CODES {
                 let falls = match (speeds[lower], speeds[higher]) {
-                    (Some(low), Some(high)) => lower < higher && high.0 <= low.0,
+                    (Some(low), Some(high)) => lower < higher && high.0 < low.0,
                     _ => false,
                 };
                 rises &= !falls;
@@ -77,6 +78,7 @@ harness! {
         e.claim(Claim::Told as u32, told);
         e.cover(Cover::Accepted as u32, made.is_ok() && speeds[1].is_some() && speeds[7].is_some());
         e.cover(Cover::Falls as u32, made.is_err() && gap);
+        e.cover(Cover::Equal as u32, made.is_ok() && speeds[1].is_some() && speeds[1] == speeds[2]);
         e.cover(Cover::Moves as u32, made == Err(WaysideError::StopMoves) && speeds[0].is_some());
     }
 }
@@ -94,7 +96,7 @@ harness! {
     cases OTHERS.len();
     unwind 65 = 1 + LONGEST;
     claims {
-        Exact: "accepted if and only if code 0 is of speed 0, the other is higher, and both have a word",
+        Exact: "accepted if and only if code 0 is of speed 0, and both have a word",
         Words: "each code with a speed has the rank and the pair of codes of that speed, and no other code has a word",
     }
     covers {
@@ -119,8 +121,8 @@ harness! {
         }
         let made = words(&speeds, &aspects, &codes);
         let stops = speeds[0] == Some(KmhTenths(0));
-        // 150 and 300 have a rank and a pair, 450 a rank alone.
-        let spelt = matches!(high.0, 150 | 300);
+        // 0, 150 and 300 have a rank and a pair, 450 a rank alone.
+        let spelt = matches!(high.0, 0 | 150 | 300);
         e.claim(Claim::Exact as u32, made.is_ok() == (stops && (!there || spelt)));
         let mut named = true;
         if let Ok(words) = &made {

@@ -370,6 +370,41 @@ fn walks_on_a_station_of_ones_own_are_lively() {
     }
 }
 
+/// On the ground's device of somebody's own line, too, with and without a counted line.
+#[test]
+fn walks_on_a_device_of_ones_own_are_lively() {
+    use atc_oracle::conform::walk::{Sizes, case};
+    let line = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../line/examples/line.toml"));
+    let line = atc_line::read(line).expect("a line");
+    let devices = atc_protocol::devices::Devices::of(&line).all;
+    let western = devices.iter().find(|device| device.name() == "wayside-1-Westham").expect("a device");
+    let plain = western.config.clone().expect("a configuration");
+    let mut counted = plain.clone();
+    counted["counted"] = serde_json::json!({
+        "segment": "West", "travel": "toward", "direction": "up", "train_m": 200, "blocks": [
+            {"circuits": ["W2"], "max_trains": 1, "tail_hold_sections": 1, "pass_ms": 20000},
+            {"circuits": ["W1"], "max_trains": 1, "tail_hold_sections": 1, "pass_ms": 20000},
+        ],
+    });
+    // A counted line has one direction of travel.
+    let routes = counted["layout"]["route"].as_array_mut().expect("routes");
+    routes.retain(|route| !route["name"].as_str().is_some_and(|name| name.ends_with("-W")));
+    let used = ["accepted", "in-use", r#""permission":"granted""#, r#""beyond_exit_m":3"#];
+    for (config, due) in [(plain, used.to_vec()), (counted, [&used[..], &[r#""agree":true,"count":1"#]].concat())] {
+        let mut missing = due;
+        for number in 0..80 {
+            let expected = case("wayside", 1, number, Sizes::Mixed, Some(&config)).expect("a case");
+            assert!(!expected.is_rejected(), "{}", expected.start);
+            let text = expected.outputs.concat();
+            missing.retain(|word| !text.contains(word));
+            if missing.is_empty() {
+                break;
+            }
+        }
+        assert!(missing.is_empty(), "no walk reaches {missing:?}");
+    }
+}
+
 /// The page for newcomers: its implementation differs, and agrees once the fault is mended. Without a Python here it is not run.
 #[test]
 fn the_example_in_python() {

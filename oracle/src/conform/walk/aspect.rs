@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk, around, cycles};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "aspect-acceptance", small, large, wrong, begin, most: (60, 1500) };
+pub(super) const SOURCE: Source =
+    Source { machine: "aspect-acceptance", small, large, wrong, begin, most: (60, 1500), own: 1500 };
 
 /// T1 to T5 in ms.
 fn config(cycle: u32, aspects: &[u32], [operate, recovery, mask, interruption, shortened]: [u32; 5]) -> Value {

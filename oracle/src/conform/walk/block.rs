@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk, around, cycles};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "block-count", small, large, wrong, begin, most: (80, 1200) };
+pub(super) const SOURCE: Source =
+    Source { machine: "block-count", small, large, wrong, begin, most: (80, 1200), own: 1200 };
 
 fn config(sections: u32, most: u32, hold: u32, cycle: u32, pass: u32) -> Value {
     json!({"sections": sections, "max_trains": most, "tail_hold_sections": hold, "cycle_ms": cycle, "pass_ms": pass})

@@ -196,7 +196,7 @@ pub(super) fn wrong() -> Vec<Value> {
         // The shortest of two ways before the entry counts.
         joining(away_held(example(), 1, 215), 300),
         joining(away_held(example(), 1, 205), 200),
-        change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([0, 25, 25, 75])),
+        change(|config| config["signals"]["code_speeds_km_h"] = json!([25, 45, 25])),
         change(|config| config["layout"]["plan"]["speeds_km_h"] = json!([25, 25, 45, 75])),
         change(|config| {
             config["signals"]["circuits"].as_object_mut().map(|circuits| circuits.remove("A"));

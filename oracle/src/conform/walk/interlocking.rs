@@ -1,7 +1,7 @@
 //! Walks of `interlocking`: trains that follow their signals (and some that do not), points that follow their drives (and some that do
 //! not), requests of every kind, blocks and restrictions, false occupancy and losses of shunt at the limits of the filter.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use serde_json::{Map, Value, json};
 
@@ -12,7 +12,8 @@ use super::varied::varied;
 use super::{rows, wrong_plans};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600) };
+pub(super) const SOURCE: Source =
+    Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600), own: 1600 };
 
 const PASSING_LOOP: &str = include_str!("../../../../layouts/passing-loop.toml");
 const JUNCTION: &str = include_str!("../../../../layouts/junction.toml");
@@ -121,8 +122,10 @@ struct Point {
     driven: Option<(&'static str, i64)>,
 }
 
-struct Ground {
+pub(super) struct Ground {
     station: Station,
+    /// The circuits in which no train begins.
+    closed: BTreeSet<usize>,
     trains: Vec<Train>,
     points: Vec<Point>,
     /// A circuit that is reported otherwise than it is, for so many cycles.
@@ -145,17 +148,22 @@ struct Ground {
     pace: u64,
 }
 
-fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
+fn begin(config: &Value, _: &Value, random: &mut Random) -> Box<dyn Walk> {
+    Box::new(ground(config, random))
+}
+
+/// The station of a configuration, and its trains.
+pub(super) fn ground(config: &Value, random: &mut Random) -> Ground {
     let station = Station::of(config);
     let plan = config.get("plan").is_some();
-    let _ = started;
     let points =
         station.points.iter().map(|_| Point { at: if random.one_in(3) { "reverse" } else { "normal" }, driven: None });
     let points = points.collect();
     let agenda = if random.one_in(2) { directions(config, &station, random) } else { Vec::new() };
     let stay = if plan { random.between(1, 4) } else { random.between(5, 40) };
     let (routes, pace) = (station.routes.len(), if plan { 1 } else { PACE });
-    Box::new(Ground {
+    Ground {
+        closed: BTreeSet::new(),
         trains: if agenda.is_empty() { standing(&station, stay, random) } else { Vec::new() },
         points,
         disturbed: None,
@@ -169,7 +177,7 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
         most: 3.max(routes / 12),
         pace,
         station,
-    })
+    }
 }
 
 /// Requests for a direction of each line, once the time after the start is over.
@@ -207,8 +215,40 @@ fn word(side: &Value) -> &'static str {
     if side == "reverse" { "reverse" } else { "normal" }
 }
 
+/// For a walk of another machine.
 impl Ground {
-    fn goes_wrong(&self, random: &mut Random) -> bool {
+    /// By how much rarer than on a small plan something is disturbed.
+    pub(super) const fn pace(&self) -> u64 {
+        self.pace
+    }
+
+    /// The names of the circuits.
+    pub(super) fn circuits(&self) -> &[String] {
+        &self.station.circuits
+    }
+
+    /// The names of the lines.
+    pub(super) fn lines(&self) -> Vec<String> {
+        self.station.segments.iter().map(|segment| segment.name.clone()).collect()
+    }
+
+    /// No train begins in one of these.
+    pub(super) fn close(&mut self, circuits: impl IntoIterator<Item = usize>) {
+        self.closed.extend(circuits);
+    }
+
+    /// The circuits with the head of a train, and those with any of it.
+    pub(super) fn whereabouts(&self) -> [BTreeSet<usize>; 2] {
+        let heads = self.trains.iter().filter_map(|train| train.on.front());
+        [heads.copied().collect(), self.trains.iter().flat_map(|train| &train.on).copied().collect()]
+    }
+
+    /// The device begins anew: staff unblock once more, but for once in a while.
+    pub(super) fn restart(&mut self, random: &mut Random) {
+        self.begun = random.one_in(10);
+    }
+
+    pub(super) fn goes_wrong(&self, random: &mut Random) -> bool {
         self.wrong > 0 && random.one_in(self.wrong)
     }
 
@@ -273,7 +313,10 @@ impl Ground {
                     let ends = self.station.routes.iter().filter(|route| route.path.last() == Some(&front));
                     way.extend(ends.filter_map(|route| route.overlap.first()).copied().take(1));
                 }
-                if way.is_empty() && outermost.contains(&front) || way.is_empty() && random.one_in(30) {
+                // Where no signal is, nothing would fetch it on a layout for hundreds of cycles.
+                let lost = self.pace > 1 && !self.station.routes.iter().any(|route| route.entry.contains(&front));
+                let stays = if lost { 3 } else { 30 };
+                if way.is_empty() && outermost.contains(&front) || way.is_empty() && random.one_in(stays) {
                     gone.push(number);
                 }
                 (self.trains[number].next, self.trains[number].berth) = (way, berth);
@@ -299,6 +342,7 @@ impl Ground {
         };
         if let Some((first, rest)) = way.split_first()
             && self.is_free(*first)
+            && !self.closed.contains(first)
         {
             let next = rest.iter().copied().collect();
             let left = random.between(0, self.stay);

@@ -5,9 +5,11 @@
 
 mod aspect;
 mod block;
+mod device;
 mod halts;
 mod interlocking;
 mod mutate;
+mod neighbours;
 mod pattern;
 mod permitted;
 mod plan;
@@ -90,7 +92,7 @@ pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<
     let mut random = Random::of(seed, machine, number);
     let Some(source) = source(machine) else { return mutate::case(machine, number, config, &mut random) };
     if let Some(config) = config {
-        return Some(source.walk(config.clone(), source.most.1, &mut random));
+        return Some(source.walk(config.clone(), source.own, &mut random));
     }
     let made = source.configs()?;
     let wrong = number.checked_sub(WALKS_FIRST).and_then(|number| usize::try_from(number).ok());

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "braking-pattern", small, large, wrong, begin, most: (40, 100) };
+pub(super) const SOURCE: Source =
+    Source { machine: "braking-pattern", small, large, wrong, begin, most: (40, 100), own: 100 };
 
 fn small() -> Vec<Value> {
     [1, 2, 37, 338, 339, 800, 1300, 4094, 4095].map(|brake| json!({"brake_mm_s2": brake})).to_vec()

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk, around, cycles, parts, tenths};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "permitted-speed", small, large, wrong, begin, most: (60, 2500) };
+pub(super) const SOURCE: Source =
+    Source { machine: "permitted-speed", small, large, wrong, begin, most: (60, 2500), own: 2500 };
 
 /// Freshness, life, life of a sub telegram and memory in cycles of 10 ms; window and run.
 fn config([fresh, life, fixed, memory]: [u32; 4], window: u32, run: u32, more: &Value) -> Value {

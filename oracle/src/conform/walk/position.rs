@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk, parts};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "train-position", small, large, wrong, begin, most: (30, 120) };
+pub(super) const SOURCE: Source =
+    Source { machine: "train-position", small, large, wrong, begin, most: (30, 120), own: 120 };
 
 /// Spacing in decimetres, the curves, tolerance, floor and correction in hundredths of a decibel.
 fn config(spacing: i64, lowest: &[i64], highest: &[i64], tolerance: i64, floor: i64, correction: [i64; 2]) -> Value {

@@ -25,6 +25,8 @@ pub struct Source {
     pub(super) begin: fn(&Value, &Value, &mut Random) -> Box<dyn Walk>,
     /// The most steps of a walk on a small and on a large configuration.
     pub(super) most: (usize, usize),
+    /// The most steps on a configuration that the user has.
+    pub(super) own: usize,
 }
 
 /// A number of tenths, as a JSON number of wholes.

@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::source::{Source, Walk, tenths};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "speed-supervision", small, large, wrong, begin, most: (40, 200) };
+pub(super) const SOURCE: Source =
+    Source { machine: "speed-supervision", small, large, wrong, begin, most: (40, 200), own: 200 };
 
 fn config(maximum: i64, margin: i64) -> Value {
     json!({"maximum_km_h": tenths(maximum), "release_margin_km_h": tenths(margin)})

@@ -6,7 +6,7 @@ use super::source::{Source, Walk};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source =
-    Source { machine: "telegram-codec", small, large: small, wrong, begin, most: (40, 40) };
+    Source { machine: "telegram-codec", small, large: small, wrong, begin, most: (40, 40), own: 40 };
 
 fn small() -> Vec<Value> {
     vec![json!({})]

@@ -8,7 +8,7 @@ use super::permitted;
 use super::source::{Source, Walk, around, cycles, parts, tenths};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "train", small, large, wrong, begin, most: (60, 400) };
+pub(super) const SOURCE: Source = Source { machine: "train", small, large, wrong, begin, most: (60, 400), own: 400 };
 
 /// Pairs of codes in mHz, with the speed that they name in km/h.
 const PAIRS: [(i64, i64, i64); 3] = [(10_000, 12_000, 15), (15_000, 16_500, 25), (22_000, 21_000, 45)];

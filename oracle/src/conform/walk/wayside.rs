@@ -1,17 +1,33 @@
-//! Walks of `wayside`: a train from one end of the line through the station to the other, with detections that are late or missed and
-//! false occupancy; messages that echo a stamp about as old as the life, or of another start; requests of every kind; restarts; frames
-//! that are taken or not.
+//! Walks of `wayside` on its own halts: a train from one end of the line through the station to the other, with detections that are late or
+//! missed and false occupancy; messages that echo a stamp about as old as the life, or of another start; requests of every kind; restarts;
+//! frames that are taken or not. On another station: [`device`].
 
 use serde_json::{Value, json};
 
+use super::device;
 use super::halts::{large, small, wrong};
+use super::neighbours::Neighbours;
 use super::source::{Source, Walk, cycles};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200) };
+pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200), own: 2400 };
 
 /// The circuits of the station and of the line behind it, in the direction of travel.
 const STATION: [&str; 4] = ["A", "B", "E1", "E2"];
+
+/// Its lines.
+const LINES: [&str; 2] = ["West", "East"];
+
+/// Whether a configuration is of one of these halts, by what its walks name.
+fn is_halt(config: &Value) -> bool {
+    let plan = &config["layout"]["plan"];
+    let names = |list: &str| plan[list].as_array().into_iter().flatten().filter_map(|one| one["name"].as_str());
+    names("segments").eq(LINES)
+        && names("points").eq(["P"])
+        && names("routes").next() == Some("in-out")
+        && names("routes").skip(1).all(|name| name == "other")
+        && STATION.iter().all(|name| names("circuits").any(|other| other == *name))
+}
 
 /// A block of the counted line.
 struct Block {
@@ -45,7 +61,6 @@ struct Ground {
     routes: usize,
     /// Whether the low end of the blocks is their entry.
     up: bool,
-    life: i64,
     session: i64,
     /// The trains, the first one first.
     trains: Vec<Train>,
@@ -54,18 +69,16 @@ struct Ground {
     /// The places that a head has entered in this cycle, and those that a tail has left.
     entered: Vec<usize>,
     cleared: Vec<usize>,
-    /// What the device has told each neighbour so far.
-    heard: [Vec<Value>; 2],
-    permits: [bool; 2],
-    /// How late the neighbours answer, in cycles.
-    late: i64,
-    sent: i64,
+    neighbours: Neighbours,
     begun: bool,
     /// How often something goes wrong: once in so many times; 0 for never.
     wrong: u64,
 }
 
 fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
+    if !is_halt(config) {
+        return device::begin(config, started, random);
+    }
     let lines = config["layout"]["plan"]["segments"].as_array().into_iter().flatten();
     let west = lines.filter(|line| line["name"] == "West").filter_map(|line| line["circuits"].as_array()).flatten();
     let mut track: Vec<String> = west.filter_map(Value::as_str).map(ToOwned::to_owned).collect();
@@ -84,17 +97,12 @@ fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> 
         noise: random.one_in(3),
         routes: config["layout"]["plan"]["routes"].as_array().map_or(1, Vec::len),
         up: config["counted"]["direction"] != "down",
-        life,
         session: config["session"].as_i64().unwrap_or(0),
         trains: Vec::new(),
         most: [1, 1, 2, 3][random.below(4)],
         entered: Vec::new(),
         cleared: Vec::new(),
-        heard: [Vec::new(), Vec::new()],
-        permits: [!random.one_in(6), !random.one_in(6)],
-        // A neighbour answers at once, or about as late as the life.
-        late: random.one_of(&[1, 1, 1, life - 1, life, life + 1]).max(1),
-        sent: 0,
+        neighbours: Neighbours::new(LINES.map(ToOwned::to_owned).to_vec(), life, 1, random),
         begun: random.one_in(10),
         wrong: random.one_of(&[0, 20, 8]).unsigned_abs(),
     })
@@ -185,40 +193,6 @@ impl Ground {
         places.map(|place| self.track[place].as_str()).collect()
     }
 
-    /// What the neighbours say in this cycle.
-    fn messages(&mut self, random: &mut Random) -> Value {
-        let mut messages = json!({});
-        self.sent += 1;
-        for (number, name) in ["West", "East"].into_iter().enumerate() {
-            if random.one_in(12) {
-                self.permits[number] = !self.permits[number];
-            }
-            if random.one_in(24) {
-                self.late = random.one_of(&[1, 1, self.life - 1, self.life, self.life + 1]).max(1);
-            }
-            if random.one_in(8) {
-                continue;
-            }
-            let late = if random.one_in(6) { random.between(1, self.life + 3) } else { self.late };
-            let heard = &self.heard[number];
-            let back = usize::try_from(late).ok().and_then(|late| heard.len().checked_sub(late));
-            let mut echo = back.map_or(Value::Null, |back| heard[back].clone());
-            match random.below(30) {
-                0 => echo = Value::Null,
-                1 => echo["session"] = json!((self.session + 1) % 65536),
-                2 => echo = json!({"session": self.session, "cycle": 4_294_967_295_u32}),
-                _ => {}
-            }
-            if echo.is_object() && !echo["cycle"].is_u64() {
-                echo = Value::Null;
-            }
-            let permission = if self.permits[number] { "granted" } else { "withheld" };
-            let sent = json!({"session": 40 + number, "cycle": self.sent});
-            messages[name] = json!({"permission": permission, "sent": sent, "echo": echo});
-        }
-        messages
-    }
-
     fn request(&self, random: &mut Random) -> Value {
         match random.below(12) {
             0..=3 => json!({"set": "in-out"}),
@@ -249,16 +223,12 @@ impl Ground {
 
 impl Walk for Ground {
     fn next(&mut self, random: &mut Random, last: Option<&Value>) -> Value {
-        for (number, name) in ["West", "East"].into_iter().enumerate() {
-            if let Some(stamp) = last.and_then(|last| last["messages"].get(name)).map(|message| &message["sent"]) {
-                self.heard[number].push(stamp.clone());
-            }
-        }
+        self.neighbours.hear(last);
         self.move_trains(random);
         let detected = if self.goes_wrong(random) { json!({}) } else { json!({"P": "normal"}) };
         let mut step = json!({
             "occupied": self.occupied(random), "detected": detected, "blocks": self.detections(random),
-            "messages": self.messages(random),
+            "messages": self.neighbours.say(self.session, random),
         });
         if random.one_in(3) {
             step["request"] = self.request(random);

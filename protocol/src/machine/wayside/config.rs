@@ -106,13 +106,17 @@ const fn default_pass() -> u32 {
     10_000
 }
 
-/// What the transmitters say. The speeds of the codes are those of the layout; each needs a rank and a pair, also 0.
+/// What the transmitters say. Each speed of a code needs a rank and a pair, also 0.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "WaysideSignals")]
 pub struct Signals {
     /// The line's speeds as trains have them, the lowest first: their places are the ranks in telegrams.
     pub speeds_km_h: Vec<Kmh>,
+    /// What trains are told for the layout's codes 1, 2, …: as many speeds as it has codes, never falling, none above its code's; null or absent:
+    /// the codes' own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub code_speeds_km_h: Option<Vec<Kmh>>,
     /// The pairs of code frequencies as trains have them.
     pub codes: Codes,
     /// What is said of each circuit; nothing is sent in one that is not here.
@@ -245,7 +249,10 @@ impl Config {
     ) -> String {
         let circuit =
             |id: CircuitId| station.names().circuits.get(usize::from(id.number())).cloned().unwrap_or_default();
-        let speed = |code: SpeedCode| station.speeds_kmh().get(usize::from(code.0)).copied().unwrap_or(0);
+        let speed = |code: SpeedCode| {
+            let told = self.signals.speeds(station.speeds_kmh()).unwrap_or_default();
+            Kmh::from(told.get(usize::from(code.0)).copied().flatten().unwrap_or_default())
+        };
         let segment = self.counted.as_ref().map_or("", |counted| &counted.segment);
         let at = |spot: Spot| format!("counted.blocks[{}].circuits[{}]", spot.block, spot.section);
         let on = |spot: Spot| {
@@ -284,18 +291,18 @@ impl Config {
             ),
             WaysideError::StopMoves => "code 0 of the layout is of another speed than 0 km/h".to_owned(),
             WaysideError::SpeedsFall(code) => {
-                format!(
-                    "code {} of the layout is of {} km/h; it must be faster than the codes below it",
-                    code.0,
-                    speed(code)
-                )
+                format!("code {} of the layout is told as a lower speed than a code below it; it must not be", code.0)
             }
             WaysideError::NoRank(code) => {
-                format!("signals.speeds_km_h has not {} km/h, which code {} of the layout has", speed(code), code.0)
+                format!(
+                    "signals.speeds_km_h has not {} km/h, as which code {} of the layout is told",
+                    speed(code),
+                    code.0
+                )
             }
             WaysideError::NoPair(code) => {
                 format!(
-                    "signals.codes.pairs has no pair for {} km/h, which code {} of the layout has",
+                    "signals.codes.pairs has no pair for {} km/h, as which code {} of the layout is told",
                     speed(code),
                     code.0
                 )
@@ -378,13 +385,39 @@ impl Signals {
                 *place = Some(Fixed { left, right });
             }
         }
-        let mut speeds = [None; MAX_CODES];
-        for (code, (speed, kmh)) in speeds.iter_mut().zip(station.speeds_kmh()).enumerate() {
-            // A layout has the speeds of its codes in whole km/h; 0 stands for a code that it has not, and for code 0.
-            *speed = (code == 0 || kmh > 0).then(|| KmhTenths(kmh.saturating_mul(10)));
-        }
+        let speeds = self.speeds(station.speeds_kmh())?;
         let codes = self.codes.table().map_err(|what| format!("signals.{what}"))?;
         Ok(SignalPlan { circuits, speeds, aspects, codes })
+    }
+}
+
+impl Signals {
+    /// What each code is told as, of a layout with these speeds in km/h. There 0 stands for a code that it has not, and for code 0.
+    fn speeds(&self, layout: impl IntoIterator<Item = u16>) -> Result<[Option<KmhTenths>; MAX_CODES], String> {
+        let mut speeds = [None; MAX_CODES];
+        for (code, (speed, kmh)) in speeds.iter_mut().zip(layout).enumerate() {
+            *speed = (code == 0 || kmh > 0).then(|| KmhTenths(kmh.saturating_mul(10)));
+        }
+        let Some(named) = &self.code_speeds_km_h else { return Ok(speeds) };
+        let codes = speeds.iter().skip(1).flatten().count();
+        if named.len() != codes {
+            return Err(format!(
+                "signals.code_speeds_km_h has {} speeds; the layout has {codes} codes above 0",
+                named.len()
+            ));
+        }
+        for (place, (speed, named)) in speeds.iter_mut().skip(1).flatten().zip(named).enumerate() {
+            let field = format!("signals.code_speeds_km_h[{place}]");
+            let told = tenths(&field, *named)?;
+            if told > *speed {
+                return Err(format!(
+                    "{field} is {named}; it must be at most {} km/h, its code's speed",
+                    Kmh::from(*speed)
+                ));
+            }
+            *speed = told;
+        }
+        Ok(speeds)
     }
 }
 

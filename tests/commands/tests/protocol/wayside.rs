@@ -277,7 +277,7 @@ fn every_broken_rule_is_named() {
         (block(1, "pass_ms", 999.into()), "counted.blocks[1].pass_ms is 999 ms"),
         (
             with(&|config| config["signals"]["speeds_km_h"] = json!([0, 25, 75])),
-            "signals.speeds_km_h has not 45 km/h, which code 2",
+            "signals.speeds_km_h has not 45 km/h, as which code 2",
         ),
         (
             with(&|config| config["signals"]["speeds_km_h"] = json!([25, 0])),
@@ -285,7 +285,7 @@ fn every_broken_rule_is_named() {
         ),
         (
             with(&|config| config["signals"]["codes"]["pairs"][0]["speed_km_h"] = 15.into()),
-            "signals.codes.pairs has no pair for 0 km/h, which code 0",
+            "signals.codes.pairs has no pair for 0 km/h, as which code 0",
         ),
         (with(&|config| config["signals"]["codes"]["pairs"] = json!([])), "signals.codes.pairs is empty"),
         (b("section", 101.into()), "signals.circuits.B has a section number that stands for another circuit"),
