@@ -89,6 +89,8 @@ pub struct Environment {
     pub staff_beyond: Option<u8>,
     /// Whether who is called on runs on sight, and heeds no signal that is for the train ahead of it.
     pub on_sight: bool,
+    /// Whether a train that has come to a stand in a circuit draws up to its signal at any time, and does not look who comes towards it.
+    pub draws_up: bool,
     /// Whether the device has just started and finds the trains there, on their way on a signal that showed proceed before.
     pub found: bool,
 }
@@ -114,6 +116,7 @@ impl Environment {
             falsely: 0,
             staff_beyond: None,
             on_sight: true,
+            draws_up: false,
             found: false,
         }
     }

@@ -92,7 +92,8 @@ impl Train {
     /// Whether this train, which runs on sight, does not run into another one in a circuit of its own: that stands there, or goes away from it.
     pub fn sees(&self, other: &Self, environment: &Environment) -> bool {
         let Place::Here { front, rear } = other.place else { return true };
-        let stands = front == rear && other.arrived >= environment.slides_for;
+        let comes = environment.draws_up && other.heading != self.heading && !other.called;
+        let stands = front == rear && other.arrived >= environment.slides_for && !comes;
         let goes_on = front != rear && self.occupies() >> front & 1 == 0 && other.heading == self.heading;
         self.called && (stands || goes_on)
     }

@@ -125,6 +125,7 @@ pub const UNIQUE_STATES: &[(&str, usize)] = &[
     ("interlocking-called-on-facing", 8_612),
     ("interlocking-called-on-falsely", 3_922),
     ("interlocking-called-on-blindly", 4_714),
+    ("interlocking-called-on-drawing-up", 8_046),
     ("interlocking-reversal", 1_010),
     ("interlocking-reversal-falsely", 23_229),
     ("interlocking-reversal-short-approach", 981),

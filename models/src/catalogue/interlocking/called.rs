@@ -103,5 +103,17 @@ pub(super) fn entries() -> Vec<Entry> {
             Environment { on_sight: false, ..following() },
             Purpose::Accident(Harm::Collision, &["called-on-runs-on-sight"]),
         ),
+        yard(
+            about(
+                "interlocking-called-on-drawing-up",
+                "Who stands in the berth short of the signal, draws up to it and does not look, runs into the train that is called on there.",
+                &format!("{WORDS}; {SLIDING}; who has come to a stand draws up at any time"),
+                REQUIREMENTS,
+                UNSEEN,
+            ),
+            berth(),
+            Environment { draws_up: true, ..facing() },
+            Purpose::Accident(Harm::Collision, &["called-on-runs-on-sight"]),
+        ),
     ]
 }
