@@ -25,6 +25,8 @@ pub struct Expected {
     pub start: String,
     /// The replies to the steps: each an output.
     pub outputs: Vec<String>,
+    /// Steps of a walk that the kernel did not take, which are left out: a mistake of the walk. A test says that there is none.
+    pub left_out: usize,
 }
 
 /// The line that ends a case.
@@ -65,7 +67,7 @@ impl Case {
         for step in &self.steps {
             outputs.push(kernel.step(step)?);
         }
-        Ok(Expected { case: self, start, outputs })
+        Ok(Expected { case: self, start, outputs, left_out: 0 })
     }
 }
 

@@ -91,7 +91,7 @@ impl Vector {
             json!({"started": {"protocol": 1, "machine": self.machine, "config": self.config, "cycles": self.cycles}})
         };
         let outputs = self.outputs.iter().map(|output| Line::Output(output).text()).collect();
-        Expected { case, start: start.to_string(), outputs }
+        Expected { case, start: start.to_string(), outputs, left_out: 0 }
     }
 }
 

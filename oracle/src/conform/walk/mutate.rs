@@ -60,7 +60,7 @@ pub(super) fn case(machine: &str, number: u64, config: Option<&Value>, random: &
     let start = kernel.start(&case).ok().filter(|start| !is_rejected(start))?;
     let mut outputs = Vec::new();
     case.steps.retain(|step| kernel.step(step).map(|output| outputs.push(output)).is_ok());
-    Some(Expected { case, start, outputs })
+    Some(Expected { case, start, outputs, left_out: 0 })
 }
 
 /// Leaves steps out, repeats and exchanges them.

@@ -421,7 +421,7 @@ fn without_faults(mut case: Case) -> Option<Expected> {
     let start = ask(&case.start_line());
     if start.starts_with(r#"{"rejected""#) {
         case.steps.clear();
-        return Some(Expected { case, start, outputs: Vec::new() });
+        return Some(Expected { case, start, outputs: Vec::new(), left_out: 0 });
     }
     if !start.starts_with(r#"{"started""#) {
         return None;
@@ -435,7 +435,7 @@ fn without_faults(mut case: Case) -> Option<Expected> {
         }
         taken
     });
-    Some(Expected { case, start, outputs })
+    Some(Expected { case, start, outputs, left_out: 0 })
 }
 
 fn main() -> ExitCode {
