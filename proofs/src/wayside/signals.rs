@@ -78,7 +78,7 @@ harness! {
         e.claim(Claim::Told as u32, told);
         e.cover(Cover::Accepted as u32, made.is_ok() && speeds[1].is_some() && speeds[7].is_some());
         e.cover(Cover::Falls as u32, made.is_err() && gap);
-        e.cover(Cover::Equal as u32, made.is_ok() && speeds[1].is_some() && speeds[1] == speeds[2]);
+        e.cover(Cover::Equal as u32, made.is_ok() && speeds[6].is_some() && speeds[6] == speeds[7]);
         e.cover(Cover::Moves as u32, made == Err(WaysideError::StopMoves) && speeds[0].is_some());
     }
 }
