@@ -27,6 +27,41 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
+/// Writes a folder with these files: all of it, or nothing. It is made anew, or was there and empty.
+///
+/// # Errors
+/// There is something else, or the folder cannot be written.
+pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> io::Result<()> {
+    let refused = |kind, what| Err(io::Error::new(kind, what));
+    let there = path.is_dir();
+    if there && fs::read_dir(path)?.next().is_some() {
+        return refused(
+            io::ErrorKind::AlreadyExists,
+            "it is there and not empty; name a new folder, or empty this one",
+        );
+    }
+    if !there && path.exists() {
+        return refused(io::ErrorKind::AlreadyExists, "it is there and no folder; name a folder");
+    }
+    let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(beside)?;
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // As for any new folder: the umask takes away what it takes away.
+        builder.permissions(fs::Permissions::from_mode(0o777));
+    }
+    let new = builder.tempdir_in(beside)?;
+    for (name, bytes) in files {
+        fs::write(new.path().join(name), bytes)?;
+    }
+    if there {
+        fs::remove_dir(path)?;
+    }
+    fs::rename(new.path(), path)
+}
+
 fn through(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).open(path)?;
     file.write_all(bytes)?;
@@ -52,7 +87,27 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 mod tests {
     use std::fs;
 
-    use super::write;
+    use super::{write, write_folder};
+
+    #[test]
+    fn a_folder_is_written_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let there = |name: &str| folder.path().join(name);
+        let file = |name: &str| (name.to_owned(), b"text".to_vec());
+        write_folder(&there("a/b"), &[file("one"), file("two")]).expect("written");
+        assert_eq!(fs::read_dir(there("a/b")).expect("there").count(), 2);
+        let again = write_folder(&there("a/b"), &[file("three")]).expect_err("it is not empty");
+        assert!(again.to_string().contains("not empty") && !there("a/b/three").exists(), "{again}");
+        fs::create_dir(there("empty")).expect("made");
+        write_folder(&there("empty"), &[file("one")]).expect("written");
+        assert!(there("empty/one").exists());
+        fs::write(there("file"), "").expect("written");
+        assert!(write_folder(&there("file"), &[]).expect_err("a file").to_string().contains("no folder"));
+        // A name that no file system takes.
+        write_folder(&there("long"), &[file("one"), file(&"x".repeat(300))]).expect_err("too long");
+        assert!(!there("long").exists());
+        assert_eq!(fs::read_dir(folder.path()).expect("there").count(), 3, "nothing is left lying");
+    }
 
     #[test]
     fn a_file_is_replaced_and_nothing_else_is() {

@@ -33,10 +33,18 @@ pub enum LineCommand {
     Configs {
         /// The line (TOML); layouts of stations are named in it
         file: PathBuf,
-        /// The folder; made if it is not there. Files of the same names are replaced
+        /// The folder, new or empty
         #[arg(short, long, value_name = "FOLDER")]
         output: PathBuf,
     },
+}
+
+/// A folder with files.
+pub struct Folder {
+    /// Its path.
+    pub path: PathBuf,
+    /// The names and the contents of its files.
+    pub files: Vec<(String, Vec<u8>)>,
 }
 
 /// What the command has to say.
@@ -47,8 +55,8 @@ pub struct Done {
     pub remarks: String,
     /// 0, 1 or 2.
     pub code: u8,
-    /// Files to be written, before anything is said.
-    pub files: Vec<(PathBuf, String)>,
+    /// A folder to be written, before anything is said.
+    pub folder: Option<Folder>,
 }
 
 /// What `check --json` says.
@@ -94,12 +102,10 @@ fn configs(file: &Path, line: &Line, folder: &Path) -> Done {
     for device in &all {
         // What cannot be made is a broken rule.
         let Ok(config) = &device.config else { continue };
-        let path = folder.join(format!("{}.json", plain(&device.name())));
-        let _ = writeln!(text, "{}", path.display());
-        files.push((
-            path,
-            serde_json::to_string_pretty(config).map_or_else(|error| error.to_string(), |text| text + "\n"),
-        ));
+        let name = format!("{}.json", plain(&device.name()));
+        let _ = writeln!(text, "{}", folder.join(&name).display());
+        let config = serde_json::to_string_pretty(config).map_or_else(|error| error.to_string(), |text| text + "\n");
+        files.push((name, config.into_bytes()));
     }
     let mut lacking: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for one in without {
@@ -108,12 +114,18 @@ fn configs(file: &Path, line: &Line, folder: &Path) -> Done {
     for (why, machines) in lacking {
         let _ = writeln!(text, "not made, as {why}: {}", machines.join(", "));
     }
-    Done { text, remarks: checked.remarks, code: 0, files }
+    Done { text, remarks: checked.remarks, code: 0, folder: Some(Folder { path: folder.to_owned(), files }) }
 }
+
+/// The longest name of a file, in characters.
+const LONGEST_NAME: usize = 60;
 
 /// A name that every file system takes.
 fn plain(name: &str) -> String {
-    name.chars().map(|one| if one.is_alphanumeric() || "-_.".contains(one) { one } else { '-' }).collect()
+    name.chars()
+        .take(LONGEST_NAME)
+        .map(|one| if one.is_alphanumeric() || "-_.".contains(one) { one } else { '-' })
+        .collect()
 }
 
 fn refused(file: &Path, problems: &Problems, json: bool) -> Done {
@@ -121,7 +133,7 @@ fn refused(file: &Path, problems: &Problems, json: bool) -> Done {
     let all = problems.0.iter().map(|one| Problem { rule: one.rule.id(), at: &one.at, what: &one.what }).collect();
     let told = Told { file: file.display().to_string(), line: None, sound: false, problems: all, checks: Vec::new() };
     let text = if json { written(&told) } else { String::new() };
-    Done { text, remarks: format!("{problems}\n"), code, files: Vec::new() }
+    Done { text, remarks: format!("{problems}\n"), code, folder: None }
 }
 
 fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
@@ -136,7 +148,7 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
     if json {
         let (file, name) = (file.display().to_string(), Some(line.name()));
         let told = Told { file, line: name, sound, problems: Vec::new(), checks };
-        return Done { text: written(&told), remarks, code, files: Vec::new() };
+        return Done { text: written(&told), remarks, code, folder: None };
     }
     let count = |one: fn(&Outcome) -> bool| checks.iter().filter(|check| one(&check.outcome)).count();
     let met = count(|outcome| *outcome == Outcome::Met);
@@ -169,7 +181,7 @@ fn check(file: &Path, line: &Line, derived: bool, json: bool) -> Done {
             let _ = writeln!(text, "to look at: {note}");
         }
     }
-    Done { text, remarks, code, files: Vec::new() }
+    Done { text, remarks, code, folder: None }
 }
 
 fn written(told: &Told<'_>) -> String {

@@ -350,11 +350,8 @@ fn layout(command: layout::LayoutCommand) -> Result<(), Failure> {
 
 fn line(command: &line::LineCommand) -> Result<(), Failure> {
     let done = line::run(command);
-    for (path, text) in &done.files {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).map_err(|error| Failure::Write(folder.to_owned(), error))?;
-        }
-        write(path, text)?;
+    if let Some(line::Folder { path, files }) = &done.folder {
+        atc_files::write_folder(path, files).map_err(|error| Failure::Write(path.clone(), error))?;
     }
     print(&done.text)?;
     remark(&done.remarks);

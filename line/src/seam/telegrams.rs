@@ -173,15 +173,17 @@ fn differs(sent: &[Sent<'_>]) -> Vec<Finding> {
         let same =
             |other: &&Sent<'_>| other.own == one.own && other.heading == one.heading && other.number != one.number;
         if let Some(first) = sent[..place].iter().find(same) {
-            let what = format!(
-                "circuit {} is section {} in {} and section {} in {}",
-                one.circuit.name,
-                first.number,
-                first.station.name(),
-                one.number,
-                one.station.name()
-            );
-            findings.push(finding(one.at.clone(), first.at.clone(), what, "give it the same number in both"));
+            let (circuit, old, new) = (&one.circuit.name, first.number, one.number);
+            let (what, right) = if one.station.name() == first.station.name() {
+                let what =
+                    format!("circuit {circuit} of {} is there twice, as section {old} and {new}", one.station.name());
+                (what, "leave one of them out")
+            } else {
+                let (there, here) = (first.station.name(), one.station.name());
+                let what = format!("circuit {circuit} is section {old} in {there} and section {new} in {here}");
+                (what, "give it the same number in both")
+            };
+            findings.push(finding(one.at.clone(), first.at.clone(), what, right));
         }
     }
     findings

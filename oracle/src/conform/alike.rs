@@ -61,6 +61,16 @@ const STATION: &[Guess] = &[
     (One("stay_cycles"), "ILK-14"),
 ];
 
+/// The times of a station's layout, as its file has them.
+const FILE: &[Guess] = &[
+    (Cycle("clear_ms"), "TRK-1"),
+    (Cycle("turn_ms"), "ILK-19"),
+    (Cycle("start_ms"), "ILK-24"),
+    (Cycle("drive_ms"), "ILK-5"),
+    (Cycle("release_ms"), "ILK-13"),
+    (Cycle("stay_ms"), "ILK-14"),
+];
+
 /// The numbers of a block.
 const BLOCK: &[Guess] = &[(One("tail_hold_sections"), "BLK-5"), (One("max_trains"), "BLK-3")];
 
@@ -104,7 +114,16 @@ fn guesses(machine: &str) -> impl Iterator<Item = &'static Guess> {
 
 /// Configurations of a machine in which one limit is a cycle, or one, off: with words for it, and the requirement.
 pub(super) fn limits(machine: &str, config: &Value) -> Vec<(Value, String, &'static str)> {
-    let off = guesses(machine).filter(|(change, _)| !matches!(change, Ignored(..)));
+    off(guesses(machine), config)
+}
+
+/// The same, with the times of a layout's file.
+pub(super) fn limits_of_a_file(machine: &str, config: &Value) -> Vec<(Value, String, &'static str)> {
+    off(guesses(machine).chain(FILE), config)
+}
+
+fn off<'a>(guesses: impl Iterator<Item = &'a Guess>, config: &Value) -> Vec<(Value, String, &'static str)> {
+    let off = guesses.filter(|(change, _)| !matches!(change, Ignored(..)));
     let each = off.flat_map(|(change, requirement)| {
         change.changed(config).into_iter().map(move |(config, says)| (config, says, *requirement))
     });
@@ -148,7 +167,14 @@ fn fits(machine: &str, level: Level, guess: &Expected, replies: &[String]) -> bo
 impl Change {
     /// The configurations with this change, each with words for it.
     fn changed(&self, config: &Value) -> Vec<(Value, String)> {
-        let cycle = ["/cycle_ms", "/permitted/cycle_ms", "/layout/plan/cycle_ms"];
+        let cycle = [
+            "/cycle_ms",
+            "/permitted/cycle_ms",
+            "/layout/plan/cycle_ms",
+            "/layout/times/cycle_ms",
+            "/plan/cycle_ms",
+            "/times/cycle_ms",
+        ];
         let cycle = cycle.iter().find_map(|at| config.pointer(at)?.as_i64()).unwrap_or(10);
         let (name, steps): (_, &[(i64, &str)]) = match self {
             Cycle(name) => (name, &[(-1, "one cycle shorter"), (1, "one cycle longer")]),

@@ -4,7 +4,7 @@
 //! * [`run`]: what `oracle conform` does. Cases come from [`walk`], the other side is a process ([`side`]), a case is played by
 //!   [`play`], and what is found is made shorter by [`shrink`].
 //! * [`fields`]: what is compared, and which requirements speak of it. [`profile`]: what is known to differ.
-//! * [`alike`]: which small change of the kernel gives the same replies.
+//! * [`alike`]: which small change of the kernel gives the same replies. [`reached`]: which of a user's limits the walks decide.
 //! * [`report`]: text, JSON, JUnit, HTML, badge. [`vectors`]: cases in files; [`directed`]: those that a search found; [`coverage`]: what they cover.
 //!
 //! It goes through [`atc_protocol::Session`] and [`crate::chart`] as any client does; neither knows of it.
@@ -17,6 +17,7 @@ pub mod fields;
 pub mod play;
 pub mod profile;
 pub mod random;
+pub mod reached;
 pub mod report;
 pub mod run;
 pub mod shrink;

@@ -10,6 +10,7 @@ use super::case::{Case, Expected};
 use super::fields::Level;
 use super::play::{At, Finding, Found, Judge, play};
 use super::profile::Profile;
+use super::reached::{Asking, Reached};
 use super::shrink::{Trace, shrink};
 use super::side::{Answers as _, Broken, Side};
 use super::vector::Vector;
@@ -58,6 +59,8 @@ pub struct Machine {
     pub took: Duration,
     /// The places of the known differences that showed.
     pub known: BTreeSet<usize>,
+    /// What its walks reach on a configuration of the user's own, if it agrees.
+    pub reached: Option<Reached>,
 }
 
 /// A verdict.
@@ -130,7 +133,8 @@ pub fn run(options: Options, mut progress: impl FnMut(&Machine)) -> Run {
 fn not_compared(name: &str, why: String) -> Machine {
     let (cases, steps) = (0, 0);
     let verdict = Verdict::NotCompared(why);
-    Machine { name: name.to_owned(), verdict, cases, steps, took: Duration::ZERO, known: BTreeSet::new() }
+    let took = Duration::ZERO;
+    Machine { name: name.to_owned(), verdict, cases, steps, took, known: BTreeSet::new(), reached: None }
 }
 
 /// The cases that the running process has played, for a difference that needs them; the newest last.
@@ -159,7 +163,9 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
         steps,
         took: since.elapsed(),
         known,
+        reached: None,
     };
+    let mut asking = Asking::new(options.config.is_some(), options.cases.is_some());
     side.end();
     let mut number = 0;
     loop {
@@ -201,6 +207,7 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
                 break;
             }
         }
+        asking.play(&expected, since.elapsed());
         cases += 1;
         steps += expected.case.steps.len() as u64;
         if before.len() == REMEMBERED {
@@ -239,7 +246,7 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
     };
     let gone: Vec<_> = options.profile.known.iter().enumerate().filter_map(gone).collect();
     let verdict = if gone.is_empty() { Verdict::Agrees } else { Verdict::Gone(gone) };
-    done(verdict, cases, steps, known)
+    Machine { reached: asking.reached, ..done(verdict, cases, steps, known) }
 }
 
 fn starts_rejected(found: &Found) -> bool {

@@ -474,3 +474,21 @@ fn every_fault_is_found_by_the_vectors() {
     assert!(count > 1000, "{count} vectors");
     assert!(missed.is_empty(), "{missed:?}");
 }
+
+/// Where both sides agree on a configuration of one's own, the report says what that rests on.
+#[test]
+fn what_no_walk_decides_is_told() {
+    let config =
+        serde_json::json!({"sections": 2, "max_trains": 1, "tail_hold_sections": 1, "cycle_ms": 10, "pass_ms": 200});
+    let command = format!("'{}' serve", atc_tests::device::oracle().display());
+    let with = |cases| {
+        let options =
+            Options { cases: Some(cases), config: Some(config.clone()), ..options(command.clone(), "block-count") };
+        let report = report::report(&run(options, |_| ()));
+        assert!(report.agrees);
+        report.machines[0].undecided.clone()
+    };
+    let (few, many) = (with(1), with(60));
+    assert!(few.iter().any(|limit| limit.starts_with("pass_ms one cycle longer (BLK-3)")), "{few:?}");
+    assert!(many.len() < few.len() && !many.iter().any(|limit| limit.starts_with("pass_ms")), "{many:?}");
+}

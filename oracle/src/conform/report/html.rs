@@ -113,6 +113,8 @@ fn machines(report: &Report) -> Markup {
                     td {
                         span class=(class(machine.verdict)) { (machine.verdict.name()) }
                         @if let Some(note) = &machine.note { ": " (note) }
+                        @if let Some([used, all]) = machine.routes_used { br; (used) " of " (all) " routes were in use" }
+                        @if !machine.undecided.is_empty() { br; "no walk decides: " (machine.undecided.join(", ")) }
                         @for known in &machine.known { br; "known: " (known) }
                     }
                     td.n { (machine.cases) } td.n { (machine.steps) } td.n { (format!("{:.1}", machine.seconds)) }

@@ -12,6 +12,7 @@ use super::alike::Alike;
 use super::case::{Expected, step_line};
 use super::fields::{Difference, Level};
 use super::play::{At, Finding};
+use super::reached::Reached;
 use super::run::{Machine, Run, Verdict};
 use super::shrink::Trace;
 use crate::chart::{self, View};
@@ -103,6 +104,11 @@ pub struct OfMachine {
     pub seconds: f64,
     /// The known differences that showed: field and reason.
     pub known: Vec<String>,
+    /// The limits that no walk has decided, a cycle or one off: of a configuration of the user's own, where both sides agree.
+    pub undecided: Vec<String>,
+    /// How many routes were in use in these walks, and of how many.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub routes_used: Option<[usize; 2]>,
     /// The first difference.
     pub difference: Option<First>,
 }
@@ -183,6 +189,8 @@ fn of_machine(run: &Run, machine: &Machine) -> OfMachine {
         steps: machine.steps,
         seconds: machine.took.as_secs_f64(),
         known: machine.known.iter().map(entry).collect(),
+        undecided: machine.reached.as_ref().map(Reached::undecided).unwrap_or_default(),
+        routes_used: machine.reached.as_ref().and_then(Reached::routes),
         difference: match &machine.verdict {
             Verdict::Differs(trace, guesses) => Some(first(trace, guesses)),
             _ => None,

@@ -41,6 +41,12 @@ fn of_machine(text: &mut String, report: &Report, machine: &OfMachine) {
     if let Some(note) = &machine.note {
         let _ = writeln!(text, "  {note}");
     }
+    if let Some([used, all]) = machine.routes_used {
+        let _ = writeln!(text, "  {used} of {all} routes were in use");
+    }
+    if !machine.undecided.is_empty() {
+        let _ = writeln!(text, "  no walk decides: {}", machine.undecided.join(", "));
+    }
     for known in &machine.known {
         let _ = writeln!(text, "  known difference, seen again: {known}");
     }

@@ -13,7 +13,7 @@ use super::{rows, wrong_plans};
 use crate::conform::random::Random;
 
 pub(super) const SOURCE: Source =
-    Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600), own: 1600 };
+    Source { machine: "interlocking", small, large, wrong, begin, most: (70, 1600), own: 4000 };
 
 const PASSING_LOOP: &str = include_str!("../../../../layouts/passing-loop.toml");
 const JUNCTION: &str = include_str!("../../../../layouts/junction.toml");

@@ -92,7 +92,7 @@ pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<
     let mut random = Random::of(seed, machine, number);
     let Some(source) = source(machine) else { return mutate::case(machine, number, config, &mut random) };
     if let Some(config) = config {
-        return Some(source.walk(config.clone(), source.own, &mut random));
+        return Some(source.walk(config.clone(), source.own, true, &mut random));
     }
     let made = source.configs()?;
     let wrong = number.checked_sub(WALKS_FIRST).and_then(|number| usize::try_from(number).ok());
@@ -113,8 +113,24 @@ pub fn case(machine: &str, seed: u64, number: u64, sizes: Sizes, config: Option<
         _ => (&made.small, source.most.0),
     };
     let config = random.pick(configs).cloned().unwrap_or_default();
-    Some(source.walk(config, most, &mut random))
+    Some(source.walk(config, most, false, &mut random))
 }
+
+/// How many routes the station of a configuration has; none of a machine without a station.
+pub fn routes(machine: &str, config: &Value) -> Option<usize> {
+    let layout = match machine {
+        "interlocking" => config,
+        "wayside" => &config["layout"],
+        _ => return None,
+    };
+    Some(station::Station::of(layout).routes.len())
+}
+
+/// The longest walk on a configuration of the user's own, in steps.
+const LONGEST: usize = 30_000;
+
+/// How many times its longest time such a walk may last.
+const LASTS: u64 = 4;
 
 impl Source {
     /// How many configurations are there to be rejected.
@@ -122,13 +138,19 @@ impl Source {
         self.configs().map_or(0, |configs| configs.wrong.len())
     }
 
-    fn walk(&self, config: Value, most: usize, random: &mut Random) -> Expected {
+    /// A walk of at most so many steps; on a configuration of the user's `own` more, where its times are longer.
+    fn walk(&self, config: Value, mut most: usize, own: bool, random: &mut Random) -> Expected {
         let mut case = Case { machine: self.machine.to_owned(), config, steps: Vec::new() };
         let mut kernel = Kernel::new();
         let start = kernel.start(&case).unwrap_or_else(|reply| reply);
         let (mut outputs, mut left_out) = (Vec::new(), 0);
         if !is_rejected(&start) && !start.starts_with(r#"{"malformed""#) {
             let started: Value = serde_json::from_str(&start).unwrap_or_default();
+            let times = started["started"]["cycles"].as_object().into_iter().flatten();
+            let longest = times.filter_map(|(_, cycles)| cycles.as_u64()).max().unwrap_or(0);
+            if own {
+                most = most.max(usize::try_from(LASTS * longest).unwrap_or(LONGEST).min(LONGEST));
+            }
             let mut walk = (self.begin)(&case.config, &started["started"], random);
             let mut last: Option<Value> = None;
             for _ in 0..=random.below(most) {

@@ -10,7 +10,7 @@ use super::neighbours::Neighbours;
 use super::source::{Source, Walk, cycles};
 use crate::conform::random::Random;
 
-pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200), own: 2400 };
+pub(super) const SOURCE: Source = Source { machine: "wayside", small, large, wrong, begin, most: (70, 200), own: 4000 };
 
 /// The circuits of the station and of the line behind it, in the direction of travel.
 const STATION: [&str; 4] = ["A", "B", "E1", "E2"];

@@ -167,6 +167,10 @@ fn each_device_of_a_line_starts_with_its_configuration() {
         let replies = serve(&[start.to_string()]);
         assert!(replies[0].get("started").is_some(), "{stem}: {}", replies[0]);
     }
+    // Nothing of another line is left beside it.
+    let again = configs(folder.path(), "made/configs");
+    assert_eq!(again.status.code(), Some(1));
+    assert!(text(&again.stderr).contains("made/configs cannot be written: it is there and not empty"), "{again:?}");
     // What stands in several places of the file, or in another file, comes together.
     let device = read("wayside-1-Westham");
     assert_eq!(device["life_ms"], 6000, "the layout's telegram age");
