@@ -154,7 +154,7 @@ impl Devices {
     fn stations(&mut self, line: &Line) {
         if line.stations().is_empty() {
             self.lack("interlocking", NO_STATION);
-            self.lack("wayside", NO_STATION);
+            return self.lack("wayside", NO_STATION);
         }
         for (place, station) in line.stations().iter().enumerate() {
             let which = format!("{}-{}", place + 1, station.name());
@@ -164,8 +164,6 @@ impl Devices {
         }
         let codes = match wayside_codes(line) {
             Ok(codes) => codes,
-            // Said above.
-            Err(NO_STATION) => return,
             Err(why) => return self.lack("wayside", why),
         };
         for (place, station) in line.stations().iter().enumerate() {
@@ -220,9 +218,6 @@ fn codes_of(line: &Line) -> Option<train::Codes> {
 
 /// The pairs of codes of a line whose stations have transmitters; or what the file says nothing of.
 fn wayside_codes(line: &Line) -> Result<train::Codes, &'static str> {
-    if line.stations().is_empty() {
-        return Err(NO_STATION);
-    }
     line.signal().ok_or(NO_SIGNAL)?;
     if line.telegrams().is_empty() {
         return Err("the file has no [[telegram]]");

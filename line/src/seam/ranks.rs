@@ -36,11 +36,16 @@ pub(super) fn checks(line: &Line) -> Vec<DataCheck> {
     ]
 }
 
+/// Where the speeds of a layout's codes stand.
+fn codes_at(one: Sound<'_>) -> String {
+    one.station.at(&one.station.description().station.braking.speeds_kmh.span)
+}
+
 /// Where a speed stands that telegrams name for a code: in the line's file, or in the layout.
 fn at(line: &Line, one: Sound<'_>, place: usize) -> String {
     match &one.station.code_speeds {
         Some(_) => line.places().at(&format!("station[{}].code_speeds_km_h[{place}]", one.number)),
-        None => one.station.at(&one.station.description().station.braking.speeds_kmh.span),
+        None => codes_at(one),
     }
 }
 
@@ -54,9 +59,8 @@ fn missing(line: &Line, speeds: &AspectTable, one: Sound<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     if named.len() != codes {
         let what = format!("{} has {codes} speed codes, and code_speeds_km_h names {}", one.name(), named.len());
-        let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
         let at = line.places().at(&format!("station[{}].code_speeds_km_h", one.number));
-        findings.push(finding(at, codes_at, what, "name one speed for each code, from code 1 on"));
+        findings.push(finding(at, codes_at(one), what, "name one speed for each code, from code 1 on"));
     }
     for (place, speed) in named.iter().enumerate().filter(|(_, speed)| rank(speeds, **speed).is_none()) {
         let what = format!(
@@ -80,8 +84,7 @@ fn faster(line: &Line, one: Sound<'_>) -> Vec<Finding> {
         .map(|(place, (named, code))| {
             let what =
                 format!("{}: telegrams name {named} km/h for code {}, which is for {code}", one.name(), place + 1);
-            let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
-            finding(at(line, one, place), codes_at, what, format!("name {code} km/h or less"))
+            finding(at(line, one, place), codes_at(one), what, format!("name {code} km/h or less"))
         })
         .collect()
 }
@@ -92,8 +95,7 @@ fn stop(line: &Line, speeds: &AspectTable, one: Sound<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let what = format!("code 0 of {} is a stop, and the lowest rank means {} km/h", one.name(), Kmh::from(lowest));
-    let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
-    vec![finding(table(line), codes_at, what, "let speeds_km_h of [signal] begin with 0")]
+    vec![finding(table(line), codes_at(one), what, "let speeds_km_h of [signal] begin with 0")]
 }
 
 /// What the kernel does not take: the lower code would not be the lower speed.
@@ -108,8 +110,7 @@ fn falling(line: &Line, one: Sound<'_>) -> Vec<Finding> {
                 one.name(),
                 code - 1
             );
-            let codes_at = one.station.at(&one.station.description().station.braking.speeds_kmh.span);
-            finding(at(line, one, place + 1), codes_at, what, "name no lower speed for a higher code")
+            finding(at(line, one, place + 1), codes_at(one), what, "name no lower speed for a higher code")
         })
         .collect()
 }
@@ -124,11 +125,9 @@ fn without_pair(line: &Line, speeds: &AspectTable, table: &CodeTable, one: Sound
     unpaired
         .map(|(speed, code)| {
             let what = format!("{}: no pair of codes names {speed} km/h, the speed of code {code}", one.name());
-            let codes_at = match usize::from(code).checked_sub(1) {
-                Some(place) => at(line, one, place),
-                None => one.station.at(&one.station.description().station.braking.speeds_kmh.span),
-            };
-            finding(line.places().at("codes.pairs"), codes_at, what, "add a pair for it, and its aspect")
+            let place = usize::from(code).checked_sub(1);
+            let named_at = place.map_or_else(|| codes_at(one), |place| at(line, one, place));
+            finding(line.places().at("codes.pairs"), named_at, what, "add a pair for it, and its aspect")
         })
         .collect()
 }

@@ -8,8 +8,9 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-use super::alike::limits_of_a_file;
+use super::alike::{self, limits_of_a_file};
 use super::case::{Expected, Kernel, is_rejected};
+use super::fields::Level;
 use super::walk;
 
 /// Asks what the cases of a run reach, as they are played.
@@ -19,6 +20,8 @@ pub struct Asking {
     asks: bool,
     /// Whether every case is looked at, however long that takes; if not, half of the time goes into it at most.
     all: bool,
+    /// How much of a reply is compared in the run: what is not compared decides nothing.
+    level: Level,
     spent: Duration,
     /// What was found; none if nothing was asked.
     pub reached: Option<Reached>,
@@ -26,15 +29,15 @@ pub struct Asking {
 
 impl Asking {
     /// Nothing was played yet.
-    pub const fn new(asks: bool, all: bool) -> Self {
-        Self { asks, all, spent: Duration::ZERO, reached: None }
+    pub const fn new(asks: bool, all: bool, level: Level) -> Self {
+        Self { asks, all, level, spent: Duration::ZERO, reached: None }
     }
 
     /// A case was played, in a run that takes so long by now.
     pub fn play(&mut self, expected: &Expected, taken: Duration) {
         if self.asks && (self.all || 2 * self.spent <= taken) {
             let began = Instant::now();
-            self.reached.get_or_insert_with(|| Reached::of(expected)).play(expected);
+            self.reached.get_or_insert_with(|| Reached::of(expected)).play(expected, self.level);
             self.spent += began.elapsed();
         }
     }
@@ -63,8 +66,8 @@ impl Reached {
     }
 
     /// A case was played.
-    pub fn play(&mut self, expected: &Expected) {
-        self.open.retain(|(config, _)| same(config, expected) == Some(true));
+    pub fn play(&mut self, expected: &Expected, level: Level) {
+        self.open.retain(|(config, _)| same(config, expected, level) == Some(true));
         if self.routes.is_some() {
             for output in expected.outputs.iter().filter(|output| output.contains("in-use")) {
                 let output: Value = serde_json::from_str(output).unwrap_or_default();
@@ -85,8 +88,8 @@ impl Reached {
     }
 }
 
-/// Whether the kernel gives the same replies to a case with another configuration; none if it does not take that: then it is no other limit.
-fn same(config: &Value, expected: &Expected) -> Option<bool> {
+/// Whether the kernel's replies to a case are the same with another configuration; none if it does not take that: then it is no other limit.
+fn same(config: &Value, expected: &Expected, level: Level) -> Option<bool> {
     let mut case = expected.case.clone();
     case.config = config.clone();
     let mut kernel = Kernel::new();
@@ -95,5 +98,6 @@ fn same(config: &Value, expected: &Expected) -> Option<bool> {
         return None;
     }
     let mut replies = expected.case.steps.iter().zip(&expected.outputs);
-    Some(replies.all(|(step, output)| kernel.step(step).is_ok_and(|other| other == *output)))
+    let machine = case.machine.as_str();
+    Some(replies.all(|(step, output)| kernel.step(step).is_ok_and(|other| alike::same(machine, level, output, &other))))
 }

@@ -165,7 +165,7 @@ fn one(name: &str, options: &Options, share: Duration, side: &mut Side) -> Machi
         known,
         reached: None,
     };
-    let mut asking = Asking::new(options.config.is_some(), options.cases.is_some());
+    let mut asking = Asking::new(options.config.is_some(), options.cases.is_some(), options.level);
     side.end();
     let mut number = 0;
     loop {

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::interlocking;
+use super::ground::{Ground, ground};
 use super::neighbours::Neighbours;
 use super::source::{Walk, cycles};
 use crate::conform::random::Random;
@@ -17,7 +17,7 @@ struct Block {
 }
 
 struct Device {
-    station: interlocking::Ground,
+    station: Ground,
     blocks: Vec<Block>,
     /// The names of their circuits.
     counted: BTreeSet<String>,
@@ -32,7 +32,7 @@ struct Device {
 }
 
 pub(super) fn begin(config: &Value, started: &Value, random: &mut Random) -> Box<dyn Walk> {
-    let mut station = interlocking::ground(&config["layout"], random);
+    let mut station = ground(&config["layout"], random);
     let list = config["counted"]["blocks"].as_array().into_iter().flatten();
     let named: Vec<Vec<&str>> = list
         .map(|block| block["circuits"].as_array().into_iter().flatten().filter_map(Value::as_str).collect())

@@ -6,6 +6,7 @@
 mod aspect;
 mod block;
 mod device;
+mod ground;
 mod halts;
 mod interlocking;
 mod mutate;
