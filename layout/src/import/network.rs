@@ -243,6 +243,24 @@ impl Divided {
         [at(1), at(0)]
     }
 
+    /// Names of the areas by their borders; a second one between the same borders gets a number.
+    pub fn names(&self) -> Vec<At<String>> {
+        let mut used: BTreeMap<String, usize> = BTreeMap::new();
+        let made = self.areas.iter().enumerate().map(|(number, area)| {
+            let name = area.borders.iter().cloned().collect::<Vec<_>>().join("+");
+            let name = if name.is_empty() { format!("area {number}") } else { name };
+            let count = used.entry(name.clone()).and_modify(|count| *count += 1).or_insert(1);
+            At::derived(if *count > 1 { format!("{name} #{count}") } else { name })
+        });
+        made.collect()
+    }
+
+    /// The pieces of an area: edge, and metres from its begin.
+    pub fn pieces_of(&self, area: usize) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let pieces = self.pieces.iter().zip(&self.area_of).filter(move |(_, of)| **of == area);
+        pieces.map(|(piece, _)| (piece.edge, piece.from, piece.to))
+    }
+
     /// The areas that a stretch of an edge runs through, in metres from its begin.
     pub fn along(&self, edge: usize, from: f64, to: f64) -> BTreeSet<usize> {
         let pieces = self.pieces.iter().zip(&self.area_of).filter(|(piece, _)| piece.edge == edge);

@@ -125,7 +125,7 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     }
     let divided = network.divide();
     let mut station = Station { name: name_of(source), ..Station::default() };
-    divided.write(&network, &names_of(&divided), &mut station);
+    divided.write(&network, &divided.names(), &mut station);
     report.taken.push(format!(
         "{} track sections and {} detectors as {} circuits",
         infra.track_sections.len(),
@@ -167,18 +167,6 @@ fn slowest(infra: &Infra, station: &mut Station, report: &mut Report) -> bool {
 fn name_of(source: &Source) -> String {
     let file = source.name.rsplit('/').next().unwrap_or_default();
     file.split('.').next().unwrap_or_default().to_owned()
-}
-
-/// A circuit is named by its borders; a second one between the same borders gets a number.
-fn names_of(divided: &Divided) -> Vec<At<String>> {
-    let mut used: BTreeMap<String, usize> = BTreeMap::new();
-    let made = divided.areas.iter().enumerate().map(|(number, area)| {
-        let name = area.borders.iter().cloned().collect::<Vec<_>>().join("+");
-        let name = if name.is_empty() { format!("area {number}") } else { name };
-        let count = used.entry(name.clone()).and_modify(|count| *count += 1).or_insert(1);
-        At::derived(if *count > 1 { format!("{name} #{count}") } else { name })
-    });
-    made.collect()
 }
 
 fn network(infra: &Infra, report: &mut Report, problems: &mut Vec<Problem>) -> Network {

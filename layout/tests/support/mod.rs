@@ -1,7 +1,8 @@
-//! Stations made by rule, and the same as railML.
+//! Stations made by rule, and the same as railML and PlanPro.
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 pub mod central;
+pub mod planpro;
 pub mod railml;
 pub mod random;
 

@@ -62,12 +62,15 @@ impl Dialect {
 }
 
 /// A track from switch to switch, with the joints on it.
-struct Edge {
-    ends: [(usize, usize); 2],
-    joints: Vec<(usize, f64)>,
-    length: f64,
+pub struct Edge {
+    /// Track of the point, or `usize::MAX` at an end of the tracks, and joint.
+    pub ends: [(usize, usize); 2],
+    /// Joints with metres from the begin.
+    pub joints: Vec<(usize, f64)>,
+    /// In metres.
+    pub length: f64,
     /// Whether the file measures it from the other end.
-    turned: bool,
+    pub turned: bool,
 }
 
 /// The layout of `station` as railML.
@@ -104,7 +107,7 @@ pub fn written(station: &Station, version: Version, dialect: &Dialect) -> String
 }
 
 /// Follows the tracks from every leg of a point and every end of the line over plain pieces.
-fn edges(model: &Model) -> Vec<Edge> {
+pub fn edges(model: &Model) -> Vec<Edge> {
     let graph = &model.graph;
     // A point's circuit is as long on each way through: half of it before the blades, half behind them.
     let stub = |track: usize| f64::from(model.circuits[graph.tracks[track].circuit].length.0) / 2.0;
@@ -263,7 +266,7 @@ fn signal_id(route: &Route) -> String {
 }
 
 /// Whether a train on the route runs toward the end of the edge that its signal stands on: its entry is on the begin's side.
-fn runs_to_end(model: &Model, edge: &Edge, route: &Route) -> bool {
+pub fn runs_to_end(model: &Model, edge: &Edge, route: &Route) -> bool {
     let graph = &model.graph;
     let place = edge.joints.iter().position(|(joint, _)| *joint == route.start).expect("the signal is on the edge");
     let before = match (place, edge.ends[0]) {

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::infrastructure::{Spot, Switched, Tracks};
-use super::limits::Limits;
 use super::xml::{Xml, references};
 use crate::at::At;
 use crate::form::{Position, Station};
 use crate::graph::Graph;
+use crate::import::limits::Limits;
 use crate::import::network::{Area, Cut, Divided, Network};
 use crate::import::report::Report;
 use crate::names::Names;

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
-use super::limits::Limits;
 use super::places::{Measures, Places, apart, chainage, length, measures, share_of, track_lengths};
 use super::xml::{Xml, child, children, duration, number, references};
 use crate::form::Position;
+use crate::import::limits::Limits;
 use crate::import::network::{Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
 use crate::import::report::Report;
 use crate::problem::Problem;

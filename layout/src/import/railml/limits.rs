@@ -1,24 +1,12 @@
 //! Speed limits of a railML file: of the branches of switches, and of sections of the tracks.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use roxmltree::Node;
 
 use super::places::{Places, apart};
 use super::xml::{Xml, child, children, number};
 use crate::form::Position;
-use crate::graph::Way;
-use crate::import::network::Divided;
+use crate::import::limits::{Limits, kmh};
 use crate::import::report::Report;
-
-/// What the file says of speeds, in km/h, rounded down.
-#[derive(Debug, Default)]
-pub struct Limits {
-    /// Of the legs of points, by number.
-    pub branches: BTreeMap<(usize, Position), u16>,
-    /// Of stretches of edges: edge, metres from its begin, limit. They hold for either direction.
-    stretches: Vec<(usize, f64, f64, u16)>,
-}
 
 impl Limits {
     /// Reads the sections of speed.
@@ -48,36 +36,15 @@ impl Limits {
                 }
             }
         }
-        Self { branches: BTreeMap::new(), stretches }
+        Self { stretches, ..Self::default() }
     }
 
     /// Enters the limits of a branch: it may be run over either way, so the lower one holds.
     pub fn branch(&mut self, point: usize, position: Position, branch: roxmltree::Node<'_, '_>) {
         let given = ["branchingSpeed", "joiningSpeed"].into_iter().filter_map(|name| branch.attribute(name));
         if let Some(limit) = given.map(|text| kmh(text).unwrap_or(0)).min() {
-            let lowest = self.branches.entry((point, position)).or_insert(limit);
-            *lowest = limit.min(*lowest);
+            self.leg(point, position, limit);
         }
-    }
-
-    /// How many there are: of branches, and of stretches.
-    pub fn count(&self) -> (usize, usize) {
-        (self.branches.len(), self.stretches.len())
-    }
-
-    /// The lowest limit on a way, if any is given.
-    pub fn on_way(&self, way: &[(usize, Way)], divided: &Divided) -> Option<u16> {
-        let passed = way.iter().flat_map(|(_, way)| &way.passed);
-        let branches = passed.filter_map(|passed| self.branches.get(&(passed.point, passed.position)).copied());
-        branches.chain(self.in_circuits(&way.iter().map(|(circuit, _)| *circuit).collect(), divided)).min()
-    }
-
-    /// The lowest limit of a stretch in these circuits, if any is given.
-    pub fn in_circuits(&self, circuits: &BTreeSet<usize>, divided: &Divided) -> Option<u16> {
-        let touched = |(edge, from, to, _): &&(usize, f64, f64, u16)| {
-            divided.along(*edge, *from, *to).intersection(circuits).next().is_some()
-        };
-        self.stretches.iter().filter(touched).map(|(.., limit)| *limit).min()
     }
 }
 
@@ -130,23 +97,4 @@ fn place(
         return Err(format!("{found:.0} m is not on its net element of {length:.0} m"));
     }
     Ok(Some(found.clamp(0.0, length)))
-}
-
-/// Whole km/h, rounded down; nothing if it is no speed.
-fn kmh(text: &str) -> Option<u16> {
-    let speed = text.trim().parse::<f64>().ok().filter(|speed| speed.is_finite() && *speed >= 1.0)?;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is in the range of the type")]
-    let whole = speed.floor().min(f64::from(u16::MAX)) as u16;
-    Some(whole)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::kmh;
-
-    #[test]
-    fn a_speed_is_rounded_down_and_nonsense_is_none() {
-        assert_eq!(["60", "62.9", "1e9"].map(kmh), [Some(60), Some(62), Some(u16::MAX)]);
-        assert_eq!(["0", "-5", "NaN", "fast", ""].map(kmh), [None; 5]);
-    }
 }

@@ -13,34 +13,20 @@ use std::collections::BTreeSet;
 
 use super::complete::{complete, steepest};
 use super::report::{Imported, Report};
+use super::xml::other_root;
 use crate::at::At;
-use crate::derive;
 use crate::description::Description;
 use crate::form::Station;
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
-use crate::second;
 use xml::Xml;
 
 /// Reads a railML file.
 pub fn import(source: &Source) -> Result<Imported, Errors> {
-    let document = roxmltree::Document::parse(&source.text).map_err(|error| {
-        let place = error.pos();
-        let lines = source.text.split_inclusive('\n').take(place.row as usize - 1);
-        let start = lines.map(str::len).sum::<usize>() + place.col as usize - 1;
-        let mut start = start.min(source.text.len().saturating_sub(1));
-        while !source.text.is_char_boundary(start) {
-            start -= 1;
-        }
-        Errors::one(
-            source,
-            Problem::new(Rule::Form, &(start..start + 1), format!("this is no XML: {error}"), "mend the file"),
-        )
-    })?;
+    let document = crate::import::xml::parse(source)?;
     let root = document.root_element();
     if root.tag_name().name() != "railML" {
-        let what = format!("the root element is {}, not railML", root.tag_name().name());
-        return Err(Errors::one(source, Problem::new(Rule::Form, &root.range(), what, "a railML 3 file is expected")));
+        return Err(other_root(source, root, "railML", "a railML 3 file is expected"));
     }
     let namespace = root.tag_name().namespace().unwrap_or_default().to_owned();
     let version = root.attribute("version").unwrap_or_default();
@@ -78,29 +64,12 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
     report.taken.push(format!("speeds of {branches} branches and {stretches} stretches of track"));
     xml.unused(&mut report);
     unread::tell(&xml, &mut report);
-    read_again(&source.text, &mut station, &mut report);
+    super::read_again(&source.text, &mut station, &mut report);
     complete(&mut station, "railML", &mut report);
-    line_speeds(&placed, &mut station, &mut report);
-    read_again(&source.text, &mut station, &mut report);
+    super::line_speeds(&placed.limits, &placed.divided, &mut station, &mut report);
+    super::read_again(&source.text, &mut station, &mut report);
     report.taken.push(format!("{} routes that a second reading of the file finds the same", station.routes.len()));
     Ok(Imported { description: Description { station, source: source.clone() }, report })
-}
-
-/// Leaves out the routes that another reading of the file does not find as they are.
-fn read_again(text: &str, station: &mut Station, report: &mut Report) {
-    let model = derive::model(station, &mut Vec::new());
-    let found = second::differences(text, &model).unwrap_or_default();
-    for difference in &found {
-        report.lacking.push(match difference.route {
-            Some(_) => format!("{difference}; so says a second reading of the file, and it is left out"),
-            None => format!("{difference}; so says a second reading of the file"),
-        });
-    }
-    let wrong: BTreeSet<&String> = found.iter().filter_map(|difference| difference.route.as_ref()).collect();
-    station.routes.retain(|route| !wrong.contains(&route.name.value));
-    for route in &mut station.routes {
-        route.conflicts.retain(|other| !wrong.contains(&other.value));
-    }
 }
 
 /// Ids that two elements have and that something refers to: it may mean either.
@@ -137,20 +106,5 @@ fn clear_time(xml: &Xml<'_>, station: &mut Station, report: &mut Report) {
     if longest > station.times.clear_ms.value {
         report.taken.push(format!("{longest} ms after which a circuit counts as clear: the longest of all sections"));
         station.times.clear_ms = At::derived(longest);
-    }
-}
-
-/// Plain line is as fast as the slowest of its circuits. A route's speed that is no lower than the station's is left out.
-fn line_speeds(placed: &circuits::Placed<'_>, station: &mut Station, report: &mut Report) {
-    let numbers: std::collections::BTreeMap<String, usize> =
-        station.circuits.iter().enumerate().map(|(number, circuit)| (circuit.name.value.clone(), number)).collect();
-    let highest = station.braking.speeds_kmh.iter().max().copied().unwrap_or(0);
-    for segment in &mut station.segments {
-        let circuits = segment.circuits.iter().filter_map(|name| numbers.get(&name.value).copied()).collect();
-        let limit = placed.limits.in_circuits(&circuits, &placed.divided).filter(|limit| *limit < highest);
-        if let Some(limit) = limit {
-            report.taken.push(format!("segment {}: {limit} km/h", segment.name));
-            segment.speed_kmh = Some(At::derived(limit));
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! Imports railML files of many kinds, and tells each route that comes of them in one line: what `layout/mutants.toml` must not change.
+//! Imports railML and PlanPro files of many kinds, and tells each route that comes of them in one line: what `layout/mutants.toml` must not change.
 //!
 //! A route of a wrong importer that the right one does not print is a wrong route. One that it lacks is a route that was left out: what it
 //! holds and excludes need not be there then. Positions may be held that the right importer does not: flank protection looks farther
@@ -10,8 +10,9 @@ mod support;
 use std::process::ExitCode;
 
 use atc_layout::At;
-use atc_layout::import::railml;
+use atc_layout::import::{Imported, planpro, railml};
 use atc_layout::model::{Model, Route};
+use support::planpro::{Tool, id};
 use support::railml::{Dialect, Version, written};
 use support::random::{Shape, station};
 
@@ -161,11 +162,141 @@ fn main() -> ExitCode {
             tell(&format!("dialect {number} of {tracks} tracks"), &written(&made, Version::V31, dialect));
         }
     }
+    of_planpro();
     ExitCode::SUCCESS
 }
 
+/// The ways of PlanPro's tools: turned edges, main tracks on the right, signals in rear of their border, parts in the other order.
+const TOOLS: [Tool; 3] = [
+    Tool::PLAIN,
+    Tool { turned: 2, mirrored: 2, offset: 5.0, ..Tool::PLAIN },
+    Tool { turned: 1, mirrored: 1, offset: 12.0, backwards: true, nameless: true, planned: false },
+];
+
+/// Stations as PlanPro, as they are and with what asks for more.
+fn of_planpro() {
+    let shape = |tracks, bay| Shape { tracks, bay, lengths: vec![75, 220, 410, 130], splits: vec![2, 1] };
+    for (number, tool) in TOOLS.iter().enumerate() {
+        for (tracks, bay) in [(3, true), (5, false)] {
+            let mut made = station(&shape(tracks, bay));
+            made.times.stay_ms = Some(At::derived(150_000));
+            tell_of(
+                &format!("tool {number} of {tracks} tracks"),
+                planpro("", &support::planpro::written(&made, tool)).ok(),
+            );
+        }
+    }
+    if let Ok(diamond) =
+        atc_layout::Description::from_toml("diamond", include_str!("../../../../layout/tests/files/diamond.toml"))
+    {
+        tell_of("planpro diamond", planpro("", &support::planpro::written(&diamond.station, &Tool::PLAIN)).ok());
+    }
+    let plain = support::planpro::written(&station(&shape(3, true)), &Tool::PLAIN);
+    for (name, objects, (old, new)) in asking() {
+        let text =
+            plain.replacen("</Container></LST_Zustand_Ziel>", &format!("{objects}</Container></LST_Zustand_Ziel>"), 1);
+        tell_of(&format!("planpro {name}"), planpro("", &text.replacen(&old, &new, 1)).ok());
+    }
+}
+
+/// Objects that are added to a station, and words that stand for others.
+fn asking() -> Vec<(&'static str, String, (String, String))> {
+    let value = |name: &str, text: &str| format!("<{name}><Wert>{text}</Wert></{name}>");
+    let number = |last: &str| value("Identitaet", &format!("00000000-0000-4000-8000-0000000000{last}"));
+    let none = || (String::new(), String::new());
+    let guard = |id_of: &str, side: &str| {
+        format!(
+            "<Fla_Schutz_W_Gsp>{}{}</Fla_Schutz_W_Gsp>",
+            value("Fla_W_Lage", side),
+            value("ID_Fla_W_Gsp_Element", id_of)
+        )
+    };
+    let place = |edge: usize, at: &str| {
+        format!(
+            "<Punkt_Objekt_TOP_Kante>{}{}</Punkt_Objekt_TOP_Kante>",
+            value("Abstand", at),
+            value("ID_TOP_Kante", &id("edge", edge))
+        )
+    };
+    let part = |edge: usize, to: &str| {
+        format!(
+            "<Bereich_Objekt_Teilbereich>{}{}{}</Bereich_Objekt_Teilbereich>",
+            value("Begrenzung_A", "0.000"),
+            value("Begrenzung_B", to),
+            value("ID_TOP_Kante", &id("edge", edge))
+        )
+    };
+    let flank = [
+        "<Fla_Schutz>".to_owned(),
+        number("0A"),
+        format!(
+            "<Fla_Schutz_Anforderer>{}{}</Fla_Schutz_Anforderer>{}</Fla_Schutz>",
+            value("Fahrt_Ueber", "rechts"),
+            value("ID_Anforderer_Element", &id("point", 0)),
+            guard(&id("point", 1), "rechts")
+        ),
+        format!(
+            "<Fla_Freimelde_Zuordnung>{}{}{}{}</Fla_Freimelde_Zuordnung>",
+            number("0B"),
+            value("Fla_Raum_Freimeldung", "true"),
+            value("ID_Fla_Schutz", "00000000-0000-4000-8000-00000000000A"),
+            value("ID_FMA_Anlage", &id("section", 3))
+        ),
+    ];
+    let derailers = (0..4).map(|edge| {
+        format!(
+            "<W_Kr_Gsp_Komponente>{}{}<Entgleisungsschuh/></W_Kr_Gsp_Komponente>",
+            number(&format!("1{edge}")),
+            place(edge, "100.000")
+        )
+    });
+    let profile = format!(
+        "<Geschwindigkeitsprofil>{}{}<Geschwindigkeitsprofil_Allg>{}</Geschwindigkeitsprofil_Allg></Geschwindigkeitsprofil>",
+        number("20"),
+        (0..4).map(|edge| part(edge, "5.000")).collect::<String>(),
+        value("Geschwindigkeit", "30")
+    );
+    let main = "<Zungenpaar><Stammgleis><Wert>links</Wert></Stammgleis></Zungenpaar>".to_owned();
+    let blades = format!(
+        "<Zungenpaar>{}{}{}</Zungenpaar>",
+        value("Geschwindigkeit_L", "60"),
+        value("Geschwindigkeit_R", "25"),
+        value("Stammgleis", "links")
+    );
+    let lock = |path: usize| {
+        format!(
+            "<Fstr_Abhaengigkeit>{}{}</Fstr_Abhaengigkeit>",
+            number("30"),
+            value("ID_Fstr_Fahrweg", &id("path", path))
+        )
+    };
+    let excluded = (
+        "<ID_Fstr_Fahrweg>".to_owned() + &format!("<Wert>{}<", id("path", 0)),
+        value("ID_Fstr_Ausschluss_Besonders", &id("route", 3)) + &format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 0)),
+    );
+    let belongs = |point: usize| format!("<ID_W_Kr_Gsp_Element><Wert>{}<", id("point", point));
+    vec![
+        ("flank", flank.concat(), none()),
+        ("derailers", derailers.collect(), none()),
+        ("limits", profile, none()),
+        ("blades", String::new(), (main.clone(), blades)),
+        ("curved", String::new(), (main, "<Zungenpaar/>".to_owned())),
+        ("a key lock", lock(0), none()),
+        ("excluded", String::new(), excluded),
+        ("one lever", String::new(), (belongs(1), belongs(0))),
+        ("by hand", String::new(), ("elektrisch_ferngestellt".to_owned(), "elektrisch_ortsgestellt".to_owned())),
+        ("auxiliary", String::new(), (">ZR<".to_owned(), ">ZH<".to_owned())),
+        ("a level crossing", String::new(), ("<Fstr_Zug>".to_owned(), "<Fstr_Zug><ID_BUE_Einschaltung/>".to_owned())),
+        ("undetected", String::new(), (format!("<Wert>{}<", id("track", 6)), "<Wert>none<".to_owned())),
+    ]
+}
+
 fn tell(name: &str, text: &str) {
-    let Ok(imported) = railml(name, text) else { return };
+    tell_of(name, railml(name, text).ok());
+}
+
+fn tell_of(name: &str, imported: Option<Imported>) {
+    let Some(imported) = imported else { return };
     let Ok(model) = imported.description.tracks() else { return };
     let differing = imported.report.lacking.iter().filter(|line| line.contains("second reading")).count();
     println!("second\t{name}\t{differing} differences");

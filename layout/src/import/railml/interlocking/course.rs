@@ -8,6 +8,7 @@ use crate::at::At;
 use crate::form::{Element, Position};
 use crate::graph::Way;
 use crate::import::search::{Found, Sought, search};
+use crate::import::way::{hold, path};
 
 /// The course of a route: the circuit in rear of its signal, its way, and what is to be confirmed.
 pub(super) struct Course {
@@ -117,25 +118,11 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn path(&self, way: &[(usize, Way)]) -> Vec<At<Element>> {
-        let made = way.iter().map(|(circuit, way)| {
-            let points = way
-                .passed
-                .iter()
-                .map(|passed| (self.station.points[passed.point].name.value.clone(), At::derived(passed.position)));
-            At::derived(Element { circuit: self.circuit(*circuit), points: points.collect() })
-        });
-        made.collect()
+        path(self.station, way)
     }
 
-    /// Has the first place of a path hold the points that it is not run over.
     pub(super) fn hold(&self, path: &mut [At<Element>], way: &[(usize, Way)], positions: &BTreeMap<usize, Position>) {
-        let run_over: BTreeSet<usize> =
-            way.iter().flat_map(|(_, way)| &way.passed).map(|passed| passed.point).collect();
-        for (point, position) in positions.iter().filter(|(point, _)| !run_over.contains(point)) {
-            if let Some(first) = path.first_mut() {
-                first.value.points.insert(self.station.points[*point].name.value.clone(), At::derived(*position));
-            }
-        }
+        hold(self.station, path, way, positions);
     }
 
     /// That no buffer stop stands on a way, and no machine of its points asks for what no layout holds.

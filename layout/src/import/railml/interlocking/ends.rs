@@ -5,28 +5,11 @@ use roxmltree::Node;
 use super::reader::Reader;
 use crate::form::Route;
 use crate::graph::Way;
-use crate::import::network::{Cut, Side};
+use crate::import::joints::{Near, near};
 use crate::import::railml::infrastructure::Spot;
 use crate::import::railml::xml::Xml;
 
-/// A joint so many metres in rear of a signal is at it. Beyond that, how far from its signal a route begins is remarked.
-pub(super) const NEAR: f64 = 1.0;
-
-/// A joint at most so many metres in rear of a signal may be the one that belongs to it, if the route's sections say so.
-const OFFSET: f64 = 20.0;
-
-/// A joint at a signal, for trains in one direction.
-struct Near {
-    joint: usize,
-    /// The circuit in rear of it.
-    rear: usize,
-    /// The circuit ahead; none at an end of the tracks.
-    ahead: Option<usize>,
-    /// How far from the signal it lies, in metres.
-    beside: f64,
-    /// Whether it lies in rear of the signal.
-    behind: bool,
-}
+pub(super) use crate::import::joints::NEAR;
 
 /// Where a route may begin.
 pub(super) struct Start {
@@ -119,51 +102,7 @@ impl<'a> Reader<'a, '_> {
         joints.first().map(|joint| (*joint, at))
     }
 
-    /// The first joint at or beyond a place for trains in this direction, and the last one in rear of it if it is near.
     fn joints_at(&self, spot: Spot, toward_end: bool) -> Vec<Near> {
-        let placed = self.placed;
-        let number = |name: &str| placed.joints.get(name).copied();
-        let mut found = Vec::new();
-        let (mut edge, mut toward_end, mut at) = (spot.edge, toward_end, spot.at);
-        let mut run = 0.0;
-        for step in 0..placed.network.edges.len() {
-            let cuts = placed.network.cuts.iter().enumerate().filter(|(_, cut)| cut.edge == edge);
-            // How far beyond the place a cut is.
-            let beyond = |cut: &Cut| if toward_end { cut.at - at } else { at - cut.at };
-            let areas = |cut: usize| {
-                let [before, after] = placed.divided.beside(cut);
-                if toward_end { (before, after) } else { (after, before) }
-            };
-            let slack = if step == 0 { -NEAR } else { 0.0 };
-            let ahead = cuts.clone().filter(|(_, cut)| beyond(cut) >= slack);
-            let ahead = ahead.min_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
-            let behind = cuts.filter(|(_, cut)| (-OFFSET..-NEAR).contains(&beyond(cut)));
-            let behind = behind.max_by(|(_, one), (_, other)| beyond(one).total_cmp(&beyond(other)));
-            if let Some((place, cut)) = behind.filter(|_| step == 0) {
-                if let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place)) {
-                    found.push(Near { joint, rear, ahead, beside: beyond(cut).abs(), behind: true });
-                }
-            }
-            if let Some((place, cut)) = ahead {
-                if let (Some(joint), (Some(rear), ahead)) = (number(&cut.name), areas(place)) {
-                    found.push(Near { joint, rear, ahead, beside: (run + beyond(cut)).abs(), behind: false });
-                }
-                break;
-            }
-            let side = if toward_end { Side::End } else { Side::Begin };
-            let length = placed.network.edges[edge].length;
-            run += if toward_end { length - at } else { at - placed.network.edges[edge].begin };
-            let Some((next, side)) = placed.divided.linked((edge, side)) else {
-                // An end of the tracks is one for a route, too.
-                let end = placed.divided.end_at((edge, side));
-                if let Some((Some(joint), rear)) = end.map(|(name, rear)| (number(name), rear)) {
-                    found.push(Near { joint, rear, ahead: None, beside: run, behind: false });
-                }
-                break;
-            };
-            (edge, toward_end) = (next, side == Side::Begin);
-            at = if toward_end { 0.0 } else { placed.network.edges[edge].length };
-        }
-        found
+        near(&self.placed.network, &self.placed.divided, &self.placed.joints, (spot.edge, spot.at), toward_end)
     }
 }

@@ -1,0 +1,83 @@
+//! What the file asks of a route that no layout holds: then the route is no route of a layout.
+
+use std::collections::BTreeSet;
+
+use roxmltree::Node;
+
+use super::Meant;
+use super::plan::{Plan, identity, metres, text};
+use super::run::Run;
+
+/// Objects that name a route or its path and ask nothing of it.
+const NO_CONDITION: &str = " Anhang Bearbeitungsvermerk Fstr_Aneinander_Zuordnung Fstr_DWeg Fstr_Fahrweg Fstr_Nichthaltfall \
+    Fstr_Rangier_Fla_Zuordnung Fstr_Signalisierung Fstr_Umfahrpunkt Fstr_Zug_Rangier ";
+
+/// What this reading knows in a route and its path; anything else may be a condition.
+const KNOWN: [(&str, &str); 4] = [
+    ("", " Fstr_Zug_Rangier_Allg ID_Fstr_Ausschluss_Besonders ID_Fstr_Fahrweg Fstr_Zug "),
+    ("Fstr_Zug", " Automatische_Einstellung Fstr_Vsigabstand_Verkuerzt Fstr_Zug_Art Fstr_Zug_DWeg "),
+    ("Fstr_Zug_Rangier_Allg", " F_Bedienung Fstr_Bedienstring Fstr_Reihenfolge Fstr_V "),
+    ("path", " Bereich_Objekt_Teilbereich Fstr_V_Hg ID_Start ID_Ziel Start_Signal_Charakter "),
+];
+
+/// What every object may have.
+const OF_ALL: &str = " Identitaet Basis_Objekt_Allg ID_Bearbeitungsvermerk ID_Oertlichkeit_Ausgabe Objektreferenzen ";
+
+/// The first thing that is asked and cannot be held.
+pub(super) fn more<'a>(plan: &Plan<'a>, meant: &Meant<'a>, run: &Run, (begin, end): (f64, f64)) -> Option<String> {
+    for (of, known) in KNOWN {
+        let node = match of {
+            "path" => Some(meant.course),
+            _ if meant.node == meant.course => None,
+            "" => Some(meant.node),
+            _ => meant.node.children().find(|child| child.has_tag_name(of)),
+        };
+        let inside = node.into_iter().flat_map(|node| node.children().filter(Node::is_element));
+        let is_new = |name: &&str| !known.contains(&format!(" {name} ")) && !OF_ALL.contains(&format!(" {name} "));
+        if let Some(name) = inside.map(|child| child.tag_name().name()).find(is_new) {
+            return Some(format!("the file has {name} of it, which may be a condition"));
+        }
+    }
+    let kind = text(meant.node, "Fstr_Zug/Fstr_Zug_Art").filter(|kind| !["ZR", "ZU", "ZT", "ZTU"].contains(kind));
+    if let Some(kind) = kind {
+        return Some(format!("in the file it is of the kind {kind}"));
+    }
+    let own: BTreeSet<String> = [meant.node, meant.course].into_iter().filter_map(identity).collect();
+    for object in plan.all() {
+        let kind = object.tag_name().name();
+        if NO_CONDITION.contains(&format!(" {kind} ")) || kind.starts_with("ZL") || kind.starts_with("Bedien_") {
+            continue;
+        }
+        let mut names = object.descendants().filter(|node| node.tag_name().name().starts_with("ID_"));
+        if names.any(|node| text(node, "").is_some_and(|id| own.contains(&id.to_lowercase()))) {
+            return Some(format!("the file has a {kind} about it, which may be a condition"));
+        }
+    }
+    for part in plan.kind("W_Kr_Gsp_Komponente") {
+        let has = |name: &str| part.children().find(|child| child.has_tag_name(name));
+        let crossing = has("Kreuzung");
+        let is_fixed =
+            crossing.is_some_and(|one| metres(one, "Elektrischer_Antrieb_Anzahl").is_none_or(|count| count == 0.0));
+        if has("Zungenpaar").is_none() && !is_fixed && run.meets(part, begin, end) {
+            return Some("in the file something stands on its way that must be moved off".to_owned());
+        }
+    }
+    for (blades, _, at) in run.legs(plan) {
+        let Some(blades) = blades.filter(|_| (begin..end).contains(&at)) else { continue };
+        let Some(element) = plan.at(blades, "ID_W_Kr_Gsp_Element") else {
+            return Some("in the file a point of it belongs to no element".to_owned());
+        };
+        let by_hand = text(element, "W_Kr_Gsp_Element_Allg/W_Kr_Gsp_Stellart");
+        if let Some(how) = by_hand.filter(|how| !["elektrisch_ferngestellt", "mechanisch_ferngestellt"].contains(how)) {
+            return Some(format!("in the file {} is {how}", plan.call(element)));
+        }
+        let fixed = text(element, "Weiche_Element/Weiche_Betriebsart").is_some_and(|how| how != "Betrieb");
+        let chained = element.children().any(|child| child.has_tag_name("ID_Weichenlaufkette"));
+        let others =
+            plan.blades.values().filter(|other| plan.at(**other, "ID_W_Kr_Gsp_Element") == Some(element)).count();
+        if fixed || chained || others > 1 {
+            return Some(format!("in the file {} is kept, or moves with others", plan.call(element)));
+        }
+    }
+    None
+}

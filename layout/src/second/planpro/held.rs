@@ -1,0 +1,136 @@
+//! What the file asks a route to hold besides its path: its overlap and the flank of its points.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use roxmltree::Node;
+
+use super::circuit;
+use super::plan::{Plan, identity, metres, parts, text};
+use super::run::{Run, position};
+use crate::form::Position;
+use crate::model::{Model, Route};
+
+/// The overlap of the file is held by the layout, for its time.
+pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: Node<'a, 'a>, run: &Run) -> Vec<String> {
+    let Some(course) = plan.at(node, "ID_Fstr_Fahrweg") else {
+        return vec!["its overlap has no path in the file".to_owned()];
+    };
+    let parts = parts(course);
+    let own: BTreeSet<&str> = route.circuits().chain([route.entry]).map(|number| circuit(model, number)).collect();
+    let have: BTreeSet<&str> = route.overlap.iter().map(|number| circuit(model, *number)).collect();
+    let all = plan.sections();
+    let covers = |(_, section): &&(String, Vec<(String, f64, f64)>)| {
+        section.iter().any(|(edge, low, high)| {
+            parts.iter().any(|(on, from, to)| on == edge && high.min(*to) - low.max(*from) > 1.0)
+        })
+    };
+    let mut wanted: BTreeSet<String> = all.iter().filter(covers).map(|(name, _)| name.clone()).collect();
+    for proved in node.children().filter(|child| child.has_tag_name("ID_FMA_Anlage_Freimeldung")) {
+        let section = plan.at(proved, "").and_then(|section| plan.at(section, "ID_Gleis_Abschnitt"));
+        wanted.extend(section.map(|section| plan.call(section)));
+    }
+    let mut differing = Vec::new();
+    let missing: Vec<&str> =
+        wanted.iter().map(String::as_str).filter(|name| !own.contains(name) && !have.contains(name)).collect();
+    if !missing.is_empty() {
+        differing.push(format!("its overlap lacks {}, which the file has in it", missing.join(", ")));
+    }
+    let seconds = metres(node, "Fstr_DWeg_Spezifisch/Aufloesung_Verzoegerung").unwrap_or(0.0);
+    let stay = f64::from(model.values.ms(route.stay));
+    if !have.is_empty() && stay + 0.5 < seconds * 1000.0 {
+        differing.push(format!("its overlap is given up after {stay} ms, and in the file after {seconds} s"));
+    }
+    // Where the overlap leaves a point by a leg, the point is held for that leg.
+    let held: BTreeMap<&str, Position> = route
+        .overlap_positions
+        .iter()
+        .filter_map(|(point, at)| Some((model.points.get(*point)?.name.as_str(), *at)))
+        .collect();
+    for (node, blades) in &plan.blades {
+        let touched = |word: &str| {
+            plan.edges.iter().any(|(id, edge)| {
+                [(0, 0.0), (1, edge.length)].into_iter().any(|(end, at)| {
+                    edge.nodes[end] == *node
+                        && edge.joined[end] == word
+                        && parts.iter().any(|(on, from, to)| on == id && (from - 0.5..=to + 0.5).contains(&at))
+                })
+            })
+        };
+        let legs = [touched("Links"), touched("Rechts")];
+        if !touched("Spitze") || legs[0] == legs[1] || run.nodes(plan).iter().any(|(passed, ..)| passed == node) {
+            continue;
+        }
+        let element = plan.at(*blades, "ID_W_Kr_Gsp_Element");
+        let name = element.map(|element| plan.call(element)).unwrap_or_default();
+        let wanted = position(Some(*blades), element, legs[0]);
+        if held.get(name.as_str()) != Some(&wanted) {
+            differing.push(format!("its overlap runs over {name} {wanted:?}, and the layout does not hold it so"));
+        }
+    }
+    differing
+}
+
+/// The points that the file has protect the flank of a route are held so, and the sections that it has proved clear are.
+pub(super) fn flank(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, (begin, end): (f64, f64)) -> Vec<String> {
+    let mut asked: Vec<(String, Position)> = Vec::new();
+    let mut clear: Vec<String> = Vec::new();
+    let mut differing = Vec::new();
+    for (blades, is_left, at) in run.legs(plan) {
+        let element = blades.and_then(|blades| plan.at(blades, "ID_W_Kr_Gsp_Element")).and_then(identity);
+        let Some(element) = element.filter(|_| (begin..end).contains(&at)) else { continue };
+        let side = if is_left { "links" } else { "rechts" };
+        let own = |node: &Node<'_, '_>| {
+            let by = text(*node, "Fla_Schutz_Anforderer/ID_Anforderer_Element");
+            by.is_some_and(|by| by.eq_ignore_ascii_case(&element))
+                && text(*node, "Fla_Schutz_Anforderer/Fahrt_Ueber") == Some(side)
+        };
+        let mut open: Vec<Node<'_, '_>> = plan.kind("Fla_Schutz").filter(own).collect();
+        let mut seen = 0;
+        while let Some(node) = open.pop() {
+            seen += 1;
+            if seen > 64 {
+                return vec!["in the file its flank protection is passed on in a ring".to_owned()];
+            }
+            for next in ["Fla_Schutz_Weitergabe/ID_Fla_Weitergabe_L", "Fla_Schutz_Weitergabe/ID_Fla_Weitergabe_R"] {
+                open.extend(plan.at(node, next));
+            }
+            if text(node, "Fla_Schutz_W_Gsp/ID_Fla_W_Gsp_Element").is_some() {
+                let element = plan.at(node, "Fla_Schutz_W_Gsp/ID_Fla_W_Gsp_Element");
+                let is_of = |blades: &&Node<'_, '_>| plan.at(**blades, "ID_W_Kr_Gsp_Element") == element;
+                let blades = plan.blades.values().find(is_of).copied();
+                let is_left = text(node, "Fla_Schutz_W_Gsp/Fla_W_Lage") == Some("links");
+                let name = element.map(|element| plan.call(element)).unwrap_or_default();
+                asked.push((name, position(blades, element, is_left)));
+            }
+            let id = identity(node);
+            for proved in plan.kind("Fla_Freimelde_Zuordnung") {
+                let own = text(proved, "ID_Fla_Schutz").map(str::to_lowercase) == id;
+                if own && text(proved, "Fla_Raum_Freimeldung") != Some("false") {
+                    let section =
+                        plan.at(proved, "ID_FMA_Anlage").and_then(|section| plan.at(section, "ID_Gleis_Abschnitt"));
+                    clear.extend(section.map(|section| plan.call(section)));
+                }
+            }
+        }
+    }
+    let held: BTreeMap<&str, Position> =
+        route.positions().filter_map(|(point, at)| Some((model.points.get(point)?.name.as_str(), at))).collect();
+    for (name, wanted) in asked {
+        if held.get(name.as_str()) != Some(&wanted) {
+            differing.push(format!(
+                "its flank is protected by {name} {wanted:?} in the file, and the layout does not hold it so"
+            ));
+        }
+    }
+    let proved: BTreeSet<&str> = route
+        .beside()
+        .into_iter()
+        .chain(route.circuits())
+        .chain([route.entry])
+        .map(|number| circuit(model, number))
+        .collect();
+    for name in clear.iter().filter(|name| !proved.contains(name.as_str())) {
+        differing.push(format!("the file has {name} proved clear for its flank, and the layout does not"));
+    }
+    differing
+}
