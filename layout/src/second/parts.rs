@@ -284,7 +284,7 @@ fn beyond_branch<'b>(file: &'b File<'b>, switch: &str, side: &str) -> Option<Vec
 }
 
 /// The joints at the border of the circuit that the leg of a point leads to in the layout.
-fn beyond_leg(model: &Model, point: usize, leg: usize) -> BTreeSet<String> {
+pub(super) fn beyond_leg(model: &Model, point: usize, leg: usize) -> BTreeSet<String> {
     let graph = &model.graph;
     let mut found = BTreeSet::new();
     let Some(track) = graph.of_point(point) else { return found };

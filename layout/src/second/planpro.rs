@@ -5,6 +5,7 @@
 
 mod asked;
 mod held;
+mod legs;
 mod plan;
 mod run;
 
@@ -33,6 +34,7 @@ pub(super) fn differences(document: &Document<'_>, model: &Model, source: &Sourc
     let plan = Plan::of(document);
     let mut found = Vec::new();
     let routes = meant(&plan);
+    let turned = legs::apart(&plan, model);
     for route in &model.routes {
         let mut differs = |node: Option<Node<'_, '_>>, what: String| {
             let place = node.and_then(|node| source.place(&(node.range().start..node.range().start + 1)));
@@ -43,13 +45,15 @@ pub(super) fn differences(document: &Document<'_>, model: &Model, source: &Sourc
                 for what in of_route(&plan, model, route, one) {
                     differs(Some(one.node), what);
                 }
+                for what in route.positions().filter_map(|(point, _)| turned.get(&point)) {
+                    differs(Some(one.node), what.clone());
+                }
             }
             Some(several) => differs(None, format!("the file has {} routes of this name", several.len())),
             None => differs(None, "the file has no route of this name".to_owned()),
         }
     }
     found.extend(exclusions(&plan, model, &routes));
-    found.extend(lengths(&plan, model));
     found
 }
 
@@ -134,6 +138,23 @@ fn sections(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, differing:
     let own: Vec<&str> = route.circuits().map(|number| circuit(model, number)).collect();
     if own != theirs {
         differing.push(format!("its path is {}, and that of the file {}", own.join(", "), theirs.join(", ")));
+    }
+    // A stop is not farther than the train runs.
+    let mut longer = |number: usize, most: f64| {
+        let length = model.circuits.get(number).map_or(0.0, |circuit| f64::from(circuit.length.0));
+        if length > most + 1.0 {
+            differing
+                .push(format!("circuit {} is {length} m long, and in the file {most:.1} m", circuit(model, number)));
+        }
+    };
+    for number in route.circuits() {
+        let run: f64 =
+            within.iter().filter(|(name, ..)| name == circuit(model, number)).map(|(_, from, to)| to - from).sum();
+        longer(number, run);
+    }
+    for number in route.overlap.iter().copied().chain([route.entry]) {
+        let all = all.iter().filter(|(name, _)| name == circuit(model, number)).flat_map(|(_, parts)| parts);
+        longer(number, all.map(|(_, from, to)| to - from).sum());
     }
     // A train that waits at the signal stands in rear of the border.
     let rear = names(begin - 2.5, begin);
@@ -245,21 +266,6 @@ fn exclusions<'a>(plan: &Plan<'a>, model: &Model, routes: &BTreeMap<String, Vec<
                 let what = format!("the file excludes {}, and nothing in the layout does", model.routes[other].name);
                 found.push(Difference { route: Some(model.routes[one].name.clone()), what, place: None });
             }
-        }
-    }
-    found
-}
-
-/// Circuits that are longer than all that their section covers.
-fn lengths(plan: &Plan<'_>, model: &Model) -> Vec<Difference> {
-    let mut found = Vec::new();
-    for (name, parts) in plan.sections() {
-        let length: f64 = parts.iter().map(|(_, from, to)| to - from).sum();
-        let longer =
-            |circuit: &&crate::model::Circuit| circuit.name == name && f64::from(circuit.length.0) > length + 1.0;
-        if let Some(circuit) = model.circuits.iter().find(longer) {
-            let what = format!("circuit {name} is {} m long, and in the file {length:.1} m", circuit.length.0);
-            found.push(Difference { route: None, what, place: None });
         }
     }
     found

@@ -84,7 +84,10 @@ pub fn write<'a>(file: &File<'a>, mut tracks: Tracks<'a>, station: &mut Station,
                     names[area] = sections[*section].name.clone();
                     found.insert(sections[*section].id.clone(), area);
                 }
-                Err(why) => drop(unsound.insert(area, why.clone())),
+                Err(why) => {
+                    report.lacking.push(format!("circuit {}: {why}; no route is taken over it", names[area]));
+                    unsound.insert(area, why.clone());
+                }
             }
         }
         for section in sections.iter().filter(|section| !found.contains_key(&section.id)) {

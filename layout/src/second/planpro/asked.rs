@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use roxmltree::Node;
 
 use super::Meant;
-use super::plan::{Plan, identity, metres, text};
+use super::plan::{Plan, identity, text};
 use super::run::Run;
 
 /// Objects that name a route or its path and ask nothing of it.
@@ -53,31 +53,25 @@ pub(super) fn more<'a>(plan: &Plan<'a>, meant: &Meant<'a>, run: &Run, (begin, en
             return Some(format!("the file has a {kind} about it, which may be a condition"));
         }
     }
-    for part in plan.kind("W_Kr_Gsp_Komponente") {
-        let has = |name: &str| part.children().find(|child| child.has_tag_name(name));
-        let crossing = has("Kreuzung");
-        let is_fixed =
-            crossing.is_some_and(|one| metres(one, "Elektrischer_Antrieb_Anzahl").is_none_or(|count| count == 0.0));
-        if has("Zungenpaar").is_none() && !is_fixed && run.meets(part, begin, end) {
-            return Some("in the file something stands on its way that must be moved off".to_owned());
-        }
+    if plan.movable().any(|part| run.meets(part, begin, end)) {
+        return Some("in the file something stands on its way that must be moved off".to_owned());
     }
-    for (blades, _, at) in run.legs(plan) {
-        let Some(blades) = blades.filter(|_| (begin..end).contains(&at)) else { continue };
-        let Some(element) = plan.at(blades, "ID_W_Kr_Gsp_Element") else {
-            return Some("in the file a point of it belongs to no element".to_owned());
-        };
-        let by_hand = text(element, "W_Kr_Gsp_Element_Allg/W_Kr_Gsp_Stellart");
-        if let Some(how) = by_hand.filter(|how| !["elektrisch_ferngestellt", "mechanisch_ferngestellt"].contains(how)) {
-            return Some(format!("in the file {} is {how}", plan.call(element)));
-        }
-        let fixed = text(element, "Weiche_Element/Weiche_Betriebsart").is_some_and(|how| how != "Betrieb");
-        let chained = element.children().any(|child| child.has_tag_name("ID_Weichenlaufkette"));
-        let others =
-            plan.blades.values().filter(|other| plan.at(**other, "ID_W_Kr_Gsp_Element") == Some(element)).count();
-        if fixed || chained || others > 1 {
-            return Some(format!("in the file {} is kept, or moves with others", plan.call(element)));
-        }
+    let points = run.legs(plan).into_iter().filter(|(.., at)| (begin..end).contains(at));
+    points.filter_map(|(blades, ..)| blades).find_map(|blades| unset(plan, blades))
+}
+
+/// Why a point cannot be set from here, or not alone.
+pub(super) fn unset<'a>(plan: &Plan<'a>, blades: Node<'a, 'a>) -> Option<String> {
+    let Some(element) = plan.at(blades, "ID_W_Kr_Gsp_Element") else {
+        return Some("in the file a point of it belongs to no element".to_owned());
+    };
+    let name = plan.call(element);
+    let drive = text(element, "W_Kr_Gsp_Element_Allg/W_Kr_Gsp_Stellart");
+    if let Some(drive) = drive.filter(|drive| !["elektrisch_ferngestellt", "mechanisch_ferngestellt"].contains(drive)) {
+        return Some(format!("in the file {name} is {drive}"));
     }
-    None
+    let fixed = text(element, "Weiche_Element/Weiche_Betriebsart").is_some_and(|how| how != "Betrieb");
+    let chained = element.children().any(|child| child.has_tag_name("ID_Weichenlaufkette"));
+    let others = plan.blades.values().filter(|other| plan.at(**other, "ID_W_Kr_Gsp_Element") == Some(element)).count();
+    (fixed || chained || others > 1).then(|| format!("in the file {name} is kept, or moves with others"))
 }

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
+use super::asked::unset;
 use super::circuit;
-use super::plan::{Plan, identity, metres, parts, text};
+use super::plan::{Plan, identity, is_on, metres, parts, text};
 use super::run::{Run, position};
 use crate::form::Position;
 use crate::model::{Model, Route};
@@ -40,6 +41,9 @@ pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: N
     if !have.is_empty() && stay + 0.5 < seconds * 1000.0 {
         differing.push(format!("its overlap is given up after {stay} ms, and in the file after {seconds} s"));
     }
+    if plan.movable().any(|part| is_on(part, &parts)) {
+        differing.push("in the file something stands on its overlap that must be moved off".to_owned());
+    }
     // Where the overlap leaves a point by a leg, the point is held for that leg.
     let held: BTreeMap<&str, Position> = route
         .overlap_positions
@@ -60,6 +64,7 @@ pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: N
         if !touched("Spitze") || legs[0] == legs[1] || run.nodes(plan).iter().any(|(passed, ..)| passed == node) {
             continue;
         }
+        differing.extend(unset(plan, *blades));
         let element = plan.at(*blades, "ID_W_Kr_Gsp_Element");
         let name = element.map(|element| plan.call(element)).unwrap_or_default();
         let wanted = position(Some(*blades), element, legs[0]);
@@ -100,6 +105,7 @@ pub(super) fn flank(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, (b
                 let blades = plan.blades.values().find(is_of).copied();
                 let is_left = text(node, "Fla_Schutz_W_Gsp/Fla_W_Lage") == Some("links");
                 let name = element.map(|element| plan.call(element)).unwrap_or_default();
+                differing.extend(blades.and_then(|blades| unset(plan, blades)));
                 asked.push((name, position(blades, element, is_left)));
             }
             let id = identity(node);

@@ -94,6 +94,15 @@ impl<'a> Plan<'a> {
         self.objects.iter().copied().filter(move |node| node.has_tag_name(name))
     }
 
+    /// What must be moved off the track: what is neither a pair of blades nor a crossing that stays as it is.
+    pub(super) fn movable(&self) -> impl Iterator<Item = Node<'a, 'a>> + '_ {
+        self.kind("W_Kr_Gsp_Komponente").filter(|node| {
+            let has = |name: &str| node.children().find(|child| child.has_tag_name(name));
+            let stays = |one| metres(one, "Elektrischer_Antrieb_Anzahl").is_none_or(|count| count == 0.0);
+            has("Zungenpaar").is_none() && !has("Kreuzung").is_some_and(stays)
+        })
+    }
+
     /// The object with this identity.
     pub(super) fn object(&self, identity: &str) -> Option<Node<'a, 'a>> {
         self.by_identity.get(identity).copied()
@@ -135,6 +144,17 @@ pub(super) fn parts(node: Node<'_, '_>) -> Vec<Part> {
         Some((text(part, "ID_TOP_Kante")?.to_lowercase(), one.min(other), one.max(other)))
     });
     read.collect()
+}
+
+/// Whether an object stands on one of these parts.
+pub(super) fn is_on(node: Node<'_, '_>, parts: &[Part]) -> bool {
+    let mut places = node.children().filter(|child| child.has_tag_name("Punkt_Objekt_TOP_Kante"));
+    places.any(|place| {
+        let there = text(place, "ID_TOP_Kante").map(str::to_lowercase).zip(metres(place, "Abstand"));
+        there.is_some_and(|(edge, at)| {
+            parts.iter().any(|(on, from, to)| *on == edge && (from - 0.5..=to + 0.5).contains(&at))
+        })
+    })
 }
 
 /// The begin of an identity, in small letters.

@@ -210,14 +210,11 @@ impl Run {
 
     /// The points that the train runs over, by name, with the position in which it needs them and metres from the signal.
     pub(super) fn forks(&self, plan: &Plan<'_>) -> Vec<(String, Position, f64)> {
-        let named = self.nodes(plan).into_iter().map(|(node, is_left, at)| {
-            let blades = plan.blades.get(&node).copied();
-            let element = blades.and_then(|blades| plan.at(blades, "ID_W_Kr_Gsp_Element"));
-            let knot = || plan.object(&node);
-            let name = element.or_else(knot).map_or_else(|| node.clone(), |one| plan.call(one));
+        let all = self.nodes(plan).into_iter().map(|(node, is_left, at)| {
+            let (name, blades, element) = named(plan, &node);
             (name, position(blades, element, is_left), at)
         });
-        named.collect()
+        all.collect()
     }
 
     /// The nodes of three edges that the train runs over, by the left leg or the right one.
@@ -237,6 +234,14 @@ impl Run {
         }
         found
     }
+}
+
+/// What the point at a node is called, its blades and its element.
+pub(super) fn named<'a>(plan: &Plan<'a>, node: &str) -> (String, Option<Node<'a, 'a>>, Option<Node<'a, 'a>>) {
+    let blades = plan.blades.get(node).copied();
+    let element = blades.and_then(|blades| plan.at(blades, "ID_W_Kr_Gsp_Element"));
+    let name = element.or_else(|| plan.object(node)).map_or_else(|| node.to_owned(), |one| plan.call(one));
+    (name, blades, element)
 }
 
 /// The position of a point for a leg: normal is the main track's, or the preferred one, or the left.

@@ -191,19 +191,24 @@ fn of_planpro() {
     {
         tell_of("planpro diamond", planpro("", &support::planpro::written(&diamond.station, &Tool::PLAIN)).ok());
     }
-    let plain = support::planpro::written(&station(&shape(3, true)), &Tool::PLAIN);
-    for (name, objects, (old, new)) in asking() {
-        let text =
-            plain.replacen("</Container></LST_Zustand_Ziel>", &format!("{objects}</Container></LST_Zustand_Ziel>"), 1);
-        tell_of(&format!("planpro {name}"), planpro("", &text.replacen(&old, &new, 1)).ok());
+    let mut made = station(&shape(3, true));
+    made.times.stay_ms = Some(At::derived(150_000));
+    let plain = support::planpro::written(&made, &Tool::PLAIN);
+    let end = "</Container></LST_Zustand_Ziel>";
+    for (name, objects, words) in asking() {
+        let more = plain.replacen(end, &format!("{objects}{end}"), 1);
+        let text = words.iter().fold(more, |text, (old, new)| text.replacen(old, new, 1));
+        tell_of(&format!("planpro {name}"), planpro("", &text).ok());
     }
 }
 
-/// Objects that are added to a station, and words that stand for others.
-fn asking() -> Vec<(&'static str, String, (String, String))> {
+/// A change of a station: its name, objects that are added, and words that stand for others.
+type Asking = (&'static str, String, Vec<(String, String)>);
+
+/// Stations that ask for more.
+fn asking() -> Vec<Asking> {
     let value = |name: &str, text: &str| format!("<{name}><Wert>{text}</Wert></{name}>");
     let number = |last: &str| value("Identitaet", &format!("00000000-0000-4000-8000-0000000000{last}"));
-    let none = || (String::new(), String::new());
     let guard = |id_of: &str, side: &str| {
         format!(
             "<Fla_Schutz_W_Gsp>{}{}</Fla_Schutz_W_Gsp>",
@@ -254,7 +259,7 @@ fn asking() -> Vec<(&'static str, String, (String, String))> {
         "<Geschwindigkeitsprofil>{}{}<Geschwindigkeitsprofil_Allg>{}</Geschwindigkeitsprofil_Allg></Geschwindigkeitsprofil>",
         number("20"),
         (0..4).map(|edge| part(edge, "5.000")).collect::<String>(),
-        value("Geschwindigkeit", "30")
+        value("Geschwindigkeit", "15")
     );
     let main = "<Zungenpaar><Stammgleis><Wert>links</Wert></Stammgleis></Zungenpaar>".to_owned();
     let blades = format!(
@@ -271,23 +276,29 @@ fn asking() -> Vec<(&'static str, String, (String, String))> {
         )
     };
     let excluded = (
-        "<ID_Fstr_Fahrweg>".to_owned() + &format!("<Wert>{}<", id("path", 0)),
-        value("ID_Fstr_Ausschluss_Besonders", &id("route", 3)) + &format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 0)),
+        format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 1)),
+        value("ID_Fstr_Ausschluss_Besonders", &id("route", 9)) + &format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 1)),
     );
     let belongs = |point: usize| format!("<ID_W_Kr_Gsp_Element><Wert>{}<", id("point", point));
+    let path = |number: usize| format!("<Fstr_Fahrweg>{}", value("Identitaet", &id("path", number)));
+    let slower = (path(4), path(4) + &value("Fstr_V_Hg", "45"));
     vec![
-        ("flank", flank.concat(), none()),
-        ("derailers", derailers.collect(), none()),
-        ("limits", profile, none()),
-        ("blades", String::new(), (main.clone(), blades)),
-        ("curved", String::new(), (main, "<Zungenpaar/>".to_owned())),
-        ("a key lock", lock(0), none()),
-        ("excluded", String::new(), excluded),
-        ("one lever", String::new(), (belongs(1), belongs(0))),
-        ("by hand", String::new(), ("elektrisch_ferngestellt".to_owned(), "elektrisch_ortsgestellt".to_owned())),
-        ("auxiliary", String::new(), (">ZR<".to_owned(), ">ZH<".to_owned())),
-        ("a level crossing", String::new(), ("<Fstr_Zug>".to_owned(), "<Fstr_Zug><ID_BUE_Einschaltung/>".to_owned())),
-        ("undetected", String::new(), (format!("<Wert>{}<", id("track", 6)), "<Wert>none<".to_owned())),
+        ("flank", flank.concat(), vec![]),
+        ("derailers", derailers.collect(), vec![]),
+        ("limits", profile, vec![]),
+        ("blades", String::new(), vec![(main.clone(), blades), slower]),
+        ("curved", String::new(), vec![(main, "<Zungenpaar/>".to_owned())]),
+        ("a key lock", lock(0), vec![]),
+        ("excluded", String::new(), vec![excluded]),
+        ("one lever", String::new(), vec![(belongs(1), belongs(0))]),
+        ("by hand", String::new(), vec![("elektrisch_ferngestellt".to_owned(), "elektrisch_ortsgestellt".to_owned())]),
+        ("auxiliary", String::new(), vec![(">ZR<".to_owned(), ">ZH<".to_owned())]),
+        (
+            "a level crossing",
+            String::new(),
+            vec![("<Fstr_Zug>".to_owned(), "<Fstr_Zug><ID_BUE_Einschaltung/>".to_owned())],
+        ),
+        ("undetected", String::new(), vec![(format!("<Wert>{}<", id("track", 6)), "<Wert>none<".to_owned())]),
     ]
 }
 
