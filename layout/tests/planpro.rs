@@ -545,3 +545,37 @@ fn tracks_that_cross_are_one_circuit() {
     assert!(imported.report.lacking.iter().any(|line| line.contains("in 2 parts")), "{}", imported.report);
     assert!(found(&imported).unwrap().is_empty(), "{}", imported.report);
 }
+
+#[test]
+fn no_file_makes_the_import_stop() {
+    let words =
+        prop::sample::select(vec!["", "-1", "0.000", "1e9", "NaN", "99999.999", "in", "Spitze", "<x/>", "none"]);
+    let edits = prop::collection::vec((any::<Index>(), words), 1..8);
+    let text = written(&small(), &Tool::PLAIN);
+    let values: Vec<(usize, usize)> = text
+        .match_indices("<Wert>")
+        .map(|(at, word)| at + word.len())
+        .filter_map(|from| Some((from, from + text[from..].find("</Wert>")?)))
+        .collect();
+    let cases = (edits, any::<Option<(Index, Index)>>());
+    let result = runner().run(&cases, |(edits, exchange)| {
+        let mut places: Vec<((usize, usize), String)> =
+            edits.into_iter().map(|(index, word)| (values[index.index(values.len())], word.to_owned())).collect();
+        if let Some((one, other)) = exchange {
+            let (from, to) = values[other.index(values.len())];
+            places.push((values[one.index(values.len())], text[from..to].to_owned()));
+        }
+        places.sort();
+        places.dedup_by_key(|(place, _)| *place);
+        let mut edited = text.clone();
+        for ((from, to), word) in places.into_iter().rev() {
+            edited.replace_range(from..to, &word);
+        }
+        if let Ok(imported) = planpro("station.ppxml", &edited) {
+            let _ = imported.description.tracks();
+            let _ = imported.description.check();
+        }
+        Ok(())
+    });
+    result.unwrap_or_else(|error| panic!("{error}"));
+}

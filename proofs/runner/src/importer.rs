@@ -20,6 +20,21 @@ pub struct Importer {
     replace: String,
 }
 
+/// The forms of files that stations are imported from.
+pub const FORMS: [&str; 2] = ["railml", "planpro"];
+
+impl Importer {
+    /// The forms whose import it changes.
+    pub fn forms(&self) -> &'static [&'static str] {
+        let [railml, planpro] = FORMS.each_ref().map(|form| self.file.starts_with(&format!("import/{form}/")));
+        match (railml, planpro) {
+            (true, _) => &FORMS[..1],
+            (_, true) => &FORMS[1..],
+            _ => &FORMS,
+        }
+    }
+}
+
 #[derive(Deserialize)]
 struct File {
     mutant: Vec<Importer>,

@@ -2,9 +2,9 @@
 
 use crate::old_rules::{Program, Programs};
 use crate::pool::in_parallel;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-pub use crate::importer::{Importer, list};
+pub use crate::importer::{FORMS, Importer, list};
 
 /// What became of a wrong importer.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,33 +17,44 @@ pub struct Tried {
     pub found_out: usize,
 }
 
-/// The routes of the importer with these mutants: lines of what each is, holds and excludes.
+/// The lines of the right importer, for each form of file.
+pub type Right = BTreeMap<&'static str, BTreeSet<String>>;
+
+/// What the right importer makes of each form.
 ///
 /// # Errors
 /// The program fails.
-pub fn routes(programs: &Programs, mutants: &[&str]) -> Result<BTreeSet<String>, String> {
-    let output = programs.with(Program::Importers, mutants)?.output().map_err(|error| error.to_string())?;
+pub fn right(programs: &Programs) -> Result<Right, String> {
+    FORMS.iter().map(|form| Ok((*form, routes(programs, &[], &[form])?))).collect()
+}
+
+/// The routes of files in these forms by the importer with these mutants: lines of what each is, holds and excludes.
+fn routes(programs: &Programs, mutants: &[&str], forms: &[&str]) -> Result<BTreeSet<String>, String> {
+    let output = programs.with(Program::Importers, mutants)?.args(forms).output().map_err(|error| error.to_string())?;
     if !output.status.success() {
         return Err(format!("{mutants:?}: {}: {}", output.status, String::from_utf8_lossy(&output.stderr)));
     }
     Ok(String::from_utf8_lossy(&output.stdout).lines().map(ToOwned::to_owned).collect())
 }
 
-/// Holds each wrong importer against the right one, on all cores. In the order of `all`.
+/// Holds each wrong importer against the right one, on all cores, in the forms that it reads. In the order of `all`.
 ///
 /// # Errors
 /// The program fails.
-pub fn all_tried(programs: &Programs, all: &[Importer], right: &BTreeSet<String>) -> Result<Vec<Tried>, String> {
+pub fn all_tried(programs: &Programs, all: &[Importer], right: &Right) -> Result<Vec<Tried>, String> {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    in_parallel(jobs, all.len(), |number| tried(programs, &all[number].name, right)).into_iter().collect()
+    in_parallel(jobs, all.len(), |number| tried(programs, &all[number], right)).into_iter().collect()
 }
 
 /// Holds a wrong importer against the right one.
 ///
 /// # Errors
 /// The program fails.
-fn tried(programs: &Programs, mutant: &str, right: &BTreeSet<String>) -> Result<Tried, String> {
-    let found = routes(programs, &[mutant])?;
+fn tried(programs: &Programs, mutant: &Importer, right: &Right) -> Result<Tried, String> {
+    let forms = mutant.forms();
+    let found = routes(programs, &[&mutant.name], forms)?;
+    let right: BTreeSet<String> = forms.iter().filter_map(|form| right.get(form)).flatten().cloned().collect();
+    let right = &right;
     let is_route = |line: &&String| line.starts_with("route\t");
     // A station and a route of it.
     let named = |line: &str, field: usize| -> Option<(String, String)> {
@@ -57,10 +68,13 @@ fn tried(programs: &Programs, mutant: &str, right: &BTreeSet<String>) -> Result<
         Some("excludes") => is_there(line, 2) && is_there(line, 3),
         _ => false,
     };
+    let length = |line: &str| -> Option<(String, u32)> {
+        let (about, metres) = line.strip_prefix("length\t")?.rsplit_once('\t')?;
+        Some((about.to_owned(), metres.parse().ok()?))
+    };
+    let lengths: BTreeMap<String, u32> = right.iter().filter_map(|line| length(line)).collect();
     let longer = |line: &&String| {
-        let (about, metres) = line.rsplit_once('\t').unwrap_or_default();
-        let before = right.iter().find_map(|other| other.strip_prefix(about)?.strip_prefix('\t')?.parse::<u32>().ok());
-        line.starts_with("length\t") && before.is_some_and(|before| metres.parse::<u32>().is_ok_and(|now| now > before))
+        length(line).is_some_and(|(about, now)| lengths.get(&about).is_some_and(|before| now > *before))
     };
     let new = found.difference(right).filter(|line| is_route(line) || longer(line));
     let wrong = new.chain(right.difference(&found).filter(lost)).cloned().collect();

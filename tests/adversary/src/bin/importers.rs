@@ -137,7 +137,17 @@ const DIALECTS: [Dialect; 4] = [
     Dialect { turned: 3, nameless: true, to_signals: true, ..Dialect::PLAIN },
 ];
 
+/// Arguments: the forms that are imported, `railml` or `planpro`; all without any.
 fn main() -> ExitCode {
+    let forms: Vec<String> = std::env::args().skip(1).collect();
+    let wanted = |form: &str| forms.is_empty() || forms.iter().any(|one| one == form);
+    if wanted("planpro") {
+        of_planpro();
+    }
+    if wanted("railml") { of_railml() } else { ExitCode::SUCCESS }
+}
+
+fn of_railml() -> ExitCode {
     for (name, text) in FILES {
         tell(name, text);
     }
@@ -162,7 +172,6 @@ fn main() -> ExitCode {
             tell(&format!("dialect {number} of {tracks} tracks"), &written(&made, Version::V31, dialect));
         }
     }
-    of_planpro();
     ExitCode::SUCCESS
 }
 
