@@ -18,7 +18,7 @@ use support::planpro::{Tool, id, name_of, written};
 use support::random::{Shape, station};
 
 fn stations() -> u32 {
-    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(48)
+    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(24)
 }
 
 fn runner() -> TestRunner {
@@ -504,6 +504,32 @@ fn flank_protection_is_held_and_proved_clear() {
     assert!(names(&unknown).len() < model.routes.len(), "{}", unknown.report);
     assert!(
         unknown.report.lacking.iter().any(|line| line.contains("what is no point of the layout")),
+        "{}",
+        unknown.report
+    );
+}
+
+#[test]
+fn what_fouls_a_point_is_proved_clear_with_it() {
+    let platform = model(&small()).circuits.iter().position(|circuit| circuit.name == "2T0").unwrap();
+    let fouling = |by: &str| {
+        format!(
+            "<Weiche_Element><GZ_Freimeldung_R>{}{}</GZ_Freimeldung_R></Weiche_Element>",
+            value("Element_Lage", "Abschnitt"),
+            value("ID_Element", by)
+        )
+    };
+    let imported = with("", &[("<Weiche_Element/>", &fouling(&id("track", platform)))]);
+    let read = imported.description.tracks().unwrap();
+    let there = read.circuits.iter().position(|circuit| circuit.name == "2T0").unwrap();
+    let point = read.points.iter().find(|point| point.name == "PW1").unwrap();
+    assert!(point.fouled_in.contains(&there), "{}", imported.report);
+    let route = read.routes.iter().find(|route| route.name == "W/1E").unwrap();
+    assert!(route.beside().contains(&there), "{}", imported.report);
+    let unknown = with("", &[("<Weiche_Element/>", &fouling("none"))]);
+    assert!(!names(&unknown).contains(&"W/1E"));
+    assert!(
+        unknown.report.lacking.iter().any(|line| line.contains("names what is no circuit or point")),
         "{}",
         unknown.report
     );

@@ -26,11 +26,11 @@ pub enum LayoutCommand {
     Compare {
         /// A layout in any form; `-` for standard input
         one: PathBuf,
-        /// Another one, or a table in the columns of `table --form rendo` (.csv). A railML file is also read a second time, by other code, and
-        /// its routes held against the first
+        /// Another one, or a table in the columns of `table --form rendo` (.csv). A railML or PlanPro file is also read a second time,
+        /// by other code, and its routes held against the first
         other: PathBuf,
     },
-    /// Writes a railML 3 file or an OSRD infrastructure as a layout in TOML; the report goes to standard error
+    /// Writes a railML 3 or PlanPro file or an OSRD infrastructure as a layout in TOML; the report goes to standard error
     Import {
         #[command(flatten)]
         layout: LayoutFile,
@@ -71,7 +71,8 @@ pub enum LayoutCommand {
 /// A layout in any form.
 #[derive(Args)]
 pub struct LayoutFile {
-    /// The layout: .toml, railML 3 (.xml, .railml) or an OSRD infrastructure (.json); `-` for any of them from standard input
+    /// The layout: .toml, railML 3 (.xml, .railml), PlanPro (.ppxml, .xml) or an OSRD infrastructure (.json); `-` for any of them from
+    /// standard input
     file: PathBuf,
     /// Takes these routes alone, and what they need
     #[arg(long, value_name = "ROUTE", value_delimiter = ',')]
@@ -212,8 +213,8 @@ impl Checked {
     }
 }
 
-/// Every cell of the control table and every value in which two layouts differ; and where one of the files is railML, what a second reading
-/// of it finds in the other layout.
+/// Every cell of the control table and every value in which two layouts differ; and where one of the files is railML or PlanPro, what a second
+/// reading of it finds in the other layout.
 fn compare(one: &Path, other: &Path) -> Result<Vec<String>, Errors> {
     if other.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
         return against_table(one, other);

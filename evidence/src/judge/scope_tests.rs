@@ -117,7 +117,7 @@ fn the_parts_have_everything_and_what_they_need() {
 
 /// The programs whose tests are of tools that the case does not rest on: `ci/test` runs them. A new program is named in the
 /// argument, or here.
-const OF_TOOLS: [&str; 18] = [
+const OF_TOOLS: [&str; 19] = [
     "c_abi",
     "command",
     "conform",
@@ -131,6 +131,7 @@ const OF_TOOLS: [&str; 18] = [
     "importers",
     "imports",
     "killed",
+    "planpro",
     "protocol",
     "second",
     "shards",

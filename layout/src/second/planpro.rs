@@ -17,7 +17,7 @@ use super::difference::Difference;
 use crate::form::Position;
 use crate::model::{Model, Route};
 use crate::problem::Source;
-use held::{flank, overlap};
+use held::{flank, fouled, overlap};
 use plan::{Plan, metres, parts, text};
 use run::Run;
 
@@ -107,6 +107,7 @@ fn of_route<'a>(plan: &Plan<'a>, model: &Model, route: &Route, meant: &Meant<'a>
     differing.extend(asked::more(plan, meant, &run, between));
     differing.extend(meant.overlap.map(|node| overlap(plan, model, route, node, &run)).unwrap_or_default());
     differing.extend(flank(plan, model, route, &run, between));
+    differing.extend(fouled(plan, model, &run, between));
     differing
 }
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::borders::{cut_at_borders, cut_at_signals};
-use super::file::{File, Stretch, at, stretches, value};
+use super::file::{File, Stretch, at, child, stretches, value};
 use super::tracks::{AT_NODE, Tracks};
 use crate::at::At;
 use crate::form::Station;
@@ -100,10 +100,40 @@ pub fn write<'a>(file: &File<'a>, mut tracks: Tracks<'a>, station: &mut Station,
         tracks.network.cuts.len(),
         station.circuits.len()
     ));
+    let of_track = |section: &Section<'_>| {
+        Some((value(section.node, &["Identitaet"])?.to_lowercase(), found.get(&section.id).copied()?))
+    };
+    fouled(file, &sections.iter().filter_map(of_track).collect(), &mut tracks, station);
     let mut ignored = Vec::new();
     let graph = Graph::of(station, &Names::of(station, &mut ignored), &mut ignored);
     let joints = graph.joints.iter().enumerate().map(|(number, joint)| (joint.name.clone(), number)).collect();
     Placed { tracks, divided, graph, joints, unsound, sections: found }
+}
+
+/// Enters the circuits in which a train fouls a point, where the border of its section lies within its fouling limit.
+fn fouled(file: &File<'_>, tracks_of: &BTreeMap<String, usize>, tracks: &mut Tracks<'_>, station: &mut Station) {
+    for (id, points) in &tracks.elements {
+        let Some(element) = file.id(id) else { continue };
+        for leg in ["GZ_Freimeldung_L", "GZ_Freimeldung_R"] {
+            let Some(given) = child(element, "Weiche_Element").and_then(|kind| child(kind, leg)) else { continue };
+            let by = value(given, &["ID_Element"]).unwrap_or_default().to_lowercase();
+            let circuit = tracks_of.get(&by).map(|circuit| station.circuits[*circuit].name.value.clone());
+            let points_there = tracks.elements.get(&by).map(Vec::as_slice).unwrap_or_default();
+            let of_point = points_there.first().map(|point| station.points[*point].circuit.value.clone());
+            let Some(circuit) = circuit.or(of_point) else {
+                let why = format!("the {leg} of the {} names what is no circuit or point of the layout", at(element));
+                tracks.barred.extend(points.iter().map(|point| (*point, why.clone())));
+                continue;
+            };
+            for point in points {
+                let point = &mut station.points[*point];
+                let is_new = point.fouled_in.iter().all(|other| other.value != circuit);
+                if is_new && point.circuit.value != circuit {
+                    point.fouled_in.push(At::derived(circuit.clone()));
+                }
+            }
+        }
+    }
 }
 
 /// The sections that the file has, each with where it lies.

@@ -7,7 +7,7 @@ use roxmltree::Node;
 use super::asked::unset;
 use super::circuit;
 use super::plan::{Plan, identity, is_on, metres, parts, text};
-use super::run::{Run, position};
+use super::run::{Run, named, position};
 use crate::form::Position;
 use crate::model::{Model, Route};
 
@@ -137,6 +137,35 @@ pub(super) fn flank(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, (b
         .collect();
     for name in clear.iter().filter(|name| !proved.contains(name.as_str())) {
         differing.push(format!("the file has {name} proved clear for its flank, and the layout does not"));
+    }
+    differing
+}
+
+/// The sections in which a train fouls a point of a route, where the file says that the point's own does not reach beyond its fouling limit.
+pub(super) fn fouled(plan: &Plan<'_>, model: &Model, run: &Run, (begin, end): (f64, f64)) -> Vec<String> {
+    let mut differing = Vec::new();
+    for (node, _, at) in run.nodes(plan) {
+        let (name, _, element) = named(plan, &node);
+        let kind = element.and_then(|element| element.children().find(|child| child.has_tag_name("Weiche_Element")));
+        let Some(kind) = kind.filter(|_| (begin..end).contains(&at)) else { continue };
+        for leg in kind.children().filter(|child| child.tag_name().name().starts_with("GZ_Freimeldung")) {
+            let by = plan.at(leg, "ID_Element");
+            let Some(point) = model.points.iter().find(|point| point.name == name) else { continue };
+            let have =
+                |name: &str| point.fouled_in.iter().chain(&point.circuit).any(|number| circuit(model, *number) == name);
+            let held = match by {
+                Some(by) if by.has_tag_name("Gleis_Abschnitt") => have(&plan.call(by)),
+                Some(by) => {
+                    let other = model.points.iter().find(|point| point.name == plan.call(by));
+                    other.and_then(|other| other.circuit).is_some_and(|number| have(circuit(model, number)))
+                }
+                None => false,
+            };
+            if !held {
+                let by = by.map(|by| plan.call(by)).unwrap_or_default();
+                differing.push(format!("point {name} is fouled in {by} in the file, and not in the layout"));
+            }
+        }
     }
     differing
 }

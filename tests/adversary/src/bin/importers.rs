@@ -288,6 +288,10 @@ fn asking() -> Vec<Asking> {
         format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 1)),
         value("ID_Fstr_Ausschluss_Besonders", &id("route", 9)) + &format!("<ID_Fstr_Fahrweg><Wert>{}<", id("path", 1)),
     );
+    let fouling = format!(
+        "<Weiche_Element><GZ_Freimeldung_R>{}</GZ_Freimeldung_R></Weiche_Element>",
+        value("ID_Element", &id("track", 5))
+    );
     let belongs = |point: usize| format!("<ID_W_Kr_Gsp_Element><Wert>{}<", id("point", point));
     let path = |number: usize| format!("<Fstr_Fahrweg>{}", value("Identitaet", &id("path", number)));
     let slower = (path(4), path(4) + &value("Fstr_V_Hg", "45"));
@@ -300,6 +304,7 @@ fn asking() -> Vec<Asking> {
         ("a key lock", lock(0), vec![]),
         ("excluded", String::new(), vec![excluded]),
         ("one lever", String::new(), vec![(belongs(1), belongs(0))]),
+        ("fouled", String::new(), vec![("<Weiche_Element/>".to_owned(), fouling)]),
         ("by hand", String::new(), vec![("elektrisch_ferngestellt".to_owned(), "elektrisch_ortsgestellt".to_owned())]),
         ("auxiliary", String::new(), vec![(">ZR<".to_owned(), ">ZH<".to_owned())]),
         (
