@@ -107,7 +107,7 @@ fn of_route<'a>(plan: &Plan<'a>, model: &Model, route: &Route, meant: &Meant<'a>
     differing.extend(asked::more(plan, meant, &run, between));
     differing.extend(meant.overlap.map(|node| overlap(plan, model, route, node, &run)).unwrap_or_default());
     differing.extend(flank(plan, model, route, &run, between));
-    differing.extend(fouled(plan, model, &run, between));
+    differing.extend(fouled(plan, model, route));
     differing
 }
 

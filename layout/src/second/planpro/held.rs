@@ -141,28 +141,35 @@ pub(super) fn flank(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, (b
     differing
 }
 
-/// The sections in which a train fouls a point of a route, where the file says that the point's own does not reach beyond its fouling limit.
-pub(super) fn fouled(plan: &Plan<'_>, model: &Model, run: &Run, (begin, end): (f64, f64)) -> Vec<String> {
+/// The points of a route that a train fouls in another section by the file, and not in the layout; also those of other routes, where this one
+/// runs over that section.
+pub(super) fn fouled(plan: &Plan<'_>, model: &Model, route: &Route) -> Vec<String> {
+    let runs: BTreeSet<&str> = route
+        .circuits()
+        .chain([route.entry])
+        .chain(route.overlap.iter().copied())
+        .map(|number| circuit(model, number))
+        .collect();
     let mut differing = Vec::new();
-    for (node, _, at) in run.nodes(plan) {
-        let (name, _, element) = named(plan, &node);
+    for (node, blades) in &plan.blades {
+        let (name, _, element) = named(plan, node);
         let kind = element.and_then(|element| element.children().find(|child| child.has_tag_name("Weiche_Element")));
-        let Some(kind) = kind.filter(|_| (begin..end).contains(&at)) else { continue };
-        for leg in kind.children().filter(|child| child.tag_name().name().starts_with("GZ_Freimeldung")) {
-            let by = plan.at(leg, "ID_Element");
-            let Some(point) = model.points.iter().find(|point| point.name == name) else { continue };
-            let have =
-                |name: &str| point.fouled_in.iter().chain(&point.circuit).any(|number| circuit(model, *number) == name);
-            let held = match by {
-                Some(by) if by.has_tag_name("Gleis_Abschnitt") => have(&plan.call(by)),
-                Some(by) => {
-                    let other = model.points.iter().find(|point| point.name == plan.call(by));
-                    other.and_then(|other| other.circuit).is_some_and(|number| have(circuit(model, number)))
-                }
-                None => false,
+        let Some((number, point)) = model.points.iter().enumerate().find(|(_, point)| point.name == name) else {
+            continue;
+        };
+        let legs = kind.into_iter().flat_map(|kind| kind.children());
+        for leg in legs.filter(|child| child.tag_name().name().starts_with("GZ_Freimeldung")) {
+            let by = plan.at(leg, "ID_Element").unwrap_or(*blades);
+            // A section is called as its circuit; a point stands for the circuit that it lies in.
+            let other = model.points.iter().find(|point| point.name == plan.call(by)).and_then(|point| point.circuit);
+            let by = if by.has_tag_name("Gleis_Abschnitt") {
+                plan.call(by)
+            } else {
+                other.map_or_else(|| plan.call(by), |number| circuit(model, number).to_owned())
             };
-            if !held {
-                let by = by.map(|by| plan.call(by)).unwrap_or_default();
+            let mut have = point.fouled_in.iter().chain(&point.circuit).map(|number| circuit(model, *number));
+            let counts = runs.contains(by.as_str()) || route.positions().any(|(one, _)| one == number);
+            if counts && !have.any(|name| name == by) {
                 differing.push(format!("point {name} is fouled in {by} in the file, and not in the layout"));
             }
         }
