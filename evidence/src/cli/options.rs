@@ -34,7 +34,7 @@ pub(super) enum Command {
         /// The folder of a case.
         #[arg(long)]
         from: PathBuf,
-        /// A station's layout (TOML, railML 3 or OSRD): the case becomes that of the station, and no engine runs.
+        /// A station's layout (TOML, railML 3, PlanPro or OSRD): the case becomes that of the station, and no engine runs.
         #[arg(long, requires = "out")]
         layout: Option<PathBuf>,
         /// Where to write it; without this, in place.
@@ -79,7 +79,7 @@ pub struct Run {
     /// A line's parameters (TOML); without this, the example of the patent.
     #[arg(long)]
     pub(super) config: Option<PathBuf>,
-    /// A station's layout (TOML, railML 3 or OSRD): its data checks, control table and track plan become part of the case.
+    /// A station's layout (TOML, railML 3, PlanPro or OSRD): its data checks, control table and track plan become part of the case.
     #[arg(long)]
     pub(super) layout: Option<PathBuf>,
     /// Where to write the case; without this, target/safety-case in the checkout.
@@ -169,7 +169,7 @@ pub struct Merge {
     /// A line's parameters (TOML); without this, the example of the patent.
     #[arg(long)]
     pub(super) config: Option<PathBuf>,
-    /// A station's layout (TOML, railML 3 or OSRD).
+    /// A station's layout (TOML, railML 3, PlanPro or OSRD).
     #[arg(long)]
     pub(super) layout: Option<PathBuf>,
     /// The checkout; without this, the one that holds the current folder.
