@@ -41,7 +41,7 @@ impl Description {
                 // An empty range has no place; at the end of the text there is a last character.
                 let span =
                     if span.is_empty() { span.start.min(text.len().saturating_sub(1))..text.len() } else { span };
-                let what = error.message().replace('\n', " ");
+                let what = crate::text::in_words(error.message());
                 let problem = Problem::new(Rule::Form, &span, what, "layout.schema.json describes the form");
                 Err(Errors::one(&source, problem))
             }

@@ -37,6 +37,7 @@ mod problem;
 mod rule;
 pub mod second;
 pub mod table;
+pub mod text;
 mod values;
 pub mod witness;
 

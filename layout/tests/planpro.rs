@@ -320,6 +320,104 @@ fn place_of_signal(name: &str) -> String {
     between(&signal, "<Punkt_Objekt_TOP_Kante>", "</Punkt_Objekt_TOP_Kante>")[0].1.to_owned()
 }
 
+/// What was found by somebody who had not written the import: each was once taken in silence.
+fn conditions() -> Vec<Case<'static>> {
+    let asks =
+        |by: &str| format!("<Fla_Schutz_Anforderer>{}</Fla_Schutz_Anforderer>", value("ID_Anforderer_Element", by));
+    let elsewhere = format!(
+        "<Punkt_Objekt_TOP_Kante>{}{}</Punkt_Objekt_TOP_Kante><Entgleisungsschuh/>",
+        value("Abstand", "1.000"),
+        value("ID_TOP_Kante", "none")
+    );
+    let again = format!(
+        "<Fstr_Zug>{}</Fstr_Zug>{}",
+        value("Fstr_Zug_Art", "ZR"),
+        value("ID_Fstr_Fahrweg", &id("path", number_of("1W/to 2")))
+    );
+    let overlap = number_of("W/1E");
+    let form = "<W_Kr_Anlage_Allg><W_Kr_Art><Wert>EKW</Wert></W_Kr_Art></W_Kr_Anlage_Allg>";
+    vec![
+        ("a part of a route", String::new(), &[("<Wert>ZR<", "<Wert>ZT<")], "it is of the kind ZT"),
+        ("flank for nobody", object("Fla_Schutz", &asks("none")), &[], "it may be about any route"),
+        (
+            "proved clear for nothing",
+            object("Fla_Freimelde_Zuordnung", &value("ID_Fla_Schutz", "none")),
+            &[],
+            "it may be about any route",
+        ),
+        ("a level crossing on the way", object("BUE_Kante", &place_of_signal("1E")), &[], "is of a level crossing"),
+        (
+            "a signal that excludes others",
+            String::new(),
+            &[("<Signal_Real>", "<Signal_Fstr_Aus_Inselgleis/><Signal_Real>")],
+            "excludes other trains",
+        ),
+        (
+            "no running through",
+            String::new(),
+            &[(
+                "<Signal_Real>",
+                "<Signal_Fstr><Durchfahrt><Wert>verboten</Wert></Durchfahrt></Signal_Fstr><Signal_Real>",
+            )],
+            "is verboten, which no layout holds",
+        ),
+        (
+            "an exclusion of nothing",
+            String::new(),
+            &[(
+                "<Fstr_Zug>",
+                "<ID_Fstr_Ausschluss_Besonders><Wert>none</Wert></ID_Fstr_Ausschluss_Besonders><Fstr_Zug>",
+            )],
+            "it excludes none, which is not in the file",
+        ),
+        (
+            "a key lock on an overlap",
+            object("Fstr_Abhaengigkeit", &value("ID_Fstr_Fahrweg", &id("overlap path", overlap))),
+            &[],
+            "may be a condition that no layout holds",
+        ),
+        ("more of an overlap", String::new(), &[("<Fstr_DWeg_Allg>", "<ID_New/><Fstr_DWeg_Allg>")], "it has ID_New"),
+        (
+            "a longer overlap",
+            String::new(),
+            &[("<Laenge_Soll><Wert>50<", "<Laenge_Soll><Wert>5000<")],
+            "5000 m are asked for",
+        ),
+        (
+            "an unreadable time",
+            String::new(),
+            &[(
+                "<Fstr_DWeg_Spezifisch>",
+                "<Fstr_DWeg_Spezifisch><Aufloesung_Verzoegerung><Wert>soon</Wert></Aufloesung_Verzoegerung>",
+            )],
+            "\"soon\" is no number",
+        ),
+        (
+            "a slip",
+            object("W_Kr_Anlage", form),
+            &[(
+                "<Weiche_Element/>",
+                "<ID_W_Kr_Anlage><Wert>00000000-0000-4000-8000-000000000000</Wert></ID_W_Kr_Anlage><Weiche_Element/>",
+            )],
+            "is part of a EKW",
+        ),
+        ("a derailer somewhere", object("W_Kr_Gsp_Komponente", &elsewhere), &[], "has no place on the tracks"),
+        (
+            "a point that has lost its place",
+            String::new(),
+            &[("<W_Kr_Gsp_Komponente>", "<Nothing>"), ("</W_Kr_Gsp_Komponente>", "</Nothing>")],
+            "has no W_Kr_Gsp_Komponente",
+        ),
+        ("two routes over one path", object("Fstr_Zug_Rangier", &again), &[], "the same path and the same overlap"),
+        (
+            "a lock on a point",
+            object("Schloss", &value("ID_W_Element", &id("point", 0))),
+            &[],
+            "and no layout holds that",
+        ),
+    ]
+}
+
 /// A change of the small station: what it is, objects that are added, words that are exchanged, and the reason that is told.
 type Case<'a> = (&'a str, String, &'a [(&'a str, &'a str)], &'a str);
 
@@ -329,7 +427,8 @@ fn what_no_layout_holds_leaves_its_routes_out() {
     let path = id("path", number_of("W/1E"));
     let platform = model(&small()).circuits.iter().position(|circuit| circuit.name == "1T").expect("it is there");
     let section = format!("<ID_Gleis_Abschnitt><Wert>{}<", id("track", platform));
-    let cases: [Case; 9] = [
+    let undetected = [(section.as_str(), "<ID_Gleis_Abschnitt><Wert>none<")];
+    let mut cases: Vec<Case> = vec![
         (
             "a derailer",
             object("W_Kr_Gsp_Komponente", &format!("{}<Entgleisungsschuh/>", place_of_signal("1E"))),
@@ -377,15 +476,16 @@ fn what_no_layout_holds_leaves_its_routes_out() {
             "an unreadable speed",
             String::new(),
             &[("<ID_Start>", "<Fstr_V_Hg><Wert>fast</Wert></Fstr_V_Hg><ID_Start>")],
-            "its limit of 0 km/h",
+            "its speed \"fast\" is no number of km/h above 0",
         ),
         (
             "a section that is not detected",
             String::new(),
-            &[(&section, "<ID_Gleis_Abschnitt><Wert>none<")],
+            &undetected,
             "no section of track vacancy detection lies there",
         ),
     ];
+    cases.extend(conditions());
     for (what, objects, words, why) in cases {
         let imported = with(&objects, words);
         let count = names(&imported).len();
@@ -510,6 +610,30 @@ fn flank_protection_is_held_and_proved_clear() {
 }
 
 #[test]
+fn a_point_that_is_locked_with_an_overlap_is_held() {
+    let overlap = number_of("W/1E");
+    let locked = |element: &str| {
+        object(
+            "Fstr_DWeg_W_Kr",
+            &[
+                value("Element_Verschluss", "true"),
+                value("ID_Fstr_DWeg", &id("overlap", overlap)),
+                value("ID_W_Kr_Gsp_Element", element),
+            ]
+            .concat(),
+        )
+    };
+    let imported = with(&locked(&id("point", number_of("PW2"))), &[]);
+    let read = imported.description.tracks().unwrap();
+    let point = read.points.iter().position(|point| point.name == "PW2").unwrap();
+    let route = read.routes.iter().find(|route| route.name == "W/1E").unwrap();
+    assert_eq!(route.overlap_positions.get(&point), Some(&Position::Normal), "{}", imported.report);
+    let told = |line: &String| line.contains("W/1E: point PW2 is held with its overlap");
+    assert!(imported.report.defaulted.iter().any(told), "{}", imported.report);
+    assert!(!names(&with(&locked("none"), &[])).contains(&"W/1E"));
+}
+
+#[test]
 fn what_fouls_a_point_is_proved_clear_with_it() {
     let platform = model(&small()).circuits.iter().position(|circuit| circuit.name == "2T0").unwrap();
     let fouling = |by: &str| {
@@ -550,6 +674,8 @@ fn a_file_tells_its_form_and_an_archive_is_refused() {
     assert!(told.contains("zip archive") && told.contains("unpack it"), "{told}");
     std::fs::remove_dir_all(&folder).unwrap();
     let told = |text: &str| planpro("station.ppxml", text).unwrap_err().to_string();
+    let divided = text.replacen("<Wert>elektrisch_", "<Wert><!-- by whom -->elektrisch_", 1);
+    assert!(told(&divided).contains("a value is in several parts"));
     assert!(told("<railML/>").contains("not PlanPro_Schnittstelle"));
     assert!(told("<PlanPro_Schnittstelle/>").contains("neither an LST_Zustand_Ziel"));
     assert!(told("<PlanPro_Schnittstelle>").contains("no XML"));

@@ -28,10 +28,8 @@ use crate::{aspect, blocks, budget, supervision};
 /// The file cannot be read, or as [`parse`].
 pub fn read(path: &Path) -> Result<Line, Problems> {
     let name = path.display().to_string();
-    let unread = |error| {
-        Problems(vec![Problem { rule: Rule::Form, at: name.clone(), what: format!("cannot be read: {error}") }])
-    };
-    let text = std::fs::read_to_string(path).map_err(unread)?;
+    let text = atc_layout::text::read(path)
+        .map_err(|what| Problems(vec![Problem { rule: Rule::Form, at: name.clone(), what }]))?;
     parse(&name, &text, path.parent().unwrap_or(Path::new("")))
 }
 
@@ -45,7 +43,7 @@ pub fn parse(source: &str, text: &str, folder: &Path) -> Result<Line, Problems> 
         let at = error
             .span()
             .map_or_else(|| source.to_owned(), |span| places.span(&(span.start..span.end.max(span.start + 1))));
-        Problems(vec![Problem { rule: Rule::Form, at, what: error.message().replace('\n', " ") }])
+        Problems(vec![Problem { rule: Rule::Form, at, what: atc_layout::text::in_words(error.message()) }])
     })?;
     Reader { places, problems: Vec::new() }.line(&file, folder)
 }

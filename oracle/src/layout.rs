@@ -238,7 +238,7 @@ fn against_table(layout: &Path, table: &Path) -> Result<Vec<String>, Errors> {
     let model = read_any(layout)?.description.model()?;
     let source = Source { name: table.display().to_string(), ..Source::default() };
     let wrong = |what: String| Errors::one(&source, Problem::new(Rule::Form, &(0..0), what, "save it as CSV in UTF-8"));
-    let text = std::fs::read_to_string(table).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    let text = atc_layout::text::read(table).map_err(wrong)?;
     let found = table::rendo::compare(&model, &text).map_err(wrong)?;
     Ok(found.iter().map(ToString::to_string).collect())
 }

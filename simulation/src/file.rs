@@ -66,7 +66,7 @@ impl Line {
     /// What is wrong, and in which file.
     pub fn read(path: &Path) -> Result<Self, String> {
         let at = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let text = std::fs::read_to_string(path).map_err(|error| at(&format!("cannot be read: {error}")))?;
+        let text = atc_layout::text::read(path).map_err(|error| at(&error))?;
         let file: File = toml::from_str(&text).map_err(|error| at(&error.to_string().trim_end()))?;
         let mut layouts = Vec::new();
         for station in &file.stations {

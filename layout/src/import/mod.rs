@@ -25,6 +25,7 @@ use crate::form::Station;
 use crate::problem::{Errors, Problem, Source};
 use crate::rule::Rule;
 use crate::second;
+use crate::text;
 use limits::Limits;
 use network::Divided;
 
@@ -77,10 +78,7 @@ pub fn read_any(path: impl AsRef<Path>) -> Result<Imported, Errors> {
         let right = "unpack it, and give its content.xml or the .ppxml that the planning tool writes";
         return Err(broken(&name, "a .planpro file is a zip archive".to_owned(), right));
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        broken(&name, format!("byte {valid} is not UTF-8"), "save the file as UTF-8")
-    })?;
+    let text = text::utf8(bytes).map_err(|place| broken(&name, place, "save the file as UTF-8"))?;
     match (ending.as_str(), text.trim_start_matches('\u{feff}').trim_start().chars().next()) {
         ("toml", _) => of_toml(&name, &text),
         ("ppxml", _) => planpro(&name, &text),

@@ -54,7 +54,7 @@ pub fn cut_at_borders<'a>(file: &File<'a>, sections: &[Section<'a>], tracks: &mu
         if is_inner && !there {
             let what = format!("the {} borders no section of the file", at(node));
             report.lacking.push(format!("{what}; no route is taken over it"));
-            tracks.obstacles.push(Obstacle { place, what });
+            tracks.obstacles.push(Obstacle::at(place, what));
         }
     }
 }

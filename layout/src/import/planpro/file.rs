@@ -65,6 +65,12 @@ impl<'a> File<'a> {
             containers.iter().flat_map(|container| container.children().filter(Node::is_element)).collect();
         let mut file = Self { objects, by_id: BTreeMap::new(), called: BTreeMap::new(), begins: BTreeMap::new() };
         let mut problems = Vec::new();
+        // Of a value that a comment divides only a part would be read.
+        let is_divided = |node: &Node<'a, 'a>| node.has_tag_name("Wert") && node.children().count() > 1;
+        for node in file.objects.iter().flat_map(Node::descendants).filter(is_divided) {
+            let what = "a value is in several parts";
+            problems.push(Problem::new(Rule::Form, &start(node), what, "let nothing but the value stand in its Wert"));
+        }
         for node in &file.objects {
             let Some(id) = value(*node, &["Identitaet"]) else { continue };
             *file.begins.entry(id.chars().take(SHORT).collect::<String>().to_lowercase()).or_default() += 1;

@@ -5,12 +5,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::file::{File, at, child, places, value};
+use super::routes::known;
 use super::tracks::{AT_NODE, Fork, Tracks};
 use crate::at::At;
 use crate::form::{Position, Station};
 use crate::import::limits::kmh;
 use crate::import::network::{EdgeEnd, Switch};
 use crate::import::report::Report;
+
+/// What may stand in the element of a point; anything else may be a condition.
+const OF_ELEMENT: &str = "Bezeichnung ID_Regelzeichnung ID_Stellelement ID_W_Kr_Anlage ID_Weichenlaufkette W_Kr_Gsp_Element_Allg Weiche_Element";
+const OF_POINT: &str =
+    "Auffahrortung GZ_Freimeldung_L GZ_Freimeldung_R ID_Grenzzeichen ID_Signal Weiche_Betriebsart Weiche_Vorzugslage";
+
+/// Forms of points that are points: one pair of blades each.
+const PLAIN: [&str; 8] = ["EW", "ABW", "IBW", "ABW/IBW", "IBW/ABW", "Sym. ABW", "Klothoidenweiche", "Korbbogenweiche"];
 
 /// What is to be confirmed of points, by name.
 #[derive(Default)]
@@ -102,9 +111,13 @@ impl<'a> Tracks<'a> {
             remarks.curved.push(name.value.clone());
         }
         match (blades, element) {
-            (Some(blades), Some(element)) => self.settable(point, blades, element),
+            (Some(blades), Some(element)) => self.settable(file, point, blades, element),
             (Some(blades), None) => {
                 self.barred.insert(point, format!("the {} belongs to no W_Kr_Gsp_Element", at(blades)));
+            }
+            // Where the file has elements, one without is none of them, or one that has lost its place.
+            (None, _) if file.all("W_Kr_Gsp_Element").next().is_some() => {
+                self.barred.insert(point, format!("point {name} has no W_Kr_Gsp_Komponente"));
             }
             (None, _) => remarks.unnamed.push(name.value.clone()),
         }
@@ -114,13 +127,36 @@ impl<'a> Tracks<'a> {
     }
 
     /// Bars a point that is not set from here, or not alone.
-    fn settable(&mut self, point: usize, blades: Node<'a, 'a>, element: Node<'a, 'a>) {
+    fn settable(&mut self, file: &File<'a>, point: usize, blades: Node<'a, 'a>, element: Node<'a, 'a>) {
         let id = value(element, &["Identitaet"]).unwrap_or_default().to_lowercase();
         let points = self.elements.entry(id).or_default();
         points.push(point);
         if points.len() > 1 {
             let why = format!("the {} has two pairs of blades, and no layout has two points on one lever", at(element));
             self.barred.extend(points.iter().map(|point| (*point, why.clone())));
+        }
+        let kind = child(element, "Weiche_Element");
+        let more = known(element, OF_ELEMENT).and_then(|()| kind.map_or(Ok(()), |kind| known(kind, OF_POINT)));
+        if let Err(why) = more {
+            self.barred.insert(point, format!("the {}: {why}", at(element)));
+        }
+        let form =
+            file.referred(element, "ID_W_Kr_Anlage").and_then(|all| value(all, &["W_Kr_Anlage_Allg", "W_Kr_Art"]));
+        let crossing = child(blades, "Zungenpaar").and_then(|pair| child(pair, "Kreuzungsgleis"));
+        if let Some(form) = form.filter(|form| !PLAIN.contains(form)).or(crossing.map(|_| "slip")) {
+            self.barred.insert(point, format!("the {} is part of a {form}, which is not read", at(blades)));
+        }
+        // Keys and zones that are set locally may ask for the point.
+        let of_element = value(element, &["Identitaet"]).unwrap_or_default();
+        let asks = |node: &Node<'a, 'a>| {
+            let kind = node.tag_name().name();
+            let mut all = node.descendants().filter(|node| node.tag_name().name().starts_with("ID_"));
+            (kind.starts_with("Schl") || kind.starts_with("NB_"))
+                && all.any(|node| value(node, &[]).is_some_and(|id| id.eq_ignore_ascii_case(of_element)))
+        };
+        if let Some(other) = file.objects().find(asks) {
+            self.barred
+                .insert(point, format!("the {} is about the {}, and no layout holds that", at(other), at(element)));
         }
         if let Some(why) = unset(element) {
             self.barred.insert(point, format!("the {} {why}", at(blades)));

@@ -1,6 +1,6 @@
 //! The topology of a PlanPro file as edges, links and switches.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
@@ -36,12 +36,19 @@ pub struct Fork {
     pub left_is_normal: bool,
 }
 
-/// What is no track that a route can hold, at a place.
+/// What is no track that a route can hold.
 pub struct Obstacle {
-    /// Where it is.
-    pub place: Place,
+    /// Where it is: a stretch, or a place.
+    pub on: Stretch,
     /// What it is.
     pub what: String,
+}
+
+impl Obstacle {
+    /// One at a place.
+    pub fn at(place: Place, what: String) -> Self {
+        Self { on: Stretch { edge: place.edge, from: place.at, to: place.at }, what }
+    }
 }
 
 /// The tracks.
@@ -58,8 +65,12 @@ pub struct Tracks<'a> {
     pub barred: BTreeMap<usize, String>,
     /// What stands on the tracks and is no part of a layout.
     pub obstacles: Vec<Obstacle>,
+    /// What may be asked of any route, as the file does not say of which.
+    pub nowhere: Vec<String>,
     /// What the file says of speeds.
     pub limits: Limits,
+    /// The identities of all edges of the file.
+    top_edges: BTreeSet<String>,
 }
 
 /// Reads the tracks.
@@ -71,11 +82,17 @@ pub fn read<'a>(file: &File<'a>, station: &Station, report: &mut Report, problem
         elements: BTreeMap::new(),
         barred: BTreeMap::new(),
         obstacles: Vec::new(),
+        nowhere: Vec::new(),
         limits: Limits::default(),
+        top_edges: file
+            .all("TOP_Kante")
+            .filter_map(|node| Some(value(node, &["Identitaet"])?.to_lowercase()))
+            .collect(),
     };
     tracks.read_edges(file, problems);
     tracks.read_nodes(file, station, report);
     tracks.read_buffers(file, report);
+    tracks.read_level_crossings(file);
     tracks.read_limits(file, report);
     tracks
 }
@@ -163,7 +180,7 @@ impl<'a> Tracks<'a> {
                 self.network.crossings.push([one, other]);
             } else {
                 let what = "a crossing that does not lie on two edges".to_owned();
-                self.obstacles.extend(pair.map(|place| Obstacle { place, what: what.clone() }));
+                self.obstacles.extend(pair.map(|place| Obstacle::at(place, what.clone())));
             }
         }
     }
@@ -200,7 +217,12 @@ impl<'a> Tracks<'a> {
     /// Has an object stand in the way at each of these places.
     pub fn obstruct(&mut self, node: Node<'a, 'a>, places: Vec<Place>, why: &str) {
         let what = format!("the {} {why}", at(node));
-        self.obstacles.extend(places.into_iter().map(|place| Obstacle { place, what: what.clone() }));
+        // The edges may not have been read yet.
+        let is_known = |place: &Place| self.top_edges.contains(&place.edge);
+        if !places.iter().any(is_known) {
+            self.nowhere.push(format!("{what}, and has no place on the tracks"));
+        }
+        self.obstacles.extend(places.into_iter().map(|place| Obstacle::at(place, what.clone())));
     }
 
     fn read_buffers(&mut self, file: &File<'a>, report: &mut Report) {
@@ -218,6 +240,19 @@ impl<'a> Tracks<'a> {
                     Some(side) => self.network.buffers.push((file.name(node).value, (edge, side))),
                     None => self.obstruct(node, vec![place], "stands on tracks that lead on"),
                 }
+            }
+        }
+    }
+
+    /// No layout asks whether a level crossing is closed.
+    fn read_level_crossings(&mut self, file: &File<'a>) {
+        for node in file.objects().filter(|node| node.tag_name().name().starts_with("BUE_")) {
+            let what = format!("the {} is of a level crossing, which no layout asks for", at(node));
+            let places = places(node).into_iter().map(|place| Obstacle::at(place, what.clone()));
+            self.obstacles.extend(places);
+            match stretches(node) {
+                Ok(all) => self.obstacles.extend(all.into_iter().map(|on| Obstacle { on, what: what.clone() })),
+                Err(why) => self.nowhere.push(why),
             }
         }
     }

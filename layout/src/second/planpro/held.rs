@@ -36,7 +36,14 @@ pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: N
     if !missing.is_empty() {
         differing.push(format!("its overlap lacks {}, which the file has in it", missing.join(", ")));
     }
-    let seconds = metres(node, "Fstr_DWeg_Spezifisch/Aufloesung_Verzoegerung").unwrap_or(0.0);
+    // A time or a length that cannot be read may be any.
+    let read = |path: &str| text(node, path).map_or(0.0, |_| metres(node, path).unwrap_or(f64::MAX));
+    let length: f64 = parts.iter().map(|(_, from, to)| to - from).sum();
+    let asked = read("Fstr_DWeg_Allg/Laenge_Soll");
+    if asked > length + 1.0 {
+        differing.push(format!("its overlap is {length:.0} m long in the file, which asks for {asked} m"));
+    }
+    let seconds = read("Fstr_DWeg_Spezifisch/Aufloesung_Verzoegerung");
     let stay = f64::from(model.values.ms(route.stay));
     if !have.is_empty() && stay + 0.5 < seconds * 1000.0 {
         differing.push(format!("its overlap is given up after {stay} ms, and in the file after {seconds} s"));
@@ -50,6 +57,15 @@ pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: N
         .iter()
         .filter_map(|(point, at)| Some((model.points.get(*point)?.name.as_str(), *at)))
         .collect();
+    let on_path: BTreeMap<&str, Position> =
+        route.positions().filter_map(|(point, at)| Some((model.points.get(point)?.name.as_str(), at))).collect();
+    for lock in plan.kind("Fstr_DWeg_W_Kr").filter(|lock| plan.at(*lock, "ID_Fstr_DWeg") == Some(node)) {
+        let name = plan.at(lock, "ID_W_Kr_Gsp_Element").map(|element| plan.call(element)).unwrap_or_default();
+        let is_held = held.contains_key(name.as_str()) || on_path.contains_key(name.as_str());
+        if text(lock, "Element_Verschluss") != Some("false") && !is_held {
+            differing.push(format!("its overlap has {name} locked in the file, and the layout does not"));
+        }
+    }
     for (node, blades) in &plan.blades {
         let touched = |word: &str| {
             plan.edges.iter().any(|(id, edge)| {
@@ -83,11 +99,12 @@ pub(super) fn flank(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, (b
     for (blades, is_left, at) in run.legs(plan) {
         let element = blades.and_then(|blades| plan.at(blades, "ID_W_Kr_Gsp_Element")).and_then(identity);
         let Some(element) = element.filter(|_| (begin..end).contains(&at)) else { continue };
-        let side = if is_left { "links" } else { "rechts" };
+        // One that does not say over which leg is for both; what goes over the toe is for points that protect.
+        let other = if is_left { "rechts" } else { "links" };
         let own = |node: &Node<'_, '_>| {
             let by = text(*node, "Fla_Schutz_Anforderer/ID_Anforderer_Element");
             by.is_some_and(|by| by.eq_ignore_ascii_case(&element))
-                && text(*node, "Fla_Schutz_Anforderer/Fahrt_Ueber") == Some(side)
+                && ![Some(other), Some("Spitze")].contains(&text(*node, "Fla_Schutz_Anforderer/Fahrt_Ueber"))
         };
         let mut open: Vec<Node<'_, '_>> = plan.kind("Fla_Schutz").filter(own).collect();
         let mut seen = 0;

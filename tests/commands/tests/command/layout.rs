@@ -72,14 +72,19 @@ fn what_is_wrong_is_named_with_its_place_and_nothing_is_written() {
     let cut = &railml[..railml.len() / 2];
     let cases: [(&str, &[u8], String, &str); 9] = [
         ("l.toml", no_circuit.as_bytes(), format!("l.toml:{circuit_at}16: "), "there is no circuit 9T; is 1T meant?"),
-        ("l.toml", no_number.as_bytes(), format!("l.toml:{number_at}12: "), "expected u16"),
+        (
+            "l.toml",
+            no_number.as_bytes(),
+            format!("l.toml:{number_at}12: "),
+            "expected u16 (a whole number, 0 to 65535)",
+        ),
         ("l.toml", no_field.as_bytes(), format!("l.toml:{field_at}1: "), "unknown field `tow`"),
         ("l.toml", b"name = [", "l.toml:1:".to_owned(), "[form]"),
-        ("l.toml", b"name = \"\xff\"", "l.toml: ".to_owned(), "byte 8 is not UTF-8; save the file as UTF-8"),
+        ("l.toml", b"name = \"\xff\"", "l.toml: ".to_owned(), "line 1, byte 8 is not UTF-8; save the file as UTF-8"),
         ("l.xml", cut.as_bytes(), "l.xml:".to_owned(), "this is no XML"),
         ("l.railml", b"<html/>", "l.railml:1:1: ".to_owned(), "[form]"),
         ("l.json", b"{}", "l.json:1:2: ".to_owned(), "an OSRD infrastructure in JSON is expected"),
-        ("l.txt", b"", "l.txt: ".to_owned(), "it must end in .toml, .xml, .railml or .json"),
+        ("l.txt", b"", "l.txt: ".to_owned(), "it must end in .toml, .xml, .railml, .ppxml or .json"),
     ];
     for (file, bytes, place, message) in &cases {
         let folder = tempfile::tempdir().expect("a folder");
