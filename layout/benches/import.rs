@@ -1,4 +1,4 @@
-//! Import and check of a railML file with 77 routes; target: under 100 ms.
+//! Import and check of a railML and of a PlanPro file with 77 routes; target: under 100 ms.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -6,8 +6,9 @@ mod support;
 use std::hint::black_box;
 
 use atc_layout::Description;
-use atc_layout::import::railml;
+use atc_layout::import::{planpro, railml};
 use criterion::{Criterion, criterion_group, criterion_main};
+use support::planpro::Tool;
 use support::railml::{Version, railml as written};
 use support::{East, seventy_seven, station};
 
@@ -16,6 +17,13 @@ fn import(criterion: &mut Criterion) {
     criterion.bench_function("layout/railml of 77 routes: import and check", |bencher| {
         bencher.iter(|| {
             let imported = railml("77", black_box(&text)).expect("it imports");
+            imported.description.model().expect("it breaks no rule of its own").routes.len()
+        });
+    });
+    let text = support::planpro::written(&seventy_seven(), &Tool::PLAIN);
+    criterion.bench_function("layout/planpro of 77 routes: import and check", |bencher| {
+        bencher.iter(|| {
+            let imported = planpro("77", black_box(&text)).expect("it imports");
             imported.description.model().expect("it breaks no rule of its own").routes.len()
         });
     });

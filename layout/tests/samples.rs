@@ -1,13 +1,16 @@
-//! The samples in `layouts/` break no rule; those in railML are made from those in TOML, and import to the same plan.
+//! The samples in `layouts/` break no rule; those in railML and PlanPro are made from those in TOML, and import to the same plan.
 
 mod support;
 
 use atc_kernel::interlocking::{CircuitSet, Large, PointSet, Small};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use atc_layout::import::{only, railml, read_any};
+use atc_layout::model::{Model, Route};
 use atc_layout::{Description, Extent, Rule, draw, read};
 use support::central::central;
+use support::planpro;
 use support::railml::{Version, railml as written};
 use support::{East, seventy_seven, station};
 
@@ -107,7 +110,10 @@ fn every_sample_breaks_no_rule() {
         }
         seen += 1;
     }
-    assert_eq!(seen, 11, "four samples in two forms, one with calling-on routes, and two large ones");
+    assert_eq!(
+        seen, 12,
+        "four samples in two forms and one in a third, one with calling-on routes, and two large ones"
+    );
 }
 
 #[test]
@@ -116,6 +122,27 @@ fn samples_in_railml_are_made_from_those_in_toml() {
         let native = read(folder(&format!("layouts/{name}.toml"))).unwrap();
         pinned(&format!("layouts/{name}.railml.xml"), &written(&native.station, version));
     }
+}
+
+#[test]
+fn the_sample_in_planpro_is_made_from_that_in_toml_and_imports_to_the_same_routes() {
+    let native = read(folder("layouts/passing-loop.toml")).unwrap();
+    let text = planpro::written(&native.station, &planpro::Tool::PLAIN);
+    pinned("layouts/passing-loop.ppxml", &text);
+    let imported = atc_layout::import::planpro("passing-loop", &text).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(imported.description.station.name, native.station.name);
+    let (native, imported) = (native.model().unwrap(), imported.description.model().unwrap_or_else(|e| panic!("{e}")));
+    let courses = |model: &Model, name: &dyn Fn(&Route) -> String| -> BTreeMap<String, [Vec<String>; 2]> {
+        let named = |number: usize| model.circuits[number].name.clone();
+        let places = |route: &Route| {
+            let path = [route.entry].into_iter().chain(route.circuits()).map(named).collect();
+            (name(route), [path, route.overlap.iter().copied().map(named).collect()])
+        };
+        model.routes.iter().map(places).collect()
+    };
+    let by_signals = courses(&native, &|route| planpro::name_of(&native, route));
+    assert_eq!(by_signals, courses(&imported, &|route| route.name.clone()));
+    assert_eq!(by_signals.len(), native.routes.len());
 }
 
 /// The same circuits, points, paths and overlaps by name, whatever their order.

@@ -105,7 +105,7 @@ fn of_route<'a>(plan: &Plan<'a>, model: &Model, route: &Route, meant: &Meant<'a>
         differing.push(format!("its speed is {own} km/h, and the file allows {limit} km/h"));
     }
     differing.extend(asked::more(plan, meant, &run, between));
-    differing.extend(meant.overlap.map(|node| overlap(plan, model, route, node, &run)).unwrap_or_default());
+    differing.extend(overlap(plan, model, route, meant, &run));
     differing.extend(flank(plan, model, route, &run, between));
     differing.extend(fouled(plan, model, route));
     differing
@@ -255,7 +255,10 @@ fn limit(plan: &Plan<'_>, model: &Model, meant: &Meant<'_>, run: &Run, (begin, e
 /// Routes that the file excludes from each other and the layout does not.
 fn exclusions<'a>(plan: &Plan<'a>, model: &Model, routes: &BTreeMap<String, Vec<Meant<'a>>>) -> Vec<Difference> {
     let number = |node: Node<'a, 'a>| {
-        let name = routes.iter().find(|(_, all)| all.iter().any(|one| one.node == node)).map(|(name, _)| name);
+        // What is said of one route over a path holds for the one that is meant.
+        let course = plan.at(node, "ID_Fstr_Fahrweg");
+        let same = |one: &Meant<'a>| one.node == node || Some(one.course) == course;
+        let name = routes.iter().find(|(_, all)| all.iter().any(same)).map(|(name, _)| name);
         name.and_then(|name| model.routes.iter().position(|route| route.name == *name))
     };
     let mut found = Vec::new();

@@ -82,6 +82,8 @@ pub fn written(station: &Station, tool: &Tool) -> String {
         .flat_map(|(number, edge)| edge.joints.iter().map(move |(joint, at)| (*joint, (number, *at))))
         .collect();
     let mut writer = Writer { model: &model, edges, tool, spots, text: String::new() };
+    let name = value("Oertlichkeit_Langname", &station.name);
+    writer.object("Oertlichkeit", &id("place", 0), &format!("<Bezeichnung>{name}</Bezeichnung>"));
     writer.topology();
     writer.points();
     writer.sections();

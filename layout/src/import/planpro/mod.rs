@@ -72,7 +72,7 @@ pub fn import(source: &Source) -> Result<Imported, Errors> {
 
 /// What the file is about: the operating point, or what the plan is called.
 fn title(file: &File<'_>, root: roxmltree::Node<'_, '_>) -> String {
-    let place = file.all("Oertlichkeit").find_map(|node| file::value(node, &["Bezeichnung", "Oertlichkeit_Name"]));
+    let place = file.all("Oertlichkeit").find_map(|node| file::value(node, &["Bezeichnung", "Oertlichkeit_Langname"]));
     let plan = root
         .descendants()
         .filter(|node| node.has_tag_name("Planung_P_Allg"))

@@ -12,6 +12,7 @@ use roxmltree::Node;
 pub use self::conditions::known;
 use self::conditions::{passing, referring};
 use self::flank::unasked;
+use self::overlap::From;
 use super::circuits::Placed;
 use super::file::{File, at, child, is_set, value, values};
 use crate::at::At;
@@ -49,8 +50,17 @@ struct Asked<'a> {
     node: Node<'a, 'a>,
     course: Node<'a, 'a>,
     overlap: Option<Node<'a, 'a>>,
-    /// Whether another one has the same path and the same overlap.
+    /// Others with the same path.
+    others: Vec<Node<'a, 'a>>,
+    /// Whether one of them has the same overlap.
     twice: bool,
+}
+
+impl<'a> Asked<'a> {
+    /// What stands for it and for others with its path: what is said of one holds for all.
+    fn all(&self) -> impl Iterator<Item = Node<'a, 'a>> + '_ {
+        [self.node].into_iter().chain(self.others.iter().copied())
+    }
 }
 
 /// Writes the routes into `station`.
@@ -69,7 +79,8 @@ pub fn write<'a>(file: &File<'a>, placed: &Placed<'a>, station: &mut Station, re
                 ));
             }
             Ok(route) => {
-                numbers.insert(value(one.node, &["Identitaet"]).unwrap_or_default().to_lowercase(), routes.len());
+                let ids = one.all().filter_map(|node| value(node, &["Identitaet"]));
+                numbers.extend(ids.map(|id| (id.to_lowercase(), routes.len())));
                 routes.push(route);
             }
             Err(why) => {
@@ -78,13 +89,12 @@ pub fn write<'a>(file: &File<'a>, placed: &Placed<'a>, station: &mut Station, re
             }
         }
     }
-    for one in &asked {
-        let Some(number) = numbers.get(&value(one.node, &["Identitaet"]).unwrap_or_default().to_lowercase()) else {
-            continue;
-        };
-        for id in values(one.node, "ID_Fstr_Ausschluss_Besonders") {
-            let Some(other) = numbers.get(&id.to_lowercase()) else { continue };
-            for (one, other) in [(*number, *other), (*other, *number)] {
+    for node in asked.iter().flat_map(Asked::all) {
+        let number = value(node, &["Identitaet"]).and_then(|id| numbers.get(&id.to_lowercase())).copied();
+        for id in values(node, "ID_Fstr_Ausschluss_Besonders") {
+            let other = numbers.get(&id.to_lowercase()).copied();
+            let Some((number, other)) = number.zip(other) else { continue };
+            for (one, other) in [(number, other), (other, number)] {
                 let name = At::derived(routes[other].name.value.clone());
                 if one != other && !routes[one].conflicts.contains(&name) {
                     routes[one].conflicts.push(name);
@@ -129,17 +139,19 @@ impl<'a> Reader<'a, '_> {
                 // One path and one overlap: what tells them apart is not held.
                 Some(other) if other.overlap == overlap => {
                     other.twice = true;
+                    other.others.push(node);
                 }
                 // One path, two overlaps: the one that is set without asking for another.
                 Some(other) => {
                     let keeps = is_preferred(other.node) || !is_preferred(node);
                     let left = if keeps { node } else { other.node };
                     self.report.skipped.push(format!("{}: the same path with another overlap", at(left)));
+                    other.others.push(left);
                     if !keeps {
-                        *other = Asked { node, course, overlap, twice: other.twice };
+                        (other.node, other.overlap) = (node, overlap);
                     }
                 }
-                None => asked.push(Asked { node, course, overlap, twice: false }),
+                None => asked.push(Asked { node, course, overlap, others: Vec::new(), twice: false }),
             }
         }
         (asked, count)
@@ -158,7 +170,7 @@ impl<'a> Reader<'a, '_> {
                 .referred(course, "ID_Start")
                 .and_then(|signal| value(signal, &["Signal_Real", "Signal_Real_Aktiv_Schirm", "Signal_Art"]));
             if kind.is_some_and(|kind| MAIN.contains(&kind)) {
-                asked.push(Asked { node: course, course, overlap: None, twice: false });
+                asked.push(Asked { node: course, course, overlap: None, others: Vec::new(), twice: false });
             } else {
                 others += 1;
             }
@@ -183,7 +195,7 @@ impl<'a> Reader<'a, '_> {
     }
 
     fn route(&mut self, asked: &Asked<'a>) -> Result<Route, String> {
-        let Asked { node, course, overlap, twice } = *asked;
+        let Asked { node, course, overlap, twice, .. } = *asked;
         if let Some(what) = self.placed.tracks.nowhere.first().or(self.unasked.first()) {
             return Err(format!("{what}: it may be about any route"));
         }
@@ -196,7 +208,7 @@ impl<'a> Reader<'a, '_> {
         for one in [signal, target] {
             passing(one)?;
         }
-        for id in values(node, "ID_Fstr_Ausschluss_Besonders") {
+        for id in asked.all().flat_map(|node| values(node, "ID_Fstr_Ausschluss_Besonders")) {
             self.file.id(id).ok_or_else(|| format!("it excludes {id}, which is not in the file"))?;
         }
         let covered = self.covered(course)?;
@@ -240,25 +252,17 @@ impl<'a> Reader<'a, '_> {
         let own: BTreeSet<usize> = way.iter().map(|(circuit, _)| *circuit).chain([at_start.rear]).collect();
         proved.retain(|circuit| !own.contains(circuit));
         route.proved_clear = proved.into_iter().map(|circuit| At::derived(self.circuit(circuit))).collect();
-        let mut limits: Vec<u16> = self.placed.tracks.limits.on_way(&way, &self.placed.divided).into_iter().collect();
-        let given = [
-            value(node, &["Fstr_Zug_Rangier_Allg", "Fstr_V"]),
-            value(course, &["Fstr_V_Hg"]),
-            overlap.and_then(|overlap| value(overlap, &["Fstr_DWeg_Spezifisch", "DWeg_V"])),
-        ];
-        for text in given.into_iter().flatten() {
-            limits.push(kmh(text).ok_or_else(|| format!("its speed {text:?} is no number of km/h above 0"))?);
-        }
-        self.speed(&mut route, limits.into_iter().min(), passed.values())?;
-        for (beside, what) in [(at_start.beside, "begins at the joint"), (at_exit.beside, "ends at the joint")] {
+        let limits = own_limits(asked)?.into_iter().chain(self.placed.tracks.limits.on_way(&way, &self.placed.divided));
+        self.speed(&mut route, limits.min(), passed.values())?;
+        for (beside, word, of) in [(at_start.beside, "begins", "signal"), (at_exit.beside, "ends", "exit")] {
             if beside > NEAR {
-                let of = if what.starts_with("begins") { "signal" } else { "exit" };
-                self.report.defaulted.push(format!("route {name}: it {what} {beside:.0} m from its {of}"));
+                let what = format!("route {name}: it {word} at the joint {beside:.0} m from its {of}");
+                self.report.defaulted.push(what);
             }
         }
         if let Some(overlap) = overlap {
-            let last = (at_exit.joint, at_exit.rear);
-            self.overlap(&mut route, overlap, last, &own)
+            let from = From { signal: target, joint: at_exit.joint, circuit: at_exit.rear };
+            self.overlap(&mut route, overlap, &from, &own)
                 .map_err(|why| format!("its overlap, the {}: {why}", at(overlap)))?;
         }
         self.report.defaulted.push(format!("route {name}: release time of [times]: PlanPro has none"));
@@ -289,4 +293,18 @@ impl<'a> Reader<'a, '_> {
     fn circuit(&self, number: usize) -> String {
         self.station.circuits[number].name.value.clone()
     }
+}
+
+/// The limits that a route, its path and its overlap have of their own, in km/h.
+///
+/// # Errors
+/// One that cannot be read: it may be any.
+fn own_limits(asked: &Asked<'_>) -> Result<Vec<u16>, String> {
+    let given = [
+        value(asked.node, &["Fstr_Zug_Rangier_Allg", "Fstr_V"]),
+        value(asked.course, &["Fstr_V_Hg"]),
+        asked.overlap.and_then(|overlap| value(overlap, &["Fstr_DWeg_Spezifisch", "DWeg_V"])),
+    ];
+    let read = |text: &str| kmh(text).ok_or_else(|| format!("its speed {text:?} is no number of km/h above 0"));
+    given.into_iter().flatten().map(read).collect()
 }

@@ -5,18 +5,23 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::asked::unset;
-use super::circuit;
 use super::plan::{Plan, identity, is_on, metres, parts, text};
 use super::run::{Run, named, position};
+use super::{Meant, circuit};
 use crate::form::Position;
 use crate::model::{Model, Route};
 
 /// The overlap of the file is held by the layout, for its time.
-pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: Node<'a, 'a>, run: &Run) -> Vec<String> {
+pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, meant: &Meant<'a>, run: &Run) -> Vec<String> {
+    let Some(node) = meant.overlap else { return Vec::new() };
     let Some(course) = plan.at(node, "ID_Fstr_Fahrweg") else {
         return vec!["its overlap has no path in the file".to_owned()];
     };
     let parts = parts(course);
+    let mut differing = Vec::new();
+    if plan.at(course, "ID_Start") != plan.at(meant.course, "ID_Ziel") {
+        differing.push("in the file its overlap begins at another signal than it ends at".to_owned());
+    }
     let own: BTreeSet<&str> = route.circuits().chain([route.entry]).map(|number| circuit(model, number)).collect();
     let have: BTreeSet<&str> = route.overlap.iter().map(|number| circuit(model, *number)).collect();
     let all = plan.sections();
@@ -30,7 +35,6 @@ pub(super) fn overlap<'a>(plan: &Plan<'a>, model: &Model, route: &Route, node: N
         let section = plan.at(proved, "").and_then(|section| plan.at(section, "ID_Gleis_Abschnitt"));
         wanted.extend(section.map(|section| plan.call(section)));
     }
-    let mut differing = Vec::new();
     let missing: Vec<&str> =
         wanted.iter().map(String::as_str).filter(|name| !own.contains(name) && !have.contains(name)).collect();
     if !missing.is_empty() {

@@ -151,8 +151,9 @@ fn the_samples_are_sound() {
 #[test]
 fn an_import_is_a_layout_and_its_report_stands_apart() {
     let folder = folder();
-    for name in ["passing-loop", "junction", "terminus", "station-30"] {
-        let (from, to) = (format!("{name}.railml.xml"), format!("{name}.imported.toml"));
+    let railml = ["passing-loop", "junction", "terminus", "station-30"].map(|name| (name, "railml.xml"));
+    for (name, form) in railml.into_iter().chain([("passing-loop", "ppxml")]) {
+        let (from, to) = (format!("{name}.{form}"), format!("{name}.{form}.toml"));
         let (printed, report) = said(folder.path(), &["import", &from]);
         for part in ["taken:", "defaulted, to be confirmed:", "lacking:", "not used:", "the layout breaks no rule"] {
             assert!(report.contains(part), "{name}: {report}");
@@ -164,6 +165,9 @@ fn an_import_is_a_layout_and_its_report_stands_apart() {
         let (source, _) = said(folder.path(), &["check", &format!("{name}.toml")]);
         let counts = |line: &str| line.lines().next().and_then(|line| line.split_once(": ").map(|it| it.1.to_owned()));
         assert_eq!(counts(&checked), counts(&source), "{name}");
+        // The file is read a second time, and held against what was made of it.
+        let (same, _) = said(folder.path(), &["compare", &to, &from]);
+        assert_eq!(same, "no difference\n", "{from}");
     }
 }
 
@@ -271,7 +275,7 @@ fn two_descriptions_of_one_station_are_compared_cell_by_cell() {
 #[test]
 fn a_layout_comes_from_standard_input_in_any_form() {
     let folder = folder();
-    for name in ["passing-loop.toml", "passing-loop.railml.xml"] {
+    for name in ["passing-loop.toml", "passing-loop.railml.xml", "passing-loop.ppxml"] {
         let file = fs::File::open(folder.path().join(name)).expect(name);
         let mut command = Command::new(device::oracle());
         let output = command.args(["layout", "check", "-"]).stdin(file).output().expect("the oracle runs");

@@ -43,7 +43,9 @@ impl<'a> Reader<'a, '_> {
             }
         }
         // What is passed on over the toe of a point that protects is for those that count on it.
-        for point in held.keys().copied().collect::<Vec<usize>>() {
+        let mut asked = BTreeSet::new();
+        while let Some(point) = held.keys().copied().find(|point| !asked.contains(point)) {
+            asked.insert(point);
             for protection in self.protections(point, |over| over == Some("Spitze")) {
                 self.protect(protection, &mut held, proved, 0)?;
             }

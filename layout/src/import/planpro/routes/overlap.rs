@@ -23,16 +23,29 @@ pub(super) fn figure_of(node: Node<'_, '_>, path: &[&str]) -> Result<Option<f64>
     figure(node, path).map(Some).ok_or_else(|| format!("its {name} {text:?} is no number"))
 }
 
+/// Where a route ends and its overlap begins.
+pub(super) struct From<'a> {
+    /// The signal there.
+    pub(super) signal: Node<'a, 'a>,
+    /// The joint that belongs to it.
+    pub(super) joint: usize,
+    /// The last circuit of the route.
+    pub(super) circuit: usize,
+}
+
 impl<'a> Reader<'a, '_> {
     /// The overlap of a route, from its last joint and circuit on.
     pub(super) fn overlap(
         &mut self,
         route: &mut Route,
         node: Node<'a, 'a>,
-        (joint, last): (usize, usize),
+        from: &From<'a>,
         own: &BTreeSet<usize>,
     ) -> Result<(), String> {
         let course = self.file.referred(node, "ID_Fstr_Fahrweg").ok_or("its Fstr_Fahrweg is not in the file")?;
+        if value(course, &["ID_Start"]).and_then(|id| self.file.id(id)) != Some(from.signal) {
+            return Err(format!("it does not begin at the {}, where the route ends", at(from.signal)));
+        }
         known(node, OF_OVERLAP)?;
         child(node, "Fstr_DWeg_Spezifisch").map_or(Ok(()), |special| known(special, OF_SPECIAL))?;
         self.unreferred(node)?;
@@ -59,9 +72,15 @@ impl<'a> Reader<'a, '_> {
         let positions = self.positions(&covered)?;
         let mut passed: BTreeSet<usize> = BTreeSet::new();
         if !within.is_empty() {
-            let first = self.placed.graph.across(joint, last).ok_or("the tracks end with the route")?;
-            let sought =
-                Sought { start: joint, first, exit: None, last: None, within: Some(&within), positions: &positions };
+            let first = self.placed.graph.across(from.joint, from.circuit).ok_or("the tracks end with the route")?;
+            let sought = Sought {
+                start: from.joint,
+                first,
+                exit: None,
+                last: None,
+                within: Some(&within),
+                positions: &positions,
+            };
             let Some(Found { way, alone }) = search(&self.placed.graph, &sought) else {
                 return Err("no way leads over what it covers from the end of the route".to_owned());
             };
@@ -69,6 +88,13 @@ impl<'a> Reader<'a, '_> {
             if !alone {
                 let what = "points beyond the end of its overlap are held in one position";
                 self.report.defaulted.push(format!("route {name}: {what}"));
+            }
+            for one in way.iter().flat_map(|(_, way)| &way.passed) {
+                let name = &self.station.points[one.point].name.value;
+                let given = route.path.iter().filter_map(|place| place.value.points.get(name));
+                if given.into_iter().any(|position| position.value != one.position) {
+                    return Err(format!("the path, or its flank, asks for the other position of {name}"));
+                }
             }
             passed.extend(way.iter().flat_map(|(_, way)| &way.passed).map(|passed| passed.point));
             route.overlap = path(self.station, &way);
