@@ -248,6 +248,34 @@ fn a_route_that_is_not_what_its_parts_say_is_left_out() {
     assert!(left_out(&open.report, "rA-B2", "the file leaves more than one way"), "{}", open.report);
 }
 
+#[test]
+fn a_route_that_is_not_for_trains_is_left_out() {
+    let with = |kind: &str| format!("<handlesRouteType ref=\"{kind}\"/><routeEntry");
+    let count = |imported: &Imported| imported.description.station.routes.len();
+    let all = count(&imported(CHAINAGE));
+    let told = |imported: &Imported, why: &str| imported.report.lacking.iter().any(|line| line.contains(why));
+    for kind in ["rt_shunting", "Rangierstrasse", "callOn", "main_shunting"] {
+        let one = imported(&CHAINAGE.replacen("<routeEntry", &with(kind), 1));
+        assert_eq!(count(&one), all - 1, "{kind}: {}", one.report);
+        assert!(told(&one, "which is none of trains"), "{kind}: {}", one.report);
+    }
+    let main = imported(&CHAINAGE.replacen("<routeEntry", &with("rt_main"), 1));
+    assert_eq!(count(&main), all, "{}", main.report);
+    // One of its kinds is enough.
+    let both = imported(&CHAINAGE.replacen(
+        "<routeEntry",
+        &(with("rt_main") + &with("rt_shunting")).replacen("<routeEntry", "", 1),
+        1,
+    ));
+    assert_eq!(count(&both), all, "{}", both.report);
+    let unknown = imported(&CHAINAGE.replacen("<routeEntry", &with("rt_3"), 1));
+    assert_eq!(count(&unknown), all - 1);
+    assert!(told(&unknown, "the file does not say that this is one of trains"), "{}", unknown.report);
+    let alike = imported(&CHAINAGE.replace("<routeEntry", &with("rt_3")));
+    assert_eq!(count(&alike), all, "{}", alike.report);
+    assert!(reports(&alike.report.defaulted, "all routes are of the type rt_3"), "{}", alike.report);
+}
+
 /// Whether the route with this id was left out for this reason.
 fn left_out(report: &Report, route: &str, why: &str) -> bool {
     let start = format!("route {route}, line ");

@@ -38,7 +38,7 @@ pub(crate) struct ConformArgs {
     #[arg(long, default_value = "60s", value_parser = duration)]
     time: Duration,
     /// At most this many cases for each machine, however long it takes
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(1..))]
     cases: Option<u64>,
     /// One configuration for every case: the body of a start's config as JSON or TOML, such as a layout; needs one --machine
     #[arg(long, value_name = "FILE")]

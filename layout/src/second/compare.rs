@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use roxmltree::Node;
 
 use super::difference::Difference;
-use super::file::{Branch, File, refers};
+use super::file::{Branch, File, every_ref, refers};
 use super::held::{held, overlap, times};
 use super::positions::left_is_normal;
 use super::readings::{Reading, readings};
@@ -59,6 +59,7 @@ fn of_route<'a>(file: &File<'a>, model: &Model, route: &Route, node: Node<'a, 'a
     }
     differing.extend(signal(file, route, node));
     differing.extend(beyond(node));
+    differing.extend(other_kind(file, node));
     differing.extend(held(file, model, route, node));
     differing.extend(times(file, model, route, node));
     differing.extend(overlap(file, model, route, node));
@@ -77,6 +78,19 @@ fn beyond(node: Node<'_, '_>) -> Option<String> {
     let mut found =
         elements.filter(|name| is_new(ELEMENTS, name)).chain(attributes.filter(|name| is_new(ATTRIBUTES, name)));
     found.next().map(|name| format!("the file has {name} of it, which may be a condition"))
+}
+
+/// Where the file tells kinds of routes apart, this one is of a kind that is for trains by its name.
+fn other_kind<'a>(file: &File<'a>, node: Node<'a, 'a>) -> Option<String> {
+    let kinds = |route: Node<'a, 'a>| every_ref(route, "handlesRouteType").collect::<BTreeSet<&str>>();
+    let own = kinds(node);
+    let told = |kind: &&str| format!("{kind} {}", file.by_id(kind).map_or("", |_| file.call(kind))).to_lowercase();
+    let of = |kind: &&str, words: &str| words.split(' ').any(|word| told(kind).contains(word));
+    let other = |kind: &&str| of(kind, "shunt rangier call auxil hilf emerg subst ersatz manoeuv");
+    let is_train = own.iter().any(|kind| of(kind, "main train zug principal") && !other(kind));
+    let alike = file.every("route").all(|route| kinds(route) == own);
+    let may_be = alike && own.len() == 1 && !own.iter().all(other);
+    (!own.is_empty() && !is_train && !may_be).then(|| format!("in the file it is of the kind {own:?}"))
 }
 
 /// The signal of a route is the file's. One that has no name of its own in the layout is called as its route.

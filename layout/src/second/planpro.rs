@@ -190,6 +190,12 @@ fn signals(plan: &Plan<'_>, model: &Model, route: &Route, run: &Run, differing: 
             differing.push(format!("{one} and {other} meet on its way where no signal stands in the file"));
         }
     }
+    // A stop is not farther than the train runs, but for a border beyond its exit.
+    let long = |number: usize| model.circuits.get(number).map_or(0.0, |circuit| f64::from(circuit.length.0));
+    let own: f64 = route.circuits().map(long).sum();
+    if own > run.length + run::OFFSET + 1.0 {
+        differing.push(format!("its path is {own} m long, and in the file {:.0} m", run.length));
+    }
     (0.0, run.length)
 }
 

@@ -11,6 +11,7 @@ use reader::Reader;
 
 mod course;
 mod ends;
+mod kind;
 mod overlap;
 mod reader;
 mod route;
@@ -46,6 +47,9 @@ pub fn write<'a>(xml: &Xml<'a>, placed: &Placed<'a>, station: &mut Station, repo
     let combined = xml.all("combinedRoute").count();
     if combined > 0 {
         reader.report.skipped.push(format!("{combined} combined routes: their parts are set one after the other"));
+    }
+    if let Some(only) = kind::only_type(xml).filter(|only| !kind::is_told(xml, only)) {
+        reader.report.defaulted.push(format!("all routes are of the type {only}: they are taken to be for trains"));
     }
     if count == 0 {
         report.lacking.push("routes: the file has none, so the layout can be drawn, but nothing can be set".to_owned());

@@ -33,7 +33,7 @@ const FILES: [(&str, &str); 9] = [
 type Changed = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// Changes that give a file what it has not.
-const CHANGED: [Changed; 16] = [
+const CHANGED: [Changed; 17] = [
     // Files that are wrong: the right importer leaves a route out.
     (
         "a section too many",
@@ -66,6 +66,11 @@ const CHANGED: [Changed; 16] = [
         "another switch",
         "head-on",
         &[("<refersTo ref=\"sw0\"/>", "<refersTo ref=\"sw0\"/><relatedMovableElement ref=\"swil1\"/>")],
+    ),
+    (
+        "shunting",
+        "head-on",
+        &[("<routeEntry id=\"rt0e\">", "<handlesRouteType ref=\"rt_shunting\"/><routeEntry id=\"rt0e\">")],
     ),
     ("late", "head-on", &[("<route id=\"rt0\"", "<route proceedAspectDelay=\"PT40S\" id=\"rt0\"")]),
     // And some that are right.

@@ -116,6 +116,10 @@ fn nothing_compared_is_no_agreement() {
     let said = text(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("start: expected \"started\", got \"rejected\""), "{said}");
+    // No case at all is asked for: that is an error of the command.
+    let output = oracle(folder.path(), &["conform", "--impl", refuses, "--cases", "0"]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("0 is not in 1.."), "{}", text(&output.stderr));
 }
 
 #[test]

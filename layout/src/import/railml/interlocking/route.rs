@@ -20,6 +20,7 @@ impl<'a> Reader<'a, '_> {
         if let Some(what) = unread::asks(node) {
             return Err(format!("it has {what}, which no layout holds"));
         }
+        self.for_trains(node)?;
         let sections = self.sections(node)?;
         let mut positions = self.positions(node, &["facingSwitchInPosition", "trailingSwitchInPosition"])?;
         let exit = child(node, "routeExit").and_then(|exit| reference(exit, "refersTo"));
