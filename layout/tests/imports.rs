@@ -261,6 +261,14 @@ fn a_route_that_is_not_for_trains_is_left_out() {
     }
     let main = imported(&CHAINAGE.replacen("<routeEntry", &with("rt_main"), 1));
     assert_eq!(count(&main), all, "{}", main.report);
+    for kind in ["domain", "remainder", "maintenance", "trainingMode", "non-main", "no train"] {
+        let one = imported(&CHAINAGE.replacen("<routeEntry", &with(kind), 1));
+        assert_eq!(count(&one), all - 1, "{kind}: {}", one.report);
+    }
+    for kind in ["mainRoute", "Zugstraße", "r.train-7"] {
+        let one = imported(&CHAINAGE.replacen("<routeEntry", &with(kind), 1));
+        assert_eq!(count(&one), all, "{kind}: {}", one.report);
+    }
     // One of its kinds is enough.
     let both = imported(&CHAINAGE.replacen(
         "<routeEntry",

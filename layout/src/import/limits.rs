@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::network::Divided;
-use crate::form::Position;
+use super::network::{Divided, Network, Side};
+use crate::form::{Position, Station};
 use crate::graph::Way;
 
 /// What a file says of speeds, in km/h, rounded down.
@@ -27,6 +27,23 @@ impl Limits {
         (self.branches.len(), self.stretches.len())
     }
 
+    /// Whether a way leads over a reverse leg of which nothing says how fast: neither its own limit nor one that holds at its blades.
+    pub fn leaves_open(&self, way: &[(usize, Way)], network: &Network) -> bool {
+        let reverse = way.iter().flat_map(|(_, way)| &way.passed).filter(|passed| passed.position == Position::Reverse);
+        let mut open = reverse.filter(|passed| !self.branches.contains_key(&(passed.point, passed.position)));
+        open.any(|passed| {
+            let Some([_, _, (leg, side)]) = network.switches.get(passed.point).map(|switch| switch.ports) else {
+                return true;
+            };
+            let given = &network.edges[leg];
+            let at = if side == Side::Begin { given.begin } else { given.length };
+            let holds = |(edge, from, to, _): &(usize, f64, f64, u16)| {
+                *edge == leg && (from - AT_BLADES..=to + AT_BLADES).contains(&at)
+            };
+            !self.stretches.iter().any(holds)
+        })
+    }
+
     /// The lowest limit on a way, if any is given.
     pub fn on_way(&self, way: &[(usize, Way)], divided: &Divided) -> Option<u16> {
         let passed = way.iter().flat_map(|(_, way)| &way.passed);
@@ -41,6 +58,14 @@ impl Limits {
         };
         self.stretches.iter().filter(touched).map(|(.., limit)| *limit).min()
     }
+}
+
+/// A limit that begins so many metres from the blades of a point holds there.
+const AT_BLADES: f64 = 1.0;
+
+/// The lowest speed that a code says.
+pub fn lowest(station: &Station) -> u16 {
+    station.braking.speeds_kmh.iter().copied().filter(|kmh| *kmh > 0).min().unwrap_or(0)
 }
 
 /// Whole km/h, rounded down; nothing if it is no speed.

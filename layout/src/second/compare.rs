@@ -84,10 +84,26 @@ fn beyond(node: Node<'_, '_>) -> Option<String> {
 fn other_kind<'a>(file: &File<'a>, node: Node<'a, 'a>) -> Option<String> {
     let kinds = |route: Node<'a, 'a>| every_ref(route, "handlesRouteType").collect::<BTreeSet<&str>>();
     let own = kinds(node);
-    let told = |kind: &&str| format!("{kind} {}", file.by_id(kind).map_or("", |_| file.call(kind))).to_lowercase();
-    let of = |kind: &&str, words: &str| words.split(' ').any(|word| told(kind).contains(word));
-    let other = |kind: &&str| of(kind, "shunt rangier call auxil hilf emerg subst ersatz manoeuv");
-    let is_train = own.iter().any(|kind| of(kind, "main train zug principal") && !other(kind));
+    let told = |kind: &&str| file.by_id(kind).map_or(*kind, |_| file.call(kind)).to_owned();
+    let has = |kind: &&str, word: &str| told(kind).to_lowercase().contains(word);
+    let other = |kind: &&str| {
+        "shunt rangier call auxil hilf emerg subst ersatz manoeuv manœuv sperr".split(' ').any(|word| has(kind, word))
+    };
+    // A word of its own: what stands beside it is no letter, or a capital after it.
+    let says = |kind: &&str, word: &str| {
+        let text = format!(" {} ", told(kind));
+        let lower = text.to_ascii_lowercase();
+        lower.match_indices(word).any(|(at, _)| {
+            let (before, behind) = (text[..at].chars().next_back(), text[at + word.len()..].chars().next());
+            let begins = before.is_none_or(|letter| {
+                !letter.is_alphabetic() || letter.is_lowercase() && text[at..].starts_with(char::is_uppercase)
+            });
+            begins && behind.is_none_or(|letter| !letter.is_alphabetic() || letter.is_uppercase())
+        })
+    };
+    let trains = ["main", "train", "trains", "principal", "zugstrasse", "zugstraße"];
+    let denies = |kind: &&str| ["no", "non", "not", "nicht"].iter().any(|word| says(kind, word));
+    let is_train = own.iter().any(|kind| !other(kind) && !denies(kind) && trains.iter().any(|word| says(kind, word)));
     let alike = file.every("route").all(|route| kinds(route) == own);
     let may_be = alike && own.len() == 1 && !own.iter().all(other);
     (!own.is_empty() && !is_train && !may_be).then(|| format!("in the file it is of the kind {own:?}"))

@@ -242,6 +242,11 @@ fn limit(plan: &Plan<'_>, model: &Model, meant: &Meant<'_>, run: &Run, (begin, e
             }
         }
     }
+    for node in plan.kind("W_Kr_Gsp_Komponente").filter(|node| run.meets(*node, begin, end)) {
+        for path in ["Kreuzung/Geschwindigkeit_L", "Kreuzung/Geschwindigkeit_R"] {
+            limits.extend(read(node, path));
+        }
+    }
     let lowest = model.values.speeds_kmh.iter().copied().filter(|kmh| *kmh > 0).min().map(f64::from);
     for (blades, is_left, at) in run.legs(plan) {
         if !(begin..end).contains(&at) {

@@ -41,6 +41,46 @@ pub struct Stretch {
     pub to: f64,
 }
 
+/// What is read of an object and stands in it once.
+const SINGLE: [&str; 36] = [
+    "Abstand",
+    "Aufloesung_Verzoegerung",
+    "Begrenzung_A",
+    "Begrenzung_B",
+    "DWeg_V",
+    "DWeg_Vorzug",
+    "Durchfahrt",
+    "Element_Verschluss",
+    "Fahrt_Ueber",
+    "Fla_Raum_Freimeldung",
+    "Fla_Schutz_Anforderer",
+    "Fla_Schutz_W_Gsp",
+    "Fla_Schutz_Weitergabe",
+    "Fla_W_Lage",
+    "Fstr_V",
+    "Fstr_V_Hg",
+    "Fstr_Zug",
+    "Fstr_Zug_Art",
+    "Fstr_Zug_DWeg",
+    "Geschwindigkeit",
+    "Geschwindigkeit_L",
+    "Geschwindigkeit_R",
+    "ID_Element",
+    "ID_Fla_W_Gsp_Element",
+    "ID_Fla_Weitergabe_L",
+    "ID_Fla_Weitergabe_R",
+    "ID_Fstr_DWeg",
+    "ID_Fstr_Fahrweg",
+    "ID_Start",
+    "ID_TOP_Kante",
+    "ID_W_Kr_Gsp_Element",
+    "ID_Ziel",
+    "Laenge_Soll",
+    "Stammgleis",
+    "TOP_Laenge",
+    "Wirkrichtung",
+];
+
 /// Figures of an identity that tell objects apart in most files.
 const SHORT: usize = 8;
 
@@ -70,6 +110,18 @@ impl<'a> File<'a> {
         for node in file.objects.iter().flat_map(Node::descendants).filter(is_divided) {
             let what = "a value is in several parts";
             problems.push(Problem::new(Rule::Form, &start(node), what, "let nothing but the value stand in its Wert"));
+        }
+        // Of two values for one attribute only the first would be read.
+        for node in file.objects.iter().flat_map(Node::descendants).filter(Node::is_element) {
+            let name = node.tag_name().name();
+            let again = node.prev_siblings().skip(1).find(|other| other.has_tag_name(name));
+            if again.is_some()
+                && SINGLE.contains(&name)
+                && node.parent().is_none_or(|parent| !parent.has_tag_name("Container"))
+            {
+                let what = format!("there are two {name} where one may be");
+                problems.push(Problem::new(Rule::NameTwice, &start(node), what, "leave the one that holds"));
+            }
         }
         for node in &file.objects {
             let Some(id) = value(*node, &["Identitaet"]) else { continue };

@@ -9,7 +9,7 @@ use super::routes::known;
 use super::tracks::{AT_NODE, Fork, Tracks};
 use crate::at::At;
 use crate::form::{Position, Station};
-use crate::import::limits::kmh;
+use crate::import::limits::{kmh, lowest};
 use crate::import::network::{EdgeEnd, Switch};
 use crate::import::report::Report;
 
@@ -93,7 +93,7 @@ impl<'a> Tracks<'a> {
         let left_is_normal = !main.or(preferred).is_some_and(|side| side.eq_ignore_ascii_case("rechts"));
         let ports = if left_is_normal { [toe, left, right] } else { [toe, right, left] };
         let point = self.network.switches.len();
-        let slowest = station.braking.speeds_kmh.iter().copied().filter(|kmh| *kmh > 0).min().unwrap_or(0);
+        let slowest = lowest(station);
         let mut is_curved = false;
         for (is_left, speed) in [(true, "Geschwindigkeit_L"), (false, "Geschwindigkeit_R")] {
             let position = if is_left == left_is_normal { Position::Normal } else { Position::Reverse };

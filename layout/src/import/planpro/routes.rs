@@ -11,14 +11,13 @@ use roxmltree::Node;
 
 pub use self::conditions::known;
 use self::conditions::{passing, referring};
-use self::flank::unasked;
 use self::overlap::From;
 use super::circuits::Placed;
 use super::file::{File, at, child, is_set, value, values};
 use crate::at::At;
 use crate::form::{Position, Route, Station};
 use crate::import::joints::NEAR;
-use crate::import::limits::kmh;
+use crate::import::limits::{kmh, lowest};
 use crate::import::report::Report;
 use crate::import::search::{Found, Sought, search};
 use crate::import::way::{hold, path};
@@ -40,8 +39,6 @@ struct Reader<'a, 'b> {
     report: &'b mut Report,
     /// What else of the file refers to an object, by its identity.
     referring: BTreeMap<String, Vec<Node<'a, 'a>>>,
-    /// Flank protection of which the file does not say who asks for it.
-    unasked: Vec<String>,
 }
 
 /// A route as it is read.
@@ -65,8 +62,7 @@ impl<'a> Asked<'a> {
 
 /// Writes the routes into `station`.
 pub fn write<'a>(file: &File<'a>, placed: &Placed<'a>, station: &mut Station, report: &mut Report) {
-    let mut reader =
-        Reader { file, placed, station, report, referring: referring(file), unasked: unasked(file, placed) };
+    let mut reader = Reader { file, placed, station, report, referring: referring(file) };
     let (asked, count) = reader.asked();
     let (mut routes, mut numbers): (Vec<Route>, BTreeMap<String, usize>) = (Vec::new(), BTreeMap::new());
     for one in &asked {
@@ -196,7 +192,7 @@ impl<'a> Reader<'a, '_> {
 
     fn route(&mut self, asked: &Asked<'a>) -> Result<Route, String> {
         let Asked { node, course, overlap, twice, .. } = *asked;
-        if let Some(what) = self.placed.tracks.nowhere.first().or(self.unasked.first()) {
+        if let Some(what) = self.placed.tracks.nowhere.first() {
             return Err(format!("{what}: it may be about any route"));
         }
         if twice {
@@ -252,8 +248,15 @@ impl<'a> Reader<'a, '_> {
         let own: BTreeSet<usize> = way.iter().map(|(circuit, _)| *circuit).chain([at_start.rear]).collect();
         proved.retain(|circuit| !own.contains(circuit));
         route.proved_clear = proved.into_iter().map(|circuit| At::derived(self.circuit(circuit))).collect();
-        let limits = own_limits(asked)?.into_iter().chain(self.placed.tracks.limits.on_way(&way, &self.placed.divided));
-        self.speed(&mut route, limits.min(), passed.values())?;
+        let tracks = &self.placed.tracks;
+        let limits = own_limits(asked)?.into_iter().chain(tracks.limits.on_way(&way, &self.placed.divided));
+        let mut limit = limits.min();
+        let is_planned = value(node, &["Fstr_Zug_Rangier_Allg", "Fstr_V"]).is_some();
+        if !is_planned && tracks.limits.leaves_open(&way, &tracks.network) {
+            // A limit somewhere else says nothing of this leg; that of the route does.
+            limit = limit.map(|limit| limit.min(lowest(self.station)));
+        }
+        self.speed(&mut route, limit, passed.values())?;
         for (beside, word, of) in [(at_start.beside, "begins", "signal"), (at_exit.beside, "ends", "exit")] {
             if beside > NEAR {
                 let what = format!("route {name}: it {word} at the joint {beside:.0} m from its {of}");

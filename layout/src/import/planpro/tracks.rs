@@ -15,6 +15,9 @@ use crate::rule::Rule;
 /// So many metres from a node is at it.
 pub const AT_NODE: f64 = 0.5;
 
+/// What no train comes from.
+const BUFFERS: [&str; 4] = ["Bremsprellbock", "Festprellbock", "Kopframpe", "Schwellenkreuz"];
+
 /// An edge of the topology, which may be divided where another one crosses it.
 pub struct Top<'a> {
     /// The nodes A and B, by identity.
@@ -93,6 +96,7 @@ pub fn read<'a>(file: &File<'a>, station: &Station, report: &mut Report, problem
     tracks.read_nodes(file, station, report);
     tracks.read_buffers(file, report);
     tracks.read_level_crossings(file);
+    tracks.read_flanks(file);
     tracks.read_limits(file, report);
     tracks
 }
@@ -227,8 +231,8 @@ impl<'a> Tracks<'a> {
 
     fn read_buffers(&mut self, file: &File<'a>, report: &mut Report) {
         for node in file.all("Gleis_Abschluss") {
-            let kind = value(node, &["Gleis_Abschluss_Art"]);
-            if kind.is_some_and(|kind| ["fiktiv", "Infrastrukturgrenze"].contains(&kind)) {
+            // Over a turntable or from a ferry trains may come: that is no buffer stop.
+            if !value(node, &["Gleis_Abschluss_Art"]).is_some_and(|kind| BUFFERS.contains(&kind)) {
                 continue;
             }
             for place in places(node) {
@@ -257,6 +261,29 @@ impl<'a> Tracks<'a> {
         }
     }
 
+    /// Flank protection whose place is not that of a point: it is in the way there, or may be about any route.
+    fn read_flanks(&mut self, file: &File<'a>) {
+        for node in file.all("Fla_Schutz") {
+            let Some(asks) = child(node, "Fla_Schutz_Anforderer") else { continue };
+            let by = value(asks, &["ID_Anforderer_Element"]).unwrap_or_default();
+            let element = file.id(by);
+            // A zone that is set locally asks for its own vehicles.
+            if self.elements.contains_key(&by.to_lowercase())
+                || element.is_some_and(|one| one.has_tag_name("NB_Zone_Grenze"))
+            {
+                continue;
+            }
+            let own = |part: &Node<'a, 'a>| element.is_some() && file.referred(*part, "ID_W_Kr_Gsp_Element") == element;
+            let here: Vec<Place> = file.all("W_Kr_Gsp_Komponente").filter(own).flat_map(places).collect();
+            self.obstruct(node, here, "is asked for by what is no point");
+        }
+        let lacks = |name: &'static str| move |node: &Node<'a, 'a>| file.referred(*node, name).is_none();
+        let proved = file.all("Fla_Freimelde_Zuordnung").filter(lacks("ID_Fla_Schutz"));
+        let locked = file.all("Fstr_DWeg_W_Kr").filter(lacks("ID_Fstr_DWeg"));
+        self.nowhere
+            .extend(proved.chain(locked).map(|node| format!("the {} is for what is not in the file", at(node))));
+    }
+
     fn read_limits(&mut self, file: &File<'a>, report: &mut Report) {
         let given = file
             .all("Geschwindigkeitsprofil")
@@ -264,6 +291,16 @@ impl<'a> Tracks<'a> {
             .chain(
                 file.all("Gleis_Abschnitt").filter_map(|node| Some((node, Some(value(node, &["Geschwindigkeit"])?)))),
             );
+        let crossings = file.all("W_Kr_Gsp_Komponente").flat_map(|node| {
+            let speeds = ["Geschwindigkeit_L", "Geschwindigkeit_R"].map(|name| value(node, &["Kreuzung", name]));
+            speeds.into_iter().flatten().map(move |text| (node, kmh(text).unwrap_or(0)))
+        });
+        for (node, limit) in crossings {
+            for Place { edge, at, .. } in places(node) {
+                let here = self.parts(&Stretch { edge, from: at - AT_NODE, to: at + AT_NODE });
+                self.limits.stretches.extend(here.into_iter().map(|(edge, from, to)| (edge, from, to, limit)));
+            }
+        }
         for (node, text) in given {
             // What cannot be read may be anything: no route is taken over it. What cannot be placed may be anywhere.
             let limit = text.and_then(kmh).unwrap_or_else(|| {

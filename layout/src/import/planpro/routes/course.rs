@@ -34,6 +34,12 @@ impl<'a> Reader<'a, '_> {
                     stretch.edge, stretch.from, stretch.to
                 ));
             }
+            for (edge, from, to) in self.placed.tracks.parts(stretch) {
+                let given = &self.placed.tracks.network.edges[edge];
+                if from < given.begin - AT_NODE || to > given.length + AT_NODE {
+                    return Err("a buffer stop stands on its way".to_owned());
+                }
+            }
             let there = |on: &Stretch| {
                 on.edge == stretch.edge && on.from <= stretch.to + AT_NODE && on.to >= stretch.from - AT_NODE
             };

@@ -6,24 +6,7 @@ use roxmltree::Node;
 
 use super::Reader;
 use crate::form::Position;
-use crate::import::planpro::circuits::Placed;
-use crate::import::planpro::file::{File, at, child, is_set, value};
-
-/// Flank protection that is asked for by nothing that is known.
-pub(super) fn unasked(file: &File<'_>, placed: &Placed<'_>) -> Vec<String> {
-    let elements = &placed.tracks.elements;
-    let is_open = |node: &Node<'_, '_>| {
-        let Some(asks) = child(*node, "Fla_Schutz_Anforderer") else { return false };
-        let by = value(asks, &["ID_Anforderer_Element"]).unwrap_or_default();
-        let kind = file.id(by).map(|by| by.tag_name().name());
-        // A zone that is set locally asks for its own vehicles.
-        !elements.contains_key(&by.to_lowercase()) && kind != Some("NB_Zone_Grenze")
-    };
-    let protections = file.all("Fla_Schutz").filter(is_open).map(|node| format!("no point asks for the {}", at(node)));
-    let missing = |node: &Node<'_, '_>| file.referred(*node, "ID_Fla_Schutz").is_none();
-    let proved = file.all("Fla_Freimelde_Zuordnung").filter(missing);
-    protections.chain(proved.map(|node| format!("the {} is for no flank protection", at(node)))).collect()
-}
+use crate::import::planpro::file::{at, child, is_set, value};
 
 impl<'a> Reader<'a, '_> {
     /// The positions that protect the flank of a path, and the circuits that are proved clear for it.
@@ -113,6 +96,10 @@ impl<'a> Reader<'a, '_> {
                 let circuit = self.placed.sections.get(&section);
                 proved.insert(*circuit.ok_or_else(|| format!("the {} names a section that is no circuit", at(clear)))?);
             }
+        }
+        let onward = child(protection, "Fla_Schutz_Weitergabe");
+        if onward.is_some_and(|onward| !onward.children().any(|child| value(child, &[]).is_some())) {
+            return Err(format!("the {} is passed on to nothing", at(protection)));
         }
         for name in ["ID_Fla_Weitergabe_L", "ID_Fla_Weitergabe_R"] {
             let Some(id) = value(protection, &["Fla_Schutz_Weitergabe", name]) else { continue };

@@ -8,7 +8,7 @@ use super::Reader;
 use super::conditions::{OF_OVERLAP, OF_SPECIAL, known};
 use crate::at::At;
 use crate::form::{Position, Route};
-use crate::import::joints::NEAR;
+use crate::import::joints::{NEAR, OFFSET};
 use crate::import::planpro::file::{at, child, figure, value, values};
 use crate::import::search::{Found, Sought, search};
 use crate::import::way::path;
@@ -67,6 +67,18 @@ impl<'a> Reader<'a, '_> {
             within.insert(circuit.ok_or_else(|| format!("the section {id} that is proved clear is no circuit"))?);
         }
         within.retain(|circuit| !own.contains(circuit));
+        // What lies in rear of the border at the signal is the route's own.
+        let parts: Vec<_> = covered.iter().flat_map(|stretch| self.placed.tracks.parts(stretch)).collect();
+        let pieces = within.iter().flat_map(|area| self.placed.divided.pieces_of(*area));
+        let beyond: f64 = pieces
+            .flat_map(|(edge, from, to)| {
+                let same = parts.iter().filter(move |(on, ..)| *on == edge);
+                same.map(move |(_, low, high)| (high.min(to) - low.max(from)).max(0.0))
+            })
+            .sum();
+        if asked > beyond + OFFSET + NEAR {
+            return Err(format!("{beyond:.0} m of it lie beyond the end of the route, and {asked} m are asked for"));
+        }
         let seconds = figure_of(node, &["Fstr_DWeg_Spezifisch", "Aufloesung_Verzoegerung"])?.filter(|time| *time > 0.0);
         let name = route.name.value.clone();
         let positions = self.positions(&covered)?;

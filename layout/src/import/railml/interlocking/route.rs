@@ -9,6 +9,7 @@ use super::reader::{Reader, time};
 use crate::at::At;
 use crate::form::{Position, Route};
 use crate::graph::Way;
+use crate::import::limits::lowest;
 use crate::import::railml::unread;
 use crate::import::railml::xml::{Xml, child, children, reference, references};
 
@@ -44,7 +45,13 @@ impl<'a> Reader<'a, '_> {
         positions.extend(self.flank(node)?);
         self.passable(&way, Some(rear), &positions)?;
         self.hold(&mut path, &way, &positions);
-        let speed_kmh = self.placed.limits.on_way(&way, &self.placed.divided);
+        let mut speed_kmh = self.placed.limits.on_way(&way, &self.placed.divided);
+        if self.placed.limits.leaves_open(&way, &self.placed.network) && speed_kmh.is_some() {
+            // A limit somewhere else says nothing of this leg.
+            speed_kmh = speed_kmh.map(|limit| limit.min(lowest(self.station)));
+            let what = "the lowest speed, as it leads over a reverse point that the file does not limit";
+            self.report.defaulted.push(format!("route {name}: {what}"));
+        }
         if let Some(limit) = speed_kmh.filter(|limit| self.station.braking.speeds_kmh.iter().all(|code| code > limit)) {
             return Err(format!("its limit of {limit} km/h is below the lowest code"));
         }
