@@ -3,23 +3,22 @@
 //!
 //! `STATIONS=10000 cargo test -p atc-layout --test dialects --release` takes more of them.
 
+#[path = "support/shapes.rs"]
+mod shapes;
 mod support;
 
 use std::collections::BTreeMap;
 
-use atc_layout::Description;
-use atc_layout::form::{Position, Station};
+use atc_layout::form::Position;
 use atc_layout::import::{Imported, railml};
 use atc_layout::model::{Model, Route};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use proptest::test_runner::{TestCaseError, TestRunner};
+use proptest::test_runner::TestCaseError;
+use shapes::{runner, shapes};
+use support::model;
 use support::railml::{Dialect, Version, written};
-use support::random::{Shape, station};
-
-fn stations() -> u32 {
-    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(48)
-}
+use support::random::station;
 
 fn dialects() -> impl Strategy<Value = Dialect> {
     let flags = prop::array::uniform6(any::<bool>());
@@ -31,22 +30,6 @@ fn dialects() -> impl Strategy<Value = Dialect> {
             Dialect { turned, offset, metres, wrapped, to_signals, rear, backwards, nameless }
         },
     )
-}
-
-fn shapes() -> impl Strategy<Value = Shape> {
-    let lengths = prop::collection::vec(60_u16..600, 1..12);
-    let splits = prop::collection::vec(1_usize..4, 1..8);
-    (2_usize..16, any::<bool>(), lengths, splits).prop_map(|(tracks, bay, lengths, splits)| Shape {
-        tracks,
-        bay,
-        lengths,
-        splits,
-    })
-}
-
-fn model(station: &Station) -> Model {
-    let description = Description { station: station.clone(), ..Description::default() };
-    description.model().unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// What a train on a route runs over: entry and circuits by name, and points with positions.
@@ -88,9 +71,8 @@ fn import(text: &str) -> Result<Imported, TestCaseError> {
 
 #[test]
 fn every_dialect_of_a_station_is_imported_as_it_was_written() {
-    let mut runner =
-        TestRunner::new(ProptestConfig { cases: stations(), failure_persistence: None, ..ProptestConfig::default() });
-    let cases = (shapes(), dialects(), any::<bool>());
+    let mut runner = runner(48);
+    let cases = (shapes(16), dialects(), any::<bool>());
     let result = runner.run(&cases, |(shape, dialect, newer)| {
         let station = station(&shape);
         let version = if newer { Version::V32 } else { Version::V31 };
@@ -187,9 +169,8 @@ fn a_falsified_route_is_left_out_or_what_it_was() {
         Just(Falsified::Entry),
         Just(Falsified::Switch),
     ];
-    let mut runner =
-        TestRunner::new(ProptestConfig { cases: stations(), failure_persistence: None, ..ProptestConfig::default() });
-    let cases = (shapes(), dialects(), kinds, any::<Index>(), any::<Index>(), any::<Index>());
+    let mut runner = runner(48);
+    let cases = (shapes(16), dialects(), kinds, any::<Index>(), any::<Index>(), any::<Index>());
     let counts = std::cell::Cell::new((0_usize, 0_usize));
     let result = runner.run(&cases, |(shape, dialect, what, route, index, other)| {
         let station = station(&shape);

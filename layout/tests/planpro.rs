@@ -3,27 +3,22 @@
 //!
 //! `STATIONS=10000 cargo test -p atc-layout --test planpro --release` takes more of them.
 
+#[path = "support/shapes.rs"]
+mod shapes;
 mod support;
 
 use std::collections::BTreeMap;
 
-use atc_layout::Description;
 use atc_layout::form::{Position, Station};
 use atc_layout::import::{Imported, planpro};
 use atc_layout::model::{Model, Route};
 use proptest::prelude::*;
 use proptest::sample::Index;
-use proptest::test_runner::{TestCaseError, TestRunner};
+use proptest::test_runner::TestCaseError;
+use shapes::{runner, shapes};
+use support::model;
 use support::planpro::{Tool, id, name_of, written};
 use support::random::{Shape, station};
-
-fn stations() -> u32 {
-    std::env::var("STATIONS").ok().and_then(|number| number.parse().ok()).unwrap_or(24)
-}
-
-fn runner() -> TestRunner {
-    TestRunner::new(ProptestConfig { cases: stations(), failure_persistence: None, ..ProptestConfig::default() })
-}
 
 fn tools() -> impl Strategy<Value = Tool> {
     let offset = prop_oneof![Just(0.0), 0.1..0.9_f64, 2.0..19.0_f64];
@@ -37,22 +32,6 @@ fn tools() -> impl Strategy<Value = Tool> {
             planned,
         },
     )
-}
-
-fn shapes() -> impl Strategy<Value = Shape> {
-    let lengths = prop::collection::vec(60_u16..600, 1..12);
-    let splits = prop::collection::vec(1_usize..4, 1..8);
-    (2_usize..12, any::<bool>(), lengths, splits).prop_map(|(tracks, bay, lengths, splits)| Shape {
-        tracks,
-        bay,
-        lengths,
-        splits,
-    })
-}
-
-fn model(station: &Station) -> Model {
-    let description = Description { station: station.clone(), ..Description::default() };
-    description.model().unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// What a train on a route runs over, and what is held beyond it: by name.
@@ -104,7 +83,7 @@ fn import(text: &str) -> Result<Imported, TestCaseError> {
 
 #[test]
 fn a_station_is_imported_as_each_tool_writes_it() {
-    let result = runner().run(&(shapes(), tools()), |(shape, tool)| {
+    let result = runner(24).run(&(shapes(12), tools()), |(shape, tool)| {
         let station = station(&shape);
         let imported = import(&written(&station, &tool))?;
         prop_assert_eq!(expected(&model(&station)), found(&imported)?, "{}", imported.report);
@@ -241,8 +220,8 @@ fn falsify(text: &str, what: Falsified, index: [Index; 3], metres: f64) -> Optio
 fn a_falsified_file_loses_routes_and_changes_none() {
     let counts = std::cell::Cell::new((0_usize, 0_usize));
     let kinds = prop::sample::select(FALSIFIED.to_vec());
-    let cases = (shapes(), tools(), kinds, prop::array::uniform3(any::<Index>()), -60.0..60.0_f64);
-    let result = runner().run(&cases, |(shape, tool, what, index, metres)| {
+    let cases = (shapes(12), tools(), kinds, prop::array::uniform3(any::<Index>()), -60.0..60.0_f64);
+    let result = runner(24).run(&cases, |(shape, tool, what, index, metres)| {
         let station = station(&shape);
         let Some(text) = falsify(&written(&station, &tool), what, index, metres) else { return Ok(()) };
         let imported = import(&text)?;
@@ -726,7 +705,7 @@ fn no_file_makes_the_import_stop() {
         .filter_map(|from| Some((from, from + text[from..].find("</Wert>")?)))
         .collect();
     let cases = (edits, any::<Option<(Index, Index)>>());
-    let result = runner().run(&cases, |(edits, exchange)| {
+    let result = runner(24).run(&cases, |(edits, exchange)| {
         let mut places: Vec<((usize, usize), String)> =
             edits.into_iter().map(|(index, word)| (values[index.index(values.len())], word.to_owned())).collect();
         if let Some((one, other)) = exchange {

@@ -8,9 +8,10 @@ use super::complete::{complete, steepest};
 use super::network::{Cut, Divided, Edge, EdgeEnd, LONGEST, NEAR, Network, Side, Switch};
 use super::report::{Imported, Report};
 use super::search::{Sought, search};
+use super::way::path;
 use crate::at::At;
 use crate::description::Description;
-use crate::form::{Element, Position, Route, Station};
+use crate::form::{Position, Route, Station};
 use crate::graph::{Graph, Kind};
 use crate::names::Names;
 use crate::problem::{Errors, Problem, Source};
@@ -336,18 +337,11 @@ fn routes(infra: &Infra, network: &Network, divided: &Divided, station: &mut Sta
             continue;
         };
         released += usize::from(!run.release_detectors.is_empty());
-        let path = way.iter().map(|(circuit, way)| {
-            let points = way
-                .passed
-                .iter()
-                .map(|passed| (station.points[passed.point].name.value.clone(), At::derived(passed.position)));
-            At::derived(Element { circuit: station.circuits[*circuit].name.value.clone(), points: points.collect() })
-        });
         taken.push(Route {
             name: At::derived(run.id.clone()),
             signal: Some(run.entry_point.id.clone()),
             entry: At::derived(station.circuits[rear].name.value.clone()),
-            path: path.collect(),
+            path: path(station, &way),
             ..Route::default()
         });
     }

@@ -6,8 +6,15 @@ pub mod planpro;
 pub mod railml;
 pub mod random;
 
-use atc_layout::At;
 use atc_layout::form::{Circuit, Element, End, EndKind, Platform, Point, Route, Segment, Station};
+use atc_layout::model::Model;
+use atc_layout::{At, Description};
+
+/// The model of a station.
+pub fn model(station: &Station) -> Model {
+    let description = Description { station: station.clone(), ..Description::default() };
+    description.model().unwrap_or_else(|errors| panic!("{errors}"))
+}
 
 fn at(name: impl Into<String>) -> At<String> {
     At::derived(name.into())

@@ -106,7 +106,9 @@ impl Run {
         let beyond = |id: &str, toward_b: bool, from: f64, far: f64| -> Vec<(String, bool, [f64; 2], f64)> {
             let mut found = Vec::new();
             let (mut id, mut toward_b, mut from, mut run) = (id.to_owned(), toward_b, from, 0.0);
-            while let Some(edge) = plan.edges.get(&id) {
+            // No more edges than there are: those of no length may form a ring.
+            for _ in 0..plan.edges.len() {
+                let Some(edge) = plan.edges.get(&id) else { break };
                 let end = if toward_b { edge.length } else { 0.0 };
                 let to = if toward_b { (from + far - run).min(end) } else { (from - far + run).max(end) };
                 found.push((id.clone(), toward_b, [from, to], run));

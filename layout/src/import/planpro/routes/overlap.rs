@@ -77,6 +77,7 @@ impl<'a> Reader<'a, '_> {
             })
             .sum();
         if asked > beyond + OFFSET + NEAR {
+            let beyond = beyond.abs();
             return Err(format!("{beyond:.0} m of it lie beyond the end of the route, and {asked} m are asked for"));
         }
         let seconds = figure_of(node, &["Fstr_DWeg_Spezifisch", "Aufloesung_Verzoegerung"])?.filter(|time| *time > 0.0);
