@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /// The version of the border and of the states behind it. `atc_version` returns it.
-#define ATC_VERSION 1
+#define ATC_VERSION 2
 
 /// The size of an aspect acceptance in bytes.
 #define ATC_ASPECT_SIZE 144
@@ -109,10 +109,16 @@
 #define ATC_RECEPTION_NOTHING 2
 
 /// The size of an interlocking in bytes.
-#define ATC_INTERLOCKING_SIZE 32056
+#define ATC_INTERLOCKING_SIZE 32072
 
 /// The alignment of an interlocking in bytes.
 #define ATC_INTERLOCKING_ALIGN 8
+
+/// The size of an interlocking of a large station in bytes.
+#define ATC_LARGE_INTERLOCKING_SIZE 899424
+
+/// The alignment of an interlocking of a large station in bytes.
+#define ATC_LARGE_INTERLOCKING_ALIGN 8
 
 /// The most track circuits of a plan.
 #define ATC_MAX_CIRCUITS 64
@@ -135,8 +141,29 @@
 /// The most circuits of all segments of a plan.
 #define ATC_MAX_SEGMENT_CIRCUITS 128
 
-/// The most speed codes of a plan, 0 (stop) among them.
+/// The most speed codes of a plan, 0 (stop) among them, of a large station too.
 #define ATC_MAX_CODES 8
+
+/// The most track circuits of a large station's plan.
+#define ATC_LARGE_MAX_CIRCUITS 256
+
+/// The most points of a large station's plan.
+#define ATC_LARGE_MAX_POINTS 128
+
+/// The most segments of a large station's plan.
+#define ATC_LARGE_MAX_SEGMENTS 32
+
+/// The most routes of a large station's plan.
+#define ATC_LARGE_MAX_ROUTES 256
+
+/// The most places of one route's path, and circuits of one segment, in a large station.
+#define ATC_LARGE_MAX_PLACES 32
+
+/// The most places of all paths of a large station's plan.
+#define ATC_LARGE_MAX_ELEMENTS 8192
+
+/// The most circuits of all segments of a large station's plan.
+#define ATC_LARGE_MAX_SEGMENT_CIRCUITS 1024
 
 /// No direction of travel.
 #define ATC_HEADING_NONE 0
@@ -374,7 +401,7 @@ typedef enum atc_status {
   ATC_STATUS_FRAME_CHECK = 72,
   /// The bits are no frame: the check fits, and the information is of no telegram.
   ATC_STATUS_FRAME_CONTENT = 73,
-  /// A path or a segment has more than 16 places.
+  /// A path or a segment has more places than there is room for: 16, in a large station 32.
   ATC_STATUS_PLAN_PATH_TOO_LONG = 100,
   /// A time of the plan is 0.
   ATC_STATUS_PLAN_NO_TIME = 101,
@@ -718,7 +745,7 @@ typedef struct atc_segment {
   uint64_t throat;
   /// Where its circuits begin in the array `segment_circuits`.
   uint16_t circuits_first;
-  /// How many circuits it has: 1 to 16.
+  /// How many circuits it has: 1 to `ATC_MAX_PLACES`, of a large station `ATC_LARGE_MAX_PLACES`.
   uint16_t circuits_length;
   /// The direction of travel away from the station: `ATC_HEADING_LEFT` or `ATC_HEADING_RIGHT`.
   uint8_t outward;
@@ -728,9 +755,9 @@ typedef struct atc_segment {
 
 /// One place of a route's path, or its overlap: what is held there.
 typedef struct atc_element {
-  /// The track circuit as a set: bit `i` for circuit `i`. An overlap may have several, or none.
+  /// The track circuit as a set of one. An overlap may have several, or none.
   uint64_t circuits;
-  /// The points that must stand normal, flank points included: bit `i` for point `i`.
+  /// The points that must stand normal, flank points included, as a set.
   uint32_t normal;
   /// The points that must stand reverse, flank points included.
   uint32_t reverse;
@@ -746,7 +773,7 @@ typedef struct atc_route {
   uint64_t approach;
   /// The circuits that adjoin the end of the route.
   uint64_t beyond;
-  /// The routes that go on where this one ends: bit `i` for route `i`.
+  /// The routes that go on where this one ends, as a set.
   uint64_t continuing;
   /// The routes that must not be held together with this one.
   uint64_t conflicts;
@@ -754,7 +781,7 @@ typedef struct atc_route {
   struct atc_element overlap;
   /// Where the path begins in the array `elements`.
   uint16_t path_first;
-  /// How many places the path has: 1 to 16.
+  /// How many places the path has: 1 to `ATC_MAX_PLACES`, of a large station `ATC_LARGE_MAX_PLACES`.
   uint16_t path_length;
   /// How many cycles the points may take to arrive, 1 or more.
   uint16_t drive_cycles;
@@ -779,8 +806,8 @@ typedef struct atc_route {
 } atc_route;
 
 /// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an
-/// entry
-/// may be null.
+/// entry may be null. A set is a word with bit `i` for the thing of number `i`; of a large station it is one of
+/// `atc_set256`, `atc_set128` and `atc_set32`.
 typedef struct atc_interlocking_config {
   /// The length of each circuit in metres: `circuit_count` entries.
   const uint16_t *lengths_m;
@@ -798,17 +825,17 @@ typedef struct atc_interlocking_config {
   const struct atc_element *elements;
   /// How far a train runs from the speed of each code when a lower one goes out, in metres: `code_count` entries.
   const uint16_t *braking_m;
-  /// How many circuits there are: 0 to `ATC_MAX_CIRCUITS`.
+  /// How many circuits there are: 0 to `ATC_MAX_CIRCUITS`, of a large station `ATC_LARGE_MAX_CIRCUITS`.
   size_t circuit_count;
-  /// How many points there are: 0 to `ATC_MAX_POINTS`.
+  /// How many points there are: 0 to `ATC_MAX_POINTS`, of a large station `ATC_LARGE_MAX_POINTS`.
   size_t point_count;
-  /// How many segments there are: 0 to `ATC_MAX_SEGMENTS`.
+  /// How many segments there are: 0 to `ATC_MAX_SEGMENTS`, of a large station `ATC_LARGE_MAX_SEGMENTS`.
   size_t segment_count;
-  /// How many entries `segment_circuits` has: 0 to `ATC_MAX_SEGMENT_CIRCUITS`.
+  /// How many entries `segment_circuits` has: 0 to `ATC_MAX_SEGMENT_CIRCUITS`, of a large station `ATC_LARGE_MAX_SEGMENT_CIRCUITS`.
   size_t segment_circuit_count;
-  /// How many routes there are: 0 to `ATC_MAX_ROUTES`.
+  /// How many routes there are: 0 to `ATC_MAX_ROUTES`, of a large station `ATC_LARGE_MAX_ROUTES`.
   size_t route_count;
-  /// How many entries `elements` has: 0 to `ATC_MAX_ELEMENTS`.
+  /// How many entries `elements` has: 0 to `ATC_MAX_ELEMENTS`, of a large station `ATC_LARGE_MAX_ELEMENTS`.
   size_t element_count;
   /// How many speed codes there are, 0 (stop) among them: 0 to `ATC_MAX_CODES`.
   size_t code_count;
@@ -841,10 +868,10 @@ typedef struct atc_place {
 /// An interlocking with its plan and its state. Its bytes are the library's; it may be moved and copied as a whole.
 typedef struct atc_interlocking {
   /// Not to be read or written.
-  uint64_t opaque[4007];
+  uint64_t opaque[4009];
 } atc_interlocking;
 
-/// One logic cycle's input. A set has bit `i` for the thing of number `i`.
+/// One logic cycle's input.
 typedef struct atc_interlocking_input {
   /// The circuits that are reported occupied.
   uint64_t occupied;
@@ -905,6 +932,208 @@ typedef struct atc_interlocking_output {
   /// The telegram of each circuit.
   struct atc_movement telegrams[64];
 } atc_interlocking_output;
+
+/// Circuits or routes of a large station: bit `i % 64` of word `i / 64` for the one of number `i`.
+typedef struct atc_set256 {
+  /// The bits, those of the lowest numbers in the first word.
+  uint64_t words[4];
+} atc_set256;
+
+/// A stretch of plain line to a neighbouring station.
+typedef struct atc_large_segment {
+  /// The last circuit of every route that goes out to the segment, as a set of one; 0 if no route does.
+  struct atc_set256 throat;
+  /// Where its circuits begin in the array `segment_circuits`.
+  uint16_t circuits_first;
+  /// How many circuits it has: 1 to `ATC_MAX_PLACES`, of a large station `ATC_LARGE_MAX_PLACES`.
+  uint16_t circuits_length;
+  /// The direction of travel away from the station: `ATC_HEADING_LEFT` or `ATC_HEADING_RIGHT`.
+  uint8_t outward;
+  /// How many of its circuits, the outermost ones, the neighbour's device sees too.
+  uint8_t shared;
+} atc_large_segment;
+
+/// Points of a large station: bit `i % 32` of word `i / 32` for point `i`.
+typedef struct atc_set128 {
+  /// The bits, those of the lowest numbers in the first word.
+  uint32_t words[4];
+} atc_set128;
+
+/// One place of a route's path, or its overlap: what is held there.
+typedef struct atc_large_element {
+  /// The track circuit as a set of one. An overlap may have several, or none.
+  struct atc_set256 circuits;
+  /// The points that must stand normal, flank points included, as a set.
+  struct atc_set128 normal;
+  /// The points that must stand reverse, flank points included.
+  struct atc_set128 reverse;
+  /// The circuits beside it that are proved clear and not run over, as a set.
+  struct atc_set256 beside;
+} atc_large_element;
+
+/// Segments of a large station: bit `i % 8` of word `i / 8` for segment `i`.
+typedef struct atc_set32 {
+  /// The bits, those of the lowest numbers in the first word.
+  uint8_t words[4];
+} atc_set32;
+
+/// A route: from the signal at the exit of `entry` over its path to the end of its last circuit.
+typedef struct atc_large_route {
+  /// The circuit in rear of the route's signal, as a set of one.
+  struct atc_set256 entry;
+  /// The circuits on which a train may be that counts on the signal: `entry` among them.
+  struct atc_set256 approach;
+  /// The circuits that adjoin the end of the route.
+  struct atc_set256 beyond;
+  /// The routes that go on where this one ends, as a set.
+  struct atc_set256 continuing;
+  /// The routes that must not be held together with this one.
+  struct atc_set256 conflicts;
+  /// What is kept free beyond the end, in case the train does not stop in time.
+  struct atc_large_element overlap;
+  /// Where the path begins in the array `elements`.
+  uint16_t path_first;
+  /// How many places the path has: 1 to `ATC_MAX_PLACES`, of a large station `ATC_LARGE_MAX_PLACES`.
+  uint16_t path_length;
+  /// How many cycles the points may take to arrive, 1 or more.
+  uint16_t drive_cycles;
+  /// How many cycles a withdrawn route stays locked where a train may be coming.
+  uint16_t release_cycles;
+  /// How many cycles a train must have stood on the last circuit before the overlap is given up.
+  uint16_t stay_cycles;
+  /// The direction of travel: `ATC_HEADING_LEFT` or `ATC_HEADING_RIGHT`.
+  uint8_t heading;
+  /// The segment that the route's train comes from, as a set of one; 0 if it comes from none.
+  struct atc_set32 from;
+  /// The segment that the route's train goes out to, as a set of one; 0 if it goes to none.
+  struct atc_set32 to;
+  /// The highest speed code on the route: 1 to 7.
+  uint8_t speed_code;
+  /// The highest speed code on its overlap, 0 to 7: for a train that has slid there and goes back. 0 lets none of these leave.
+  uint8_t overlap_speed_code;
+  /// 1: every train that uses the route acts on telegrams alone, and not on what a driver sees. 0: some do not.
+  uint8_t cab_signalled;
+  /// 1: a calling-on route, whose train goes on sight into the overlap, the berth, where another one stands. 0: any other.
+  uint8_t calling_on;
+} atc_large_route;
+
+/// The plan of a station in flat arrays. They are read by the call that gets them, and not kept. An array without an
+/// entry may be null. A set is a word with bit `i` for the thing of number `i`; of a large station it is one of
+/// `atc_set256`, `atc_set128` and `atc_set32`.
+typedef struct atc_large_interlocking_config {
+  /// The length of each circuit in metres: `circuit_count` entries.
+  const uint16_t *lengths_m;
+  /// The line speed of each circuit as a code, 0 to 7: `circuit_count` entries. Null: no circuit has a limit.
+  const uint8_t *line_codes;
+  /// The circuits that say that a train may stand on a point, for each point as a set: `point_count` entries.
+  const struct atc_set256 *detectors;
+  /// The segments of plain line: `segment_count` entries.
+  const struct atc_large_segment *segments;
+  /// The numbers of the segments' circuits, one segment after the other, the circuit next to the station first.
+  const uint8_t *segment_circuits;
+  /// The routes: `route_count` entries.
+  const struct atc_large_route *routes;
+  /// The places of the routes' paths, one route after the other in order of travel.
+  const struct atc_large_element *elements;
+  /// How far a train runs from the speed of each code when a lower one goes out, in metres: `code_count` entries.
+  const uint16_t *braking_m;
+  /// How many circuits there are: 0 to `ATC_MAX_CIRCUITS`, of a large station `ATC_LARGE_MAX_CIRCUITS`.
+  size_t circuit_count;
+  /// How many points there are: 0 to `ATC_MAX_POINTS`, of a large station `ATC_LARGE_MAX_POINTS`.
+  size_t point_count;
+  /// How many segments there are: 0 to `ATC_MAX_SEGMENTS`, of a large station `ATC_LARGE_MAX_SEGMENTS`.
+  size_t segment_count;
+  /// How many entries `segment_circuits` has: 0 to `ATC_MAX_SEGMENT_CIRCUITS`, of a large station `ATC_LARGE_MAX_SEGMENT_CIRCUITS`.
+  size_t segment_circuit_count;
+  /// How many routes there are: 0 to `ATC_MAX_ROUTES`, of a large station `ATC_LARGE_MAX_ROUTES`.
+  size_t route_count;
+  /// How many entries `elements` has: 0 to `ATC_MAX_ELEMENTS`, of a large station `ATC_LARGE_MAX_ELEMENTS`.
+  size_t element_count;
+  /// How many speed codes there are, 0 (stop) among them: 0 to `ATC_MAX_CODES`.
+  size_t code_count;
+  /// For how many cycles a segment's permission must have been withdrawn before it turns: 1 or more.
+  uint16_t turn_cycles;
+  /// For how many cycles after a start nothing moves, is confirmed or turned.
+  uint16_t start_cycles;
+  /// For how many cycles a train may run on after its authority was taken away.
+  uint16_t residual_cycles;
+  /// For how many cycles a train may still slide once it is wholly in the last circuit of a route.
+  uint16_t standstill_cycles;
+  /// How many cycles in a row a circuit must be reported clear before it counts as clear: 1 or more.
+  uint8_t clear_cycles;
+  /// For how many cycles in a row a point must be detected, undriven, before it counts as detected.
+  uint8_t settle_cycles;
+  /// For how many cycles in a row an occupied circuit may at most not be reported.
+  uint8_t loss_cycles;
+} atc_large_interlocking_config;
+
+/// An interlocking of a large station, as `atc_interlocking` is one of a small station.
+typedef struct atc_large_interlocking {
+  /// Not to be read or written.
+  uint64_t opaque[112428];
+} atc_large_interlocking;
+
+/// One logic cycle's input.
+typedef struct atc_large_interlocking_input {
+  /// The circuits that are reported occupied.
+  struct atc_set256 occupied;
+  /// The circuits that staff block.
+  struct atc_set256 block;
+  /// The circuits that staff unblock; one that is to be blocked as well is blocked.
+  struct atc_set256 unblock;
+  /// The circuits that staff restrict to `restrict_code`.
+  struct atc_set256 restrict_circuits;
+  /// The circuits whose restriction staff lift; one that is to be restricted as well has the new restriction only.
+  struct atc_set256 lift;
+  /// The points that are detected in normal position.
+  struct atc_set128 detected_normal;
+  /// The points that are detected in reverse position; a point that is in both is in neither.
+  struct atc_set128 detected_reverse;
+  /// The request: one of the `ATC_REQUEST_` constants.
+  uint32_t request;
+  /// The number of the route, point or segment that the request is for. Not looked at without a request.
+  uint8_t number;
+  /// The highest speed code on the circuits that are restricted: 0 to 7.
+  uint8_t restrict_code;
+  /// The segments where the neighbour permits this station to send trains.
+  struct atc_set32 consent;
+} atc_large_interlocking_input;
+
+/// What the telegram of one circuit tells the train there.
+typedef struct atc_large_movement {
+  /// The circuits that the train may enter. Their transmitters are held on for it.
+  struct atc_set256 hold;
+  /// 1: this device sends the telegram. 0: it sends nothing there; the neighbour's device is the one that speaks.
+  uint8_t sent;
+  /// The last circuit that the train may enter; its own if it must stay there.
+  uint8_t stop;
+  /// The direction in which it may leave its circuit; `ATC_HEADING_NONE` if it must stay there.
+  uint8_t heading;
+  /// The highest speed code, 0 to 7.
+  uint8_t speed_code;
+} atc_large_movement;
+
+/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing.
+typedef struct atc_large_interlocking_output {
+  /// The routes whose signals show proceed; all others show stop.
+  struct atc_set256 proceed;
+  /// The blocked circuits that staff may rely on.
+  struct atc_set256 confirmed;
+  /// The circuits that count as occupied.
+  struct atc_set256 occupied;
+  /// The points that are driven to normal position.
+  struct atc_set128 drive_normal;
+  /// The points that are driven to reverse position.
+  struct atc_set128 drive_reverse;
+  /// What became of the request: one of the `ATC_ANSWER_` constants.
+  uint32_t answer;
+  /// The segments where this station permits the neighbour to send trains.
+  struct atc_set32 permits;
+  /// The phase of each route: one of the `ATC_PHASE_` constants.
+  uint8_t phases[256];
+  /// The telegram of each circuit.
+  struct atc_large_movement telegrams[256];
+} atc_large_interlocking_output;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1072,7 +1301,7 @@ size_t atc_interlocking_align(void);
 ///
 /// Of the caller:
 /// The pointers lead to what they say, and each array of the configuration has as many entries as it says.
-enum atc_status atc_interlocking_check_plan(const struct atc_interlocking_config *config, struct atc_place *place);
+enum atc_status atc_interlocking_check_plan(const atc_interlocking_config *config, struct atc_place *place);
 
 /// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
 /// this plan.
@@ -1085,7 +1314,7 @@ enum atc_status atc_interlocking_check_plan(const struct atc_interlocking_config
 /// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
 /// entries as it
 /// says. Nobody else uses them during the call.
-enum atc_status atc_interlocking_start(void *state, size_t size, const struct atc_interlocking_config *config);
+enum atc_status atc_interlocking_start(void *state, size_t size, const atc_interlocking_config *config);
 
 /// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points
 /// and telegrams.
@@ -1095,8 +1324,47 @@ enum atc_status atc_interlocking_start(void *state, size_t size, const struct at
 /// Of the caller:
 /// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
 enum atc_status atc_interlocking_step(struct atc_interlocking *state,
-                                      const struct atc_interlocking_input *input,
-                                      struct atc_interlocking_output *output);
+                                      const atc_interlocking_input *input,
+                                      atc_interlocking_output *output);
+
+/// The size of an interlocking of a large station in bytes: `ATC_LARGE_INTERLOCKING_SIZE`.
+size_t atc_large_interlocking_size(void);
+
+/// The alignment of an interlocking of a large station in bytes: `ATC_LARGE_INTERLOCKING_ALIGN`.
+size_t atc_large_interlocking_align(void);
+
+/// Checks the plan of a large station without starting anything, and says where it breaks a rule. If it breaks none, the place is all zeros.
+///
+/// Of the caller:
+/// The pointers lead to what they say, and each array of the configuration has as many entries as it says.
+enum atc_status atc_large_interlocking_check_plan(const atc_large_interlocking_config *config,
+                                                  struct atc_place *place);
+
+/// Starts an interlocking of a large station in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
+/// this plan.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_large_interlocking_check_plan`
+/// says where
+/// a plan is wrong.
+///
+/// Of the caller:
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
+/// entries as it
+/// says. Nobody else uses them during the call.
+enum atc_status atc_large_interlocking_start(void *state,
+                                             size_t size,
+                                             const atc_large_interlocking_config *config);
+
+/// One logic cycle of an interlocking of a large station: reads detection, requests, orders and consent, and puts out signals, points
+/// and telegrams.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// Of the caller:
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+enum atc_status atc_large_interlocking_step(struct atc_large_interlocking *state,
+                                            const atc_large_interlocking_input *input,
+                                            atc_large_interlocking_output *output);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -3,19 +3,22 @@
 
 use core::ffi::{c_char, c_void};
 
+use atc_kernel::interlocking::{Large, Small};
+
 use crate::aspect::{self, Aspect, atc_aspect, atc_aspect_config, atc_aspect_input, atc_aspect_output};
 use crate::atc_status;
 use crate::block::{self, Counted, atc_block, atc_block_config, atc_block_input, atc_block_output};
 use crate::interlocking::{
-    self as ilk, Arrays, Fault, Interlocked, atc_interlocking, atc_interlocking_config, atc_interlocking_input,
-    atc_interlocking_output, atc_place,
+    self as ilk, Arrays, ConfigOf, ElementOf, Fault, InC, LargeStation, RouteOf, SegmentOf, SmallStation,
+    atc_interlocking, atc_interlocking_config, atc_interlocking_input, atc_interlocking_output, atc_large_interlocking,
+    atc_large_interlocking_config, atc_large_interlocking_input, atc_large_interlocking_output, atc_place,
 };
 use crate::memory::ATC_VERSION;
 use crate::pattern::{self, atc_pattern_input, atc_pattern_output};
 use crate::permitted::{
     self, Permitting, atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output,
 };
-use crate::pointer::{apart, array, ask, read, start, step, usable};
+use crate::pointer::{Plain, apart, array, ask, read, start, step, usable};
 use crate::supervision::{
     self, Supervised, atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output,
 };
@@ -25,24 +28,30 @@ use crate::telegram::{self, Deframing, atc_deframer, atc_deframer_input, atc_fra
 ///
 /// # Safety
 /// Pointers that are not null and are aligned lead to a configuration and to its arrays, as long as it says.
-unsafe fn plan(config: *const atc_interlocking_config) -> Result<ilk::Plan, Fault> {
+unsafe fn plan<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC>(
+    config: *const ConfigOf<Z>,
+) -> Result<ilk::Plan<R, P, N, S, Z>, Fault>
+where
+    ConfigOf<Z>: Plain,
+    Z::Circuits: Plain,
+    SegmentOf<Z>: Plain,
+    RouteOf<Z>: Plain,
+    ElementOf<Z>: Plain,
+{
     let gather = || {
         // SAFETY: by the contract of this function, which is that of each of these too.
         unsafe {
             let given = read(config)?;
+            // A station has room for as many circuits as routes, and each circuit of a segment and each place of a path once.
             let codes = if given.line_codes.is_null() { 0 } else { given.circuit_count };
             let arrays = Arrays {
-                lengths_m: array(given.lengths_m, given.circuit_count, ilk::ATC_MAX_CIRCUITS)?,
-                line_codes: array(given.line_codes, codes, ilk::ATC_MAX_CIRCUITS)?,
-                detectors: array(given.detectors, given.point_count, ilk::ATC_MAX_POINTS)?,
-                segments: array(given.segments, given.segment_count, ilk::ATC_MAX_SEGMENTS)?,
-                segment_circuits: array(
-                    given.segment_circuits,
-                    given.segment_circuit_count,
-                    ilk::ATC_MAX_SEGMENT_CIRCUITS,
-                )?,
-                routes: array(given.routes, given.route_count, ilk::ATC_MAX_ROUTES)?,
-                elements: array(given.elements, given.element_count, ilk::ATC_MAX_ELEMENTS)?,
+                lengths_m: array(given.lengths_m, given.circuit_count, R)?,
+                line_codes: array(given.line_codes, codes, R)?,
+                detectors: array(given.detectors, given.point_count, N)?,
+                segments: array(given.segments, given.segment_count, S)?,
+                segment_circuits: array(given.segment_circuits, given.segment_circuit_count, S * P)?,
+                routes: array(given.routes, given.route_count, R)?,
+                elements: array(given.elements, given.element_count, R * P)?,
                 braking_m: array(given.braking_m, given.code_count, ilk::ATC_MAX_CODES)?,
             };
             Ok((given, arrays))
@@ -50,6 +59,32 @@ unsafe fn plan(config: *const atc_interlocking_config) -> Result<ilk::Plan, Faul
     };
     let (given, arrays) = gather().map_err(|status| (status, atc_place::default()))?;
     ilk::layout(&given, &arrays)
+}
+
+/// Where a plan is wrong.
+///
+/// # Safety
+/// Pointers that are not null and are aligned lead to a configuration and its arrays, as long as it says, and to a place.
+unsafe fn check<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC>(
+    config: *const ConfigOf<Z>,
+    place: *mut atc_place,
+) -> atc_status
+where
+    ConfigOf<Z>: Plain,
+    Z::Circuits: Plain,
+    SegmentOf<Z>: Plain,
+    RouteOf<Z>: Plain,
+    ElementOf<Z>: Plain,
+{
+    if let Err(status) = usable(place).and_then(|()| apart(place, config)) {
+        return status;
+    }
+    // SAFETY: by the contract of this function.
+    let plan = unsafe { plan::<R, P, N, S, Z>(config) };
+    let (status, found) = plan.err().unwrap_or((atc_status::Ok, atc_place::default()));
+    // SAFETY: found usable above; by the contract of this function.
+    unsafe { place.write(found) };
+    status
 }
 
 /// The version of this library's border: `ATC_VERSION` of its header. A program compares the two once.
@@ -339,14 +374,8 @@ pub unsafe extern "C" fn atc_interlocking_check_plan(
     config: *const atc_interlocking_config,
     place: *mut atc_place,
 ) -> atc_status {
-    if let Err(status) = usable(place).and_then(|()| apart(place, config)) {
-        return status;
-    }
     // SAFETY: the caller keeps the contract.
-    let (status, found) = unsafe { plan(config) }.err().unwrap_or((atc_status::Ok, atc_place::default()));
-    // SAFETY: found usable above; the caller keeps the contract.
-    unsafe { place.write(found) };
-    status
+    unsafe { check::<64, 16, 32, 8, Small>(config, place) }
 }
 
 /// Starts an interlocking in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
@@ -367,7 +396,7 @@ pub unsafe extern "C" fn atc_interlocking_start(
     config: *const atc_interlocking_config,
 ) -> atc_status {
     // SAFETY: the caller keeps the contract.
-    unsafe { start::<Interlocked, atc_interlocking>(state, size, || plan(config).map_err(|(status, _)| status)) }
+    unsafe { start::<SmallStation, atc_interlocking>(state, size, || plan(config).map_err(|(status, _)| status)) }
 }
 
 /// One logic cycle of an interlocking: reads detection, requests, orders and consent, and puts out signals, points
@@ -384,5 +413,68 @@ pub unsafe extern "C" fn atc_interlocking_step(
     output: *mut atc_interlocking_output,
 ) -> atc_status {
     // SAFETY: the caller keeps the contract.
-    unsafe { step::<Interlocked, _>(state, input, output) }
+    unsafe { step::<SmallStation, _>(state, input, output) }
+}
+
+/// The size of an interlocking of a large station in bytes: `ATC_LARGE_INTERLOCKING_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_large_interlocking_size() -> usize {
+    size_of::<atc_large_interlocking>()
+}
+
+/// The alignment of an interlocking of a large station in bytes: `ATC_LARGE_INTERLOCKING_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_large_interlocking_align() -> usize {
+    align_of::<atc_large_interlocking>()
+}
+
+/// Checks the plan of a large station without starting anything, and says where it breaks a rule. If it breaks none, the place is all zeros.
+///
+/// # Safety
+/// The pointers lead to what they say, and each array of the configuration has as many entries as it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_large_interlocking_check_plan(
+    config: *const atc_large_interlocking_config,
+    place: *mut atc_place,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { check::<256, 32, 128, 32, Large>(config, place) }
+}
+
+/// Starts an interlocking of a large station in the `size` bytes at `state`, which must be aligned: in its most restrictive state, on
+/// this plan.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it. `atc_large_interlocking_check_plan`
+/// says where
+/// a plan is wrong.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration, each array of which has as many
+/// entries as it
+/// says. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_large_interlocking_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_large_interlocking_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<LargeStation, atc_large_interlocking>(state, size, || plan(config).map_err(|(status, _)| status)) }
+}
+
+/// One logic cycle of an interlocking of a large station: reads detection, requests, orders and consent, and puts out signals, points
+/// and telegrams.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_large_interlocking_step(
+    state: *mut atc_large_interlocking,
+    input: *const atc_large_interlocking_input,
+    output: *mut atc_large_interlocking_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<LargeStation, _>(state, input, output) }
 }

@@ -5,7 +5,7 @@
 use crate::atc_status;
 
 /// The version of the border and of the states behind it. `atc_version` returns it.
-pub const ATC_VERSION: u32 = 1;
+pub const ATC_VERSION: u32 = 2;
 
 /// The bytes before the parameters: the tag and the two check words.
 pub(crate) const HEADER: usize = 24;
@@ -70,38 +70,29 @@ pub(crate) fn forget(memory: &mut [u8]) {
 }
 
 /// One logic cycle on the state in `memory`.
-pub(crate) fn step<M: Machine>(memory: &mut [u8], input: &M::Input) -> Result<M::Output, atc_status> {
-    let (parameters, state) = load::<M>(memory)?;
-    let (state, output) = M::step(&parameters, state, input)?;
-    let (header, rest) = memory.split_first_chunk_mut::<HEADER>().ok_or(atc_status::TooSmall)?;
-    let place = rest.get_mut(M::PARAMETERS..).ok_or(atc_status::TooSmall)?;
-    M::put_state(&state, &mut Writer(place));
-    // The check word of the parameters, which the one of the state begins with.
-    let (_, words) = header.split_at_mut(8);
-    let (parameters, sum) = words.split_at_mut(8);
-    sum.copy_from_slice(&check(word(parameters), place).to_le_bytes());
-    Ok(output)
-}
-
-/// Reads what is in `memory`.
 ///
 /// # Errors
 /// [`atc_status::NotStarted`] if no state of this machine was put there, [`atc_status::Damaged`] if it has changed
-/// since.
-pub(crate) fn load<M: Machine>(memory: &[u8]) -> Result<(M::Parameters, M::State), atc_status> {
-    let (header, rest) = memory.split_first_chunk::<HEADER>().ok_or(atc_status::TooSmall)?;
-    let mut header = Reader(header);
-    if header.u64() != Some(tag::<M>()) {
+/// since, and what the machine says of the input.
+pub(crate) fn step<M: Machine>(memory: &mut [u8], input: &M::Input) -> Result<M::Output, atc_status> {
+    let (header, rest) = memory.split_first_chunk_mut::<HEADER>().ok_or(atc_status::TooSmall)?;
+    let mut words = Reader(header);
+    if words.u64() != Some(tag::<M>()) {
         return Err(atc_status::NotStarted);
     }
-    let (kept, state) = rest.split_at_checked(M::PARAMETERS).ok_or(atc_status::TooSmall)?;
+    let (kept, place) = rest.split_at_mut_checked(M::PARAMETERS).ok_or(atc_status::TooSmall)?;
     let sum = check(tag::<M>(), kept);
-    if header.u64() != Some(sum) || header.u64() != Some(check(sum, state)) {
+    if words.u64() != Some(sum) || words.u64() != Some(check(sum, place)) {
         return Err(atc_status::Damaged);
     }
-    let parameters = M::take_parameters(&mut Reader(kept)).ok_or(atc_status::Damaged)?;
-    let state = M::take_state(&parameters, &mut Reader(state)).ok_or(atc_status::Damaged)?;
-    Ok((parameters, state))
+    // Where they are: those of a large station are not moved once more.
+    let Some(parameters) = &M::take_parameters(&mut Reader(kept)) else { return Err(atc_status::Damaged) };
+    let state = M::take_state(parameters, &mut Reader(place)).ok_or(atc_status::Damaged)?;
+    let (state, output) = M::step(parameters, state, input)?;
+    M::put_state(&state, &mut Writer(place));
+    // The check word of the state stands behind the tag and that of the parameters, which it begins with.
+    header[16..].copy_from_slice(&check(sum, place).to_le_bytes());
+    Ok(output)
 }
 
 /// The first word of a state: the machine and the version.

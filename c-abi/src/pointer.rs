@@ -12,8 +12,9 @@ use crate::aspect::{atc_aspect_config, atc_aspect_input, atc_aspect_output};
 use crate::atc_status;
 use crate::block::{atc_block_config, atc_block_input, atc_block_output};
 use crate::interlocking::{
-    atc_element, atc_interlocking_config, atc_interlocking_input, atc_interlocking_output, atc_place, atc_route,
-    atc_segment,
+    atc_element, atc_interlocking_config, atc_interlocking_input, atc_interlocking_output, atc_large_element,
+    atc_large_interlocking_config, atc_large_interlocking_input, atc_large_interlocking_output, atc_large_route,
+    atc_large_segment, atc_place, atc_route, atc_segment, atc_set256,
 };
 use crate::memory::{self, Machine};
 use crate::pattern::{atc_pattern_input, atc_pattern_output};
@@ -40,6 +41,8 @@ plain!(atc_block_config atc_block_input atc_block_output atc_pattern_input atc_p
 plain!(atc_permitted_config atc_permitted_input atc_permitted_output atc_telegram atc_frame atc_deframer_input);
 plain!(atc_element atc_route atc_segment atc_place);
 plain!(atc_interlocking_config atc_interlocking_input atc_interlocking_output);
+plain!(atc_set256 atc_large_element atc_large_route atc_large_segment);
+plain!(atc_large_interlocking_config atc_large_interlocking_input atc_large_interlocking_output);
 
 /// What can be told of a pointer.
 pub fn usable<T>(pointer: *const T) -> Result<(), atc_status> {
@@ -80,7 +83,7 @@ pub unsafe fn array<'a, T: Plain>(pointer: *const T, count: usize, most: usize) 
         return Ok(&[]);
     }
     usable(pointer)?;
-    // SAFETY: not null, aligned, at most 1024 entries, by the contract of this function the caller's; any bytes are
+    // SAFETY: not null, aligned, at most 8192 entries, by the contract of this function the caller's; any bytes are
     // a `T`.
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
@@ -131,18 +134,18 @@ pub unsafe fn start<M: Machine, T>(
         return atc_status::TooSmall;
     }
     // Before the state's bytes are borrowed: the arrays of a configuration may lie among them.
-    let parameters = parameters();
+    let parameters = &parameters();
     // SAFETY: not null, long enough, by the contract of this function the caller's; C's memory has a value in every
     // byte.
     let bytes = unsafe { slice::from_raw_parts_mut(state.cast::<u8>(), size_of::<T>()) };
     match parameters {
         Ok(parameters) => {
-            memory::start::<M>(bytes, &parameters);
+            memory::start::<M>(bytes, parameters);
             atc_status::Ok
         }
         Err(status) => {
             memory::forget(bytes);
-            status
+            *status
         }
     }
 }

@@ -122,7 +122,7 @@ pub enum atc_status {
     /// The bits are no frame: the check fits, and the information is of no telegram.
     FrameContent = 73,
 
-    /// A path or a segment has more than 16 places.
+    /// A path or a segment has more places than there is room for: 16, in a large station 32.
     PlanPathTooLong = 100,
     /// A time of the plan is 0.
     PlanNoTime = 101,
@@ -239,7 +239,7 @@ impl atc_status {
         (Self::FrameGuard, c"no frame: a guard bit is 1"),
         (Self::FrameCheck, c"no frame: the check does not fit the information"),
         (Self::FrameContent, c"no frame: the check fits, and the information is of no telegram"),
-        (Self::PlanPathTooLong, c"a path or a segment has more than 16 places"),
+        (Self::PlanPathTooLong, c"a path or a segment has more than 16 places, or more than 32 in a large station"),
         (Self::PlanNoTime, c"clear, turn, drive, release and stay must be one cycle or more"),
         (Self::PlanClearShort, c"clear_cycles must be above loss_cycles, and twice that at least"),
         (Self::PlanReleaseShort, c"a release time must cover residual_cycles and loss_cycles"),

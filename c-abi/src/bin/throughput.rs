@@ -2,6 +2,7 @@
 //! `cargo run --release -p atc-c --bin throughput`. The border reads the state back and checks it in every step.
 #![allow(unsafe_code, reason = "the border is called as C calls it")]
 
+use std::ffi::c_void;
 use std::hint::black_box;
 use std::ptr;
 use std::time::{Duration, Instant};
@@ -9,8 +10,8 @@ use std::time::{Duration, Instant};
 use atc_c::aspect::{atc_aspect, atc_aspect_config, atc_aspect_input, atc_aspect_output};
 use atc_c::block::{atc_block, atc_block_config, atc_block_input, atc_block_output};
 use atc_c::interlocking::{
-    ATC_HEADING_RIGHT, ATC_MAX_CIRCUITS, ATC_REQUEST_SET, atc_element, atc_interlocking, atc_interlocking_config,
-    atc_interlocking_input, atc_interlocking_output, atc_route,
+    ATC_HEADING_RIGHT, ATC_REQUEST_SET, atc_interlocking, atc_large_interlocking, atc_set32, atc_set128, atc_set256,
+    element_of, interlocking_config_of, interlocking_input_of, interlocking_output_of, route_of,
 };
 use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
@@ -22,7 +23,8 @@ use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Times, TimesMs};
 use atc_kernel::block::{self, Block, Hold, SectionSet};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Input, Orders, Plan, Positions, Request, Route, RouteId, SegmentSet, SpeedCode, Station,
+    Broken, CircuitSet, Combined, Input, LargeStation, Layout, Orders, Plan, Positions, Request, Route, RouteId,
+    SegmentSet, Size, SpeedCode, Station,
 };
 use atc_kernel::pattern::{Deceleration, pattern};
 use atc_kernel::permitted::{Heard, Permitted, Settings};
@@ -121,7 +123,10 @@ fn main() {
     let bit = |number| if step(number) == 0 { Reception::Zero } else { Reception::One };
     row("deframer", through, beside(&Deframer, bit));
     for routes in [1, 8, 60] {
-        station(routes);
+        station(routes, Station::new, &SMALL);
+    }
+    for routes in [60, 250] {
+        station(routes, LargeStation::new, &LARGE);
     }
 }
 
@@ -275,18 +280,49 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
     );
 }
 
+/// How C starts and steps an interlocking of one size, and makes its sets of one number.
+struct Called<D, C, P, S, const R: usize> {
+    start: unsafe extern "C" fn(*mut c_void, usize, *const interlocking_config_of<C, P, S>) -> atc_status,
+    step: unsafe extern "C" fn(
+        *mut D,
+        *const interlocking_input_of<C, P, S>,
+        *mut interlocking_output_of<C, P, S, R>,
+    ) -> atc_status,
+    alone: fn(usize) -> C,
+}
+
+const SMALL: Called<atc_interlocking, u64, u32, u8, 64> =
+    Called { start: border::atc_interlocking_start, step: border::atc_interlocking_step, alone: |number| 1 << number };
+
+const LARGE: Called<atc_large_interlocking, atc_set256, atc_set128, atc_set32, 256> = Called {
+    start: border::atc_large_interlocking_start,
+    step: border::atc_large_interlocking_step,
+    alone: |number| {
+        let mut set = atc_set256::default();
+        set.words[number / 64] |= 1 << (number % 64);
+        set
+    },
+};
+
 /// A line of circuits, with so many routes of one circuit each, one behind the other.
-fn station(count: u8) {
-    let circuit = |number: u8| CircuitSet::nth(number.into());
-    let circuits = usize::from(count) + 2;
-    let mut plan = Plan { clear: 2, turn: Ticks(1), ..Plan::EMPTY };
+fn station<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size, D, C, B, E>(
+    count: usize,
+    layout: fn(Plan<R, P, N, S, Z>) -> Result<Layout<R, P, N, S, Z>, Broken>,
+    called: &Called<D, C, B, E, R>,
+) where
+    C: Copy + Default,
+    B: Copy + Default,
+    E: Copy + Default,
+{
+    let circuits = count + 2;
+    let mut plan = Box::new(Plan { clear: 2, turn: Ticks(1), ..Plan::EMPTY });
     plan.braking[..2].copy_from_slice(&[Metres(0), Metres(100)]);
     plan.lengths[..circuits].fill(Metres(200));
-    for (number, route) in (0..count).zip(&mut plan.routes) {
+    for (number, route) in plan.routes.iter_mut().take(count).enumerate() {
         *route = Route {
-            entry: circuit(number),
-            approach: circuit(number),
-            beyond: circuit(number + 2),
+            entry: CircuitSet::nth(number),
+            approach: CircuitSet::nth(number),
+            beyond: CircuitSet::nth(number + 2),
             length: 1,
             drive: Ticks(20),
             release: Ticks(30),
@@ -294,28 +330,29 @@ fn station(count: u8) {
             speed: SpeedCode(1),
             ..Route::NONE
         };
-        route.path[0].circuits = circuit(number + 1);
+        route.path[0].circuits = CircuitSet::nth(number + 1);
     }
-    let layout = Box::new(Station::new(plan).expect("it keeps every rule"));
+    let layout = Box::new(layout(*plan).expect("it keeps every rule"));
 
-    let (lengths, braking) = ([200; ATC_MAX_CIRCUITS], [0, 100]);
+    let (lengths, braking) = (vec![200; circuits], [0, 100]);
+    let alone = called.alone;
     let elements: Vec<_> =
-        (1..=count).map(|number| atc_element { circuits: 1 << number, ..atc_element::default() }).collect();
-    let one = |number: u8| atc_route {
-        entry: 1 << number,
-        approach: 1 << number,
-        beyond: 4 << number,
-        path_first: number.into(),
+        (1..=count).map(|number| element_of::<C, B> { circuits: alone(number), ..element_of::default() }).collect();
+    let one = |number: usize| route_of::<C, B, E> {
+        entry: alone(number),
+        approach: alone(number),
+        beyond: alone(number + 2),
+        path_first: u16::try_from(number).unwrap_or(u16::MAX),
         path_length: 1,
         drive_cycles: 20,
         release_cycles: 30,
         stay_cycles: 10,
         heading: ATC_HEADING_RIGHT,
         speed_code: 1,
-        ..atc_route::default()
+        ..route_of::default()
     };
     let routes: Vec<_> = (0..count).map(one).collect();
-    let config = atc_interlocking_config {
+    let config = interlocking_config_of {
         lengths_m: lengths.as_ptr(),
         line_codes: ptr::null(),
         detectors: ptr::null(),
@@ -339,27 +376,33 @@ fn station(count: u8) {
         settle_cycles: 0,
         loss_cycles: 0,
     };
-    let all = u64::MAX >> (ATC_MAX_CIRCUITS - circuits);
-    let occupied = |number: u64| 1_u64 << (number / 16 % u64::from(count));
-    // Every route is set in its turn, behind the train.
-    let asked = |number: u64| narrow(number % u64::from(count));
-    let input = |number| atc_interlocking_input {
-        occupied: occupied(number),
-        unblock: all,
-        lift: all,
+    // Everything was unblocked and lifted before; every route is set in its turn, behind the train.
+    let most = u64::try_from(count).unwrap_or(u64::MAX);
+    let place = |number: u64| usize::try_from(number / 16 % most).unwrap_or(0);
+    let asked = |number: u64| narrow(number % most);
+    let freed = |number: u64| usize::try_from(number).unwrap_or(0) % circuits;
+    let input = |number: u64| interlocking_input_of {
+        occupied: alone(place(number)),
+        unblock: alone(freed(number)),
+        lift: alone(freed(number)),
         request: ATC_REQUEST_SET,
         number: asked(number),
-        ..atc_interlocking_input::default()
+        ..interlocking_input_of::default()
     };
-    let start = starts!(atc_interlocking_start, atc_interlocking, config);
-    let c = through::<atc_interlocking, _, atc_interlocking_output>(start, border::atc_interlocking_step, input);
-    let all = CircuitSet::from_bits(all);
-    let read = |number| Input {
-        occupied: CircuitSet::from_bits(occupied(number)),
+    // SAFETY: room for a state, and a configuration that is there.
+    let start = |state: *mut D| unsafe { (called.start)(state.cast(), size_of::<D>(), &raw const config) };
+    let c = through(start, called.step, input);
+    let read = |number: u64| Input {
+        occupied: CircuitSet::nth(place(number)),
         detected: Positions::NONE,
         request: RouteId::new(asked(number)).map(Request::Set),
-        orders: Orders { unblock: all, lift: all, ..Orders::default() },
+        orders: Orders {
+            unblock: CircuitSet::nth(freed(number)),
+            lift: CircuitSet::nth(freed(number)),
+            ..Orders::default()
+        },
         consent: SegmentSet::EMPTY,
     };
-    row(&format!("interlocking, {count} routes"), c, beside(&Combined(&layout), read));
+    let of = if R > 64 { " of a large station" } else { "" };
+    row(&format!("interlocking, {count} routes{of}"), c, beside(&Combined(&layout), read));
 }

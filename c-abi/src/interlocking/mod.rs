@@ -1,54 +1,58 @@
-//! Interlocking and ATC behind the border: [`atc_kernel::interlocking`], for a station of the greatest size.
+//! Interlocking and ATC behind the border: [`atc_kernel::interlocking`], for stations of either size.
 
 mod bytes;
 mod forms;
 mod input;
 mod output;
 mod plan;
+mod sets;
 
 pub use forms::*;
-pub(crate) use plan::{Arrays, Fault, layout};
+pub(crate) use input::Plan;
+pub(crate) use plan::{Arrays, ConfigOf, ElementOf, Fault, RouteOf, SegmentOf, layout};
+pub(crate) use sets::InC;
+
+use core::marker::PhantomData;
 
 use atc_kernel::Machine as _;
-use atc_kernel::interlocking::{Combined, MAX_CIRCUITS, Memory};
+use atc_kernel::interlocking::{Combined, Large, Memory, Small};
 
 use crate::atc_status;
 use crate::memory::{Machine, Reader, Writer};
-pub(crate) use input::Plan;
-use output::SILENT;
-pub(crate) use output::output;
+use input::InputOf;
+use output::OutputOf;
 
-pub(crate) struct Interlocked;
+/// The machine for a size of station.
+pub(crate) struct Interlocked<const R: usize, const P: usize, const N: usize, const S: usize, Z>(PhantomData<Z>);
 
-impl Machine for Interlocked {
-    const TAG: [u8; 4] = *b"ILCK";
-    const PARAMETERS: usize = bytes::PARAMETERS;
-    type Parameters = Plan;
-    type State = Memory<64, 8>;
-    type Input = atc_interlocking_input;
-    type Output = atc_interlocking_output;
-    // The kernel's: `Combined::SAFE`, in which every circuit counts as occupied. A test compares them.
-    const SAFE: Self::Output = atc_interlocking_output {
-        proceed: 0,
-        confirmed: 0,
-        occupied: u64::MAX,
-        drive_normal: 0,
-        drive_reverse: 0,
-        answer: ATC_ANSWER_NONE,
-        permits: 0,
-        phases: [ATC_PHASE_IDLE; 64],
-        telegrams: [SILENT; MAX_CIRCUITS],
-    };
+/// A station of up to 64 circuits and routes.
+pub(crate) type SmallStation = Interlocked<64, 16, 32, 8, Small>;
 
-    fn initial(_: &Plan) -> Self::State {
+/// A station of up to 256 circuits and routes.
+pub(crate) type LargeStation = Interlocked<256, 32, 128, 32, Large>;
+
+const _: () = assert!(bytes::size::<64, 16, 32, 8, Small>() == ATC_INTERLOCKING_SIZE);
+const _: () = assert!(bytes::size::<256, 32, 128, 32, Large>() == ATC_LARGE_INTERLOCKING_SIZE);
+
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC> Machine for Interlocked<R, P, N, S, Z> {
+    // No state of the one size is one of the other.
+    const TAG: [u8; 4] = if R > 64 { *b"ILCL" } else { *b"ILCK" };
+    const PARAMETERS: usize = bytes::parameters::<R, P, N, S, Z>();
+    type Parameters = Plan<R, P, N, S, Z>;
+    type State = Memory<R, S, Z>;
+    type Input = InputOf<Z>;
+    type Output = OutputOf<R, Z>;
+    const SAFE: Self::Output = output::safe::<R, Z>();
+
+    fn initial(_: &Self::Parameters) -> Self::State {
         Memory::INITIAL
     }
 
-    fn put_parameters(plan: &Plan, to: &mut Writer<'_>) {
+    fn put_parameters(plan: &Self::Parameters, to: &mut Writer<'_>) {
         bytes::put_plan(plan, to);
     }
 
-    fn take_parameters(from: &mut Reader<'_>) -> Option<Plan> {
+    fn take_parameters(from: &mut Reader<'_>) -> Option<Self::Parameters> {
         bytes::take_plan(from)
     }
 
@@ -56,18 +60,18 @@ impl Machine for Interlocked {
         bytes::put_memory(memory, to);
     }
 
-    fn take_state(plan: &Plan, from: &mut Reader<'_>) -> Option<Self::State> {
+    fn take_state(plan: &Self::Parameters, from: &mut Reader<'_>) -> Option<Self::State> {
         bytes::take_memory(from).filter(|memory| memory.is_valid(&plan.layout))
     }
 
     fn step(
-        plan: &Plan,
+        plan: &Self::Parameters,
         memory: Self::State,
-        input: &atc_interlocking_input,
-    ) -> Result<(Self::State, atc_interlocking_output), atc_status> {
-        let input = plan.counts.input(input)?;
+        input: &Self::Input,
+    ) -> Result<(Self::State, Self::Output), atc_status> {
+        let input = plan.there.input(input)?;
         let (memory, commands) = Combined(&plan.layout).step(memory, input);
-        let output = output(&memory, &commands);
+        let output = output::output(&memory, &commands);
         Ok((memory, output))
     }
 }

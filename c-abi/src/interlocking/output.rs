@@ -8,8 +8,9 @@ use super::forms::{
     ATC_ANSWER_PATH_HELD, ATC_ANSWER_POINT_LOCKED, ATC_ANSWER_POINT_UNDER_TRAIN, ATC_ANSWER_STARTING,
     ATC_ANSWER_UNKNOWN, ATC_ANSWER_UNSWEPT, ATC_ANSWER_WAITING, ATC_HEADING_LEFT, ATC_HEADING_NONE, ATC_HEADING_RIGHT,
     ATC_PHASE_FAILED, ATC_PHASE_IDLE, ATC_PHASE_IN_USE, ATC_PHASE_PROVISIONAL, ATC_PHASE_RELEASING, ATC_PHASE_SET,
-    atc_interlocking_output, atc_movement,
+    interlocking_output_of, movement_of,
 };
+use super::sets::{Bits, InC, Set as _};
 
 const fn heading(heading: Option<Heading>) -> u8 {
     match heading {
@@ -54,13 +55,34 @@ const fn answer(answer: Option<Result<(), Refusal>>) -> u32 {
     }
 }
 
-/// Nothing is sent.
-pub(super) const SILENT: atc_movement =
-    atc_movement { hold: 0, sent: 0, stop: 0, heading: ATC_HEADING_NONE, speed_code: 0 };
+/// C's output for a size of station, with as many routes as circuits.
+pub(super) type OutputOf<const R: usize, Z> =
+    interlocking_output_of<<Z as InC>::Circuits, <Z as InC>::Points, <Z as InC>::Segments, R>;
 
-fn telegram(movement: Option<Movement>) -> atc_movement {
-    movement.map_or(SILENT, |movement| atc_movement {
-        hold: movement.hold.bits(),
+/// Nothing is sent.
+const fn silent<C: Bits>() -> movement_of<C> {
+    movement_of { hold: C::NONE, sent: 0, stop: 0, heading: ATC_HEADING_NONE, speed_code: 0 }
+}
+
+/// The kernel's safe output, [`Combined::SAFE`](atc_kernel::interlocking::Combined), in which every circuit counts as
+/// occupied. A test compares them.
+pub(super) const fn safe<const R: usize, Z: InC>() -> OutputOf<R, Z> {
+    interlocking_output_of {
+        proceed: Bits::NONE,
+        confirmed: Bits::NONE,
+        occupied: Bits::ALL,
+        drive_normal: Bits::NONE,
+        drive_reverse: Bits::NONE,
+        answer: ATC_ANSWER_NONE,
+        permits: Bits::NONE,
+        phases: [ATC_PHASE_IDLE; R],
+        telegrams: [silent(); R],
+    }
+}
+
+fn telegram<Z: InC>(movement: Option<Movement<Z>>) -> movement_of<Z::Circuits> {
+    movement.map_or(silent(), |movement| movement_of {
+        hold: Z::Circuits::of(movement.hold),
         sent: 1,
         stop: movement.stop.number(),
         heading: heading(movement.heading),
@@ -68,17 +90,20 @@ fn telegram(movement: Option<Movement>) -> atc_movement {
     })
 }
 
-pub(crate) fn output(memory: &Memory<64, 8>, commands: &Commands<64>) -> atc_interlocking_output {
+pub(super) fn output<const R: usize, const S: usize, Z: InC>(
+    memory: &Memory<R, S, Z>,
+    commands: &Commands<R, Z>,
+) -> OutputOf<R, Z> {
     let said = &commands.interlocking;
     let occupied = said.table.read(memory.cycle).map_or(CircuitSet::ALL, |contents| contents.occupied);
-    atc_interlocking_output {
-        proceed: said.proceed.bits(),
-        confirmed: said.confirmed.bits(),
-        occupied: occupied.bits(),
-        drive_normal: said.drives.normal.bits(),
-        drive_reverse: said.drives.reverse.bits(),
+    interlocking_output_of {
+        proceed: Z::Circuits::of(said.proceed),
+        confirmed: Z::Circuits::of(said.confirmed),
+        occupied: Z::Circuits::of(occupied),
+        drive_normal: Z::Points::of(said.drives.normal),
+        drive_reverse: Z::Points::of(said.drives.reverse),
         answer: answer(said.answer),
-        permits: said.permits.bits(),
+        permits: Z::Segments::of(said.permits),
         phases: memory.interlocking.routes.map(|route| phase(route.phase)),
         telegrams: core::array::from_fn(|circuit| telegram(commands.telegrams[circuit])),
     }

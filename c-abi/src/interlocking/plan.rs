@@ -2,35 +2,41 @@
 
 use atc_kernel::distance::Metres;
 use atc_kernel::interlocking::{
-    Broken, CircuitId, CircuitSet, Element, Heading, Place, Positions, Route, RouteSet, Rule, Segment, SpeedCode,
-    SpeedLimits, Station,
+    Broken, CircuitId, CircuitSet, Element, Heading, Layout, Place, PointSet, Positions, Route, RouteSet, Rule,
+    Segment, SegmentSet, SpeedCode, SpeedLimits,
 };
 use atc_kernel::time::Ticks;
 
 use super::forms::{
     ATC_HEADING_LEFT, ATC_HEADING_RIGHT, ATC_PLACE_CIRCUIT, ATC_PLACE_OVERLAP, ATC_PLACE_PATH, ATC_PLACE_PLAN,
-    ATC_PLACE_POINT, ATC_PLACE_ROUTE, ATC_PLACE_ROUTES, ATC_PLACE_SEGMENT, ATC_PLACE_SEGMENTS, atc_element,
-    atc_interlocking_config, atc_place, atc_route, atc_segment,
+    ATC_PLACE_POINT, ATC_PLACE_ROUTE, ATC_PLACE_ROUTES, ATC_PLACE_SEGMENT, ATC_PLACE_SEGMENTS, atc_place, element_of,
+    interlocking_config_of, route_of, segment_of,
 };
-use super::input::{Counts, Plan, within};
+use super::input::{Plan, There};
+use super::sets::InC;
 use crate::{atc_status, flag};
 
 /// What is wrong in a plan, and where.
 pub(crate) type Fault = (atc_status, atc_place);
 
+/// C's plan for a size of station.
+pub(crate) type ConfigOf<Z> = interlocking_config_of<<Z as InC>::Circuits, <Z as InC>::Points, <Z as InC>::Segments>;
+
+pub(crate) type ElementOf<Z> = element_of<<Z as InC>::Circuits, <Z as InC>::Points>;
+pub(crate) type RouteOf<Z> = route_of<<Z as InC>::Circuits, <Z as InC>::Points, <Z as InC>::Segments>;
+pub(crate) type SegmentOf<Z> = segment_of<<Z as InC>::Circuits>;
+
 /// The arrays of a configuration, with their lengths: none is longer than its most.
-pub(crate) struct Arrays<'a> {
+pub(crate) struct Arrays<'a, Z: InC> {
     pub(crate) lengths_m: &'a [u16],
     pub(crate) line_codes: &'a [u8],
-    pub(crate) detectors: &'a [u64],
-    pub(crate) segments: &'a [atc_segment],
+    pub(crate) detectors: &'a [Z::Circuits],
+    pub(crate) segments: &'a [SegmentOf<Z>],
     pub(crate) segment_circuits: &'a [u8],
-    pub(crate) routes: &'a [atc_route],
-    pub(crate) elements: &'a [atc_element],
+    pub(crate) routes: &'a [RouteOf<Z>],
+    pub(crate) elements: &'a [ElementOf<Z>],
     pub(crate) braking_m: &'a [u16],
 }
-
-type KernelPlan = atc_kernel::interlocking::Plan<64, 16, 32, 8>;
 
 fn place(kind: u32, first: usize) -> atc_place {
     atc_place { kind, first: u32::try_from(first).unwrap_or(u32::MAX), second: 0 }
@@ -40,16 +46,17 @@ fn place(kind: u32, first: usize) -> atc_place {
 ///
 /// # Errors
 /// The first thing that is wrong: what is out of its range, then the first rule of the kernel that is broken.
-pub(crate) fn layout(config: &atc_interlocking_config, arrays: &Arrays<'_>) -> Result<Plan, Fault> {
-    // None is over 64.
-    let count = |length: usize| u8::try_from(length).unwrap_or(0);
-    let counts = Counts {
-        circuits: count(arrays.lengths_m.len()),
-        points: count(arrays.detectors.len()),
-        routes: count(arrays.routes.len()),
-        segments: count(arrays.segments.len()),
+pub(crate) fn layout<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC>(
+    config: &ConfigOf<Z>,
+    arrays: &Arrays<'_, Z>,
+) -> Result<Plan<R, P, N, S, Z>, Fault> {
+    let there = There {
+        circuits: (0..arrays.lengths_m.len()).fold(CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number))),
+        points: (0..arrays.detectors.len()).fold(PointSet::EMPTY, |all, number| all.or(PointSet::nth(number))),
+        routes: (0..arrays.routes.len()).fold(RouteSet::EMPTY, |all, number| all.or(RouteSet::nth(number))),
+        segments: (0..arrays.segments.len()).fold(SegmentSet::EMPTY, |all, number| all.or(SegmentSet::nth(number))),
     };
-    let mut plan = KernelPlan::EMPTY;
+    let mut plan = atc_kernel::interlocking::Plan::<R, P, N, S, Z>::EMPTY;
     plan.clear = config.clear_cycles;
     plan.turn = Ticks(config.turn_cycles);
     plan.start = Ticks(config.start_cycles);
@@ -70,17 +77,17 @@ pub(crate) fn layout(config: &atc_interlocking_config, arrays: &Arrays<'_>) -> R
         plan.line = plan.line.and(SpeedLimits::NONE.and_at_most(code, limited));
     }
     for (number, (kept, circuits)) in plan.points.iter_mut().zip(arrays.detectors).enumerate() {
-        kept.detectors = counts.circuits(*circuits).map_err(|status| (status, place(ATC_PLACE_POINT, number)))?;
+        kept.detectors = there.circuits(*circuits).map_err(|status| (status, place(ATC_PLACE_POINT, number)))?;
     }
     for (number, (kept, given)) in plan.segments.iter_mut().zip(arrays.segments).enumerate() {
-        segment(counts, given, arrays.segment_circuits, kept)
+        segment(there, given, arrays.segment_circuits, kept)
             .map_err(|status| (status, place(ATC_PLACE_SEGMENT, number)))?;
     }
     for (number, (kept, given)) in plan.routes.iter_mut().zip(arrays.routes).enumerate() {
-        route(counts, given, arrays.elements, kept).map_err(|status| (status, place(ATC_PLACE_ROUTE, number)))?;
+        route(there, given, arrays.elements, kept).map_err(|status| (status, place(ATC_PLACE_ROUTE, number)))?;
     }
-    match Station::new(plan) {
-        Ok(layout) => Ok(Plan { layout, counts }),
+    match Layout::new(plan) {
+        Ok(layout) => Ok(Plan { layout, there }),
         Err(broken) => Err(fault(broken)),
     }
 }
@@ -97,9 +104,9 @@ fn heading(heading: u8) -> Result<Heading, atc_status> {
     }
 }
 
-/// The `length` entries from `first` on: 1 to 16 of them.
-fn part<T>(array: &[T], first: u16, length: u16) -> Result<(&[T], u8), atc_status> {
-    let (first, most) = (usize::from(first), super::ATC_MAX_PLACES);
+/// The `length` entries from `first` on: 1 to `most` of them.
+fn part<T>(array: &[T], most: usize, first: u16, length: u16) -> Result<(&[T], u8), atc_status> {
+    let first = usize::from(first);
     let there = array.get(first..).and_then(|rest| rest.get(..usize::from(length)));
     match u8::try_from(length) {
         // In the kernel a length of 0 means that there is no such thing; what is listed is there.
@@ -109,44 +116,50 @@ fn part<T>(array: &[T], first: u16, length: u16) -> Result<(&[T], u8), atc_statu
     }
 }
 
-fn element(counts: Counts, given: &atc_element) -> Result<Element, atc_status> {
-    let (normal, reverse) = (counts.points(given.normal)?, counts.points(given.reverse)?);
-    let (circuits, beside) = (counts.circuits(given.circuits)?, counts.circuits(given.beside)?);
+fn element<Z: InC>(there: There<Z>, given: &ElementOf<Z>) -> Result<Element<Z>, atc_status> {
+    let (normal, reverse) = (there.points(given.normal)?, there.points(given.reverse)?);
+    let (circuits, beside) = (there.circuits(given.circuits)?, there.circuits(given.beside)?);
     Ok(Element { circuits, positions: Positions { normal, reverse }, beside })
 }
 
-fn segment(counts: Counts, given: &atc_segment, circuits: &[u8], kept: &mut Segment<16>) -> Result<(), atc_status> {
-    let (circuits, length) = part(circuits, given.circuits_first, given.circuits_length)?;
+fn segment<const P: usize, Z: InC>(
+    there: There<Z>,
+    given: &SegmentOf<Z>,
+    circuits: &[u8],
+    kept: &mut Segment<P, Z>,
+) -> Result<(), atc_status> {
+    let (circuits, length) = part(circuits, P, given.circuits_first, given.circuits_length)?;
     for (kept, number) in kept.circuits.iter_mut().zip(circuits) {
-        let circuit = CircuitId::new(*number).filter(|_| *number < counts.circuits);
+        let circuit = CircuitId::new(*number).filter(|id| there.circuits.has(*id));
         *kept = circuit.ok_or(atc_status::UnknownCircuit)?.alone();
     }
     kept.length = length;
-    kept.throat = counts.circuits(given.throat)?;
+    kept.throat = there.circuits(given.throat)?;
     kept.outward = heading(given.outward)?;
     kept.shared = given.shared;
     Ok(())
 }
 
-fn route(counts: Counts, given: &atc_route, elements: &[atc_element], kept: &mut Route<16>) -> Result<(), atc_status> {
-    let routes = |bits| {
-        let known = within(bits, counts.routes).then_some(RouteSet::from_bits(bits));
-        known.ok_or(atc_status::UnknownRoute)
-    };
-    let (path, length) = part(elements, given.path_first, given.path_length)?;
+fn route<const P: usize, Z: InC>(
+    there: There<Z>,
+    given: &RouteOf<Z>,
+    elements: &[ElementOf<Z>],
+    kept: &mut Route<P, Z>,
+) -> Result<(), atc_status> {
+    let (path, length) = part(elements, P, given.path_first, given.path_length)?;
     for (kept, given) in kept.path.iter_mut().zip(path) {
-        *kept = element(counts, given)?;
+        *kept = element(there, given)?;
     }
     kept.length = length;
     kept.heading = heading(given.heading)?;
-    kept.entry = counts.circuits(given.entry)?;
-    kept.approach = counts.circuits(given.approach)?;
-    kept.overlap = element(counts, &given.overlap)?;
-    kept.beyond = counts.circuits(given.beyond)?;
-    kept.continuing = routes(given.continuing)?;
-    kept.conflicts = routes(given.conflicts)?;
-    kept.from = counts.segments(given.from)?;
-    kept.to = counts.segments(given.to)?;
+    kept.entry = there.circuits(given.entry)?;
+    kept.approach = there.circuits(given.approach)?;
+    kept.overlap = element(there, &given.overlap)?;
+    kept.beyond = there.circuits(given.beyond)?;
+    kept.continuing = there.routes(given.continuing)?;
+    kept.conflicts = there.routes(given.conflicts)?;
+    kept.from = there.segments(given.from)?;
+    kept.to = there.segments(given.to)?;
     kept.drive = Ticks(given.drive_cycles);
     kept.release = Ticks(given.release_cycles);
     kept.stay = Ticks(given.stay_cycles);

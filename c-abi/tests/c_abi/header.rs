@@ -34,7 +34,24 @@ fn made() -> String {
     let mut text = Vec::new();
     builder.generate().expect("the source can be read").write(&mut text);
     // Rust's word for it, and letters that not every compiler of C reads.
-    String::from_utf8(text).expect("UTF-8").replace("# Safety", "Of the caller:").replace('²', "2")
+    let text = String::from_utf8(text).expect("UTF-8").replace("# Safety", "Of the caller:").replace('²', "2");
+    named(&text)
+}
+
+/// A structure of both sizes has a name of cbindgen's for each size, and another name beside it: it gets that one alone.
+fn named(text: &str) -> String {
+    let (mut kept, mut names) = (String::new(), Vec::new());
+    for paragraph in text.split_inclusive("\n\n") {
+        let last = paragraph.trim_end().lines().last().unwrap_or_default();
+        let alias = last.strip_prefix("typedef struct ").and_then(|alias| alias.strip_suffix(';')?.split_once(' '));
+        match alias {
+            Some((made, name)) if made.contains("_of_") => names.push((made.to_owned(), name.to_owned())),
+            _ => kept.push_str(paragraph),
+        }
+    }
+    // The longer name first: one may be the beginning of another.
+    names.sort_by_key(|(made, _)| std::cmp::Reverse(made.len()));
+    names.iter().fold(kept, |text, (made, name)| text.replace(made, name))
 }
 
 fn committed() -> PathBuf {
@@ -87,6 +104,12 @@ fn the_sizes_are_right() {
             interlocking::ATC_INTERLOCKING_ALIGN,
             border::atc_interlocking_size(),
             border::atc_interlocking_align(),
+        ),
+        (
+            interlocking::ATC_LARGE_INTERLOCKING_SIZE,
+            interlocking::ATC_LARGE_INTERLOCKING_ALIGN,
+            border::atc_large_interlocking_size(),
+            border::atc_large_interlocking_align(),
         ),
     ];
     for (size, align, true_size, true_align) in said {

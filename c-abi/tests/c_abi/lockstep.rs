@@ -11,6 +11,7 @@ use atc_c::block::{
     ATC_BLOCK_CHECK_IN_AT_MAXIMUM, ATC_BLOCK_CHECK_IN_STAYS_ON, ATC_BLOCK_CHECK_OUT_AT_ZERO, ATC_BLOCK_COUNTING,
     ATC_BLOCK_UNVERIFIED, atc_block, atc_block_config, atc_block_input, atc_block_output,
 };
+use atc_c::interlocking::ATC_HEADING_NONE;
 use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output};
@@ -21,8 +22,8 @@ use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, AspectTable, Display, 
 use atc_kernel::block::{self, Block, Fault, Hold, SectionSet, Status, TrainCount};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Input, Memory, Orders, PointId, PointSet, Position, Positions, Request, RouteId, SegmentId,
-    SegmentSet, SpeedCode, Travel,
+    CircuitSet, Combined, Commands, Input, Large, Layout, Memory, Orders, PointId, Position, Positions, Request,
+    RouteId, SegmentId, SegmentSet, Size, Small, SpeedCode, Travel,
 };
 use atc_kernel::pattern::{Deceleration, pattern};
 use atc_kernel::permitted::{Heard, LineKind, Permission, Permitted, Settings};
@@ -32,6 +33,7 @@ use atc_kernel::telegram::{Counter, Deframer, Gradient, Length, Main, Route, Sec
 use atc_kernel::time::{Cycle, Millis};
 use atc_oracle::conform::random::Random;
 
+use crate::arrays::{Arrays, InC};
 use crate::call;
 use crate::station;
 
@@ -402,57 +404,97 @@ fn permitted_speed() {
     });
 }
 
-/// Random requests, orders, detection and consent on the passing loop.
+/// How many cycles a train waits at one signal.
+const PATIENCE: usize = 40;
+
+/// How many circuits, points, routes and segments there are.
+type Counts = (usize, usize, usize, usize);
+
+/// Random requests, orders, occupation and consent; the points stand as `detected` says.
+fn drawn<Z: Size>(random: &mut Random, cycle: usize, counts: Counts, detected: Positions<Z>) -> Input<Z> {
+    let (circuits, points, routes, segments) = counts;
+    let mut number = |most: usize| u8::try_from(random.below(most)).unwrap_or(0);
+    let request = match number(8) {
+        0..=2 => RouteId::new(number(routes)).map(Request::Set),
+        3 => RouteId::new(number(routes)).map(Request::Withdraw),
+        4 => PointId::new(number(points)).map(|point| Request::Drive(point, Position::Reverse)),
+        5 => SegmentId::new(number(segments)).map(|segment| Request::Turn(segment, Travel::Toward)),
+        6 => SegmentId::new(number(segments)).map(|segment| Request::Turn(segment, Travel::Away)),
+        _ => None,
+    };
+    let mut one_in = |cycles: u64| {
+        let (wanted, number) = (random.one_in(cycles), random.below(circuits));
+        CircuitSet::nth(number).only_if(wanted)
+    };
+    let all = (0..circuits).fold(CircuitSet::EMPTY, |all, number| all.or(CircuitSet::nth(number)));
+    let all = all.only_if(cycle % 16 == 0);
+    let occupied = one_in(24).or(one_in(48));
+    let orders = Orders {
+        block: one_in(48),
+        unblock: all,
+        restrict: one_in(8),
+        speed: SpeedCode(u8::try_from(cycle % 8).unwrap_or(0)),
+        lift: all,
+    };
+    let permitted = (0..segments).filter(|_| random.one_in(2));
+    let consent = permitted.fold(SegmentSet::EMPTY, |all, number| all.or(SegmentSet::nth(number)));
+    Input { occupied, detected, request, orders, consent }
+}
+
+/// The border of one size beside the kernel: `step` steps the state that was started with `arrays`.
+fn beside<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC>(
+    (arrays, layout): (&Arrays<Z>, &Layout<R, P, N, S, Z>),
+    cycles: usize,
+    mut step: impl FnMut(&station::InputOf<Z>) -> (atc_status, station::OutputOf<R, Z>),
+) {
+    let mut random = Random::of(20_261_125, "interlocking", 0);
+    let mut memory = Box::new(Memory::INITIAL);
+    let there = (arrays.lengths_m.len(), arrays.detectors.len(), arrays.routes.len(), arrays.segments.len());
+    let (mut held, mut granted, mut detected) = (0, 0, Positions::NONE);
+    let mut way = 0;
+    for cycle in 0..cycles {
+        let mut read = drawn(&mut random, cycle, there, detected);
+        // A train waits at a signal until its route is set.
+        if cycle % PATIENCE == 0 {
+            way = random.below(there.2);
+            read.request = RouteId::new(u8::try_from(way).unwrap_or(0)).map(Request::Set);
+        }
+        read.occupied = read.occupied.or(layout.plan().routes[way].entry);
+        let (next, commands) = Combined(layout).step(*memory, read);
+        *memory = next;
+        // Most points arrive at once.
+        let driven = commands.interlocking.drives;
+        detected = detected.without(driven.points()).or(driven.only_if(!random.one_in(4)));
+        held += memory.interlocking.routes.iter().filter(|route| route.is_held()).count();
+        let (status, said) = step(&station::input(&read));
+        assert_eq!(status, atc_status::Ok);
+        granted += said.telegrams.iter().filter(|telegram| telegram.heading != ATC_HEADING_NONE).count();
+        station::compare(&said, &memory, &commands);
+    }
+    println!(
+        "interlocking, {} routes: {cycles} steps, {held} routes held and {granted} trains let go in them",
+        there.2
+    );
+    assert!(held > cycles / 4 && granted > 20, "a device that does nothing says little: {held}, {granted}");
+}
+
+/// On the passing loop.
 #[test]
 fn interlocking() {
     let (arrays, layout) = station::passing_loop();
-    let mut draw = Draw(Random::of(20_261_125, "interlocking", 0));
     let mut state = station::start(&arrays).expect("it keeps every rule");
-    let mut memory = Memory::INITIAL;
-    let (circuits, points) = (all(arrays.lengths_m.len()), all(arrays.detectors.len()));
-    let (routes, segments) = (arrays.routes.len(), all(arrays.segments.len()));
-    let mut held = 0;
-    for number in 0..1500 {
-        let few = |random: &mut Random| random.number() & random.number() & random.number() & circuits;
-        let random = &mut draw.0;
-        let normal = random.number() & points;
-        let request = match random.below(8) {
-            0 | 1 => RouteId::new(u8::try_from(random.below(routes)).unwrap_or(0)).map(Request::Set),
-            2 => RouteId::new(u8::try_from(random.below(routes)).unwrap_or(0)).map(Request::Withdraw),
-            3 => PointId::new(0).map(|point| Request::Drive(point, Position::Reverse)),
-            4 => SegmentId::new(0).map(|segment| Request::Turn(segment, Travel::Toward)),
-            5 => SegmentId::new(1).map(|segment| Request::Turn(segment, Travel::Away)),
-            _ => None,
-        };
-        let read = Input {
-            occupied: CircuitSet::from_bits(if random.one_in(3) { few(random) & few(random) } else { 0 }),
-            detected: Positions {
-                normal: PointSet::from_bits(u32::try_from(normal).unwrap_or(0)),
-                reverse: PointSet::from_bits(u32::try_from(points & !normal).unwrap_or(0)),
-            },
-            request,
-            orders: Orders {
-                block: CircuitSet::from_bits(if random.one_in(16) { few(random) } else { 0 }),
-                unblock: CircuitSet::from_bits(if number % 16 == 0 { circuits } else { 0 }),
-                restrict: CircuitSet::from_bits(if random.one_in(16) { few(random) } else { 0 }),
-                speed: SpeedCode(u8::try_from(random.below(8)).unwrap_or(0)),
-                lift: CircuitSet::from_bits(if number % 16 == 0 { circuits } else { 0 }),
-            },
-            consent: SegmentSet::from_bits(u8::try_from(random.number() & segments).unwrap_or(0)),
-        };
-        let (next, commands) = Combined(&layout).step(memory, read);
-        memory = next;
-        held += memory.interlocking.routes.iter().filter(|route| route.is_held()).count();
-        let (status, said) = call::step(border::atc_interlocking_step, &mut *state, &station::input(&read));
-        assert_eq!(status, atc_status::Ok);
-        station::compare(&said, &memory, &commands);
-    }
-    println!("interlocking: 1500 steps, {held} routes held in them");
-    assert!(held > 100, "a device that holds nothing says little: {held}");
+    beside((&arrays, &layout), 1500, |input| call::step(border::atc_interlocking_step, &mut *state, input));
 }
 
-fn all(count: usize) -> u64 {
-    u64::MAX.checked_shr(u32::try_from(64 - count).unwrap_or(64)).unwrap_or(0)
+/// On the station of 100 routes.
+#[test]
+fn large_interlocking() {
+    station::on_a_large_stack(|| {
+        let (arrays, layout) = station::hundred_routes();
+        let mut state = station::start_large(&arrays).expect("it keeps every rule");
+        let step = border::atc_large_interlocking_step;
+        beside((&arrays, &layout), 120, |input| call::step(step, &mut *state, input));
+    });
 }
 
 /// What a call that fails puts out is the kernel's own safe output.
@@ -471,14 +513,23 @@ fn the_safe_outputs_are_the_kernels() {
     assert_eq!(safe(border::atc_block_step), counted(Block::SAFE));
     assert_eq!(safe(border::atc_permitted_step), may(Permitted::SAFE));
     assert_eq!(safe(border::atc_deframer_step).kind == ATC_TELEGRAM_NONE, Deframer::SAFE.is_none());
-    // The table of the safe output cannot be read: then every circuit counts as occupied.
     let commands = <Combined<'_, 64, 16, 32, 8> as Machine>::SAFE;
-    let said = safe(border::atc_interlocking_step);
+    all_is_safe::<64, Small>(&safe(border::atc_interlocking_step), &commands);
+    station::on_a_large_stack(|| {
+        let commands = <Combined<'_, 256, 32, 128, 32, Large> as Machine>::SAFE;
+        all_is_safe::<256, Large>(&safe(border::atc_large_interlocking_step), &commands);
+    });
+}
+
+fn all_is_safe<const R: usize, Z: InC>(said: &station::OutputOf<R, Z>, commands: &Commands<R, Z>) {
     let output = &commands.interlocking;
-    assert_eq!((said.proceed, said.confirmed), (output.proceed.bits(), output.confirmed.bits()));
-    assert_eq!((said.drive_normal, said.drive_reverse), (output.drives.normal.bits(), output.drives.reverse.bits()));
-    assert_eq!((said.permits, said.answer == 0), (output.permits.bits(), output.answer.is_none()));
-    assert_eq!(said.occupied, output.table.parts().2.occupied.bits());
-    assert!(said.phases == [0; 64] && said.telegrams.iter().all(|telegram| telegram.sent == 0));
+    assert_eq!((said.proceed, said.confirmed), (Z::routes(output.proceed), Z::circuits(output.confirmed)));
+    assert_eq!(said.drive_normal, Z::points(output.drives.normal));
+    assert_eq!(said.drive_reverse, Z::points(output.drives.reverse));
+    assert_eq!((said.permits, said.answer == 0), (Z::segments(output.permits), output.answer.is_none()));
+    // The table of the safe output cannot be read: then every circuit counts as occupied.
+    assert_eq!(said.occupied, Z::circuits(output.table.parts().2.occupied));
+    assert_eq!(said.occupied, Z::circuits(CircuitSet::ALL));
+    assert!(said.phases == [0; R] && said.telegrams.iter().all(|telegram| telegram.sent == 0));
     assert!(commands.telegrams.iter().all(Option::is_none));
 }

@@ -8,15 +8,19 @@ use std::ptr;
 
 use atc_c::aspect::{atc_aspect, atc_aspect_config, atc_aspect_input};
 use atc_c::block::{atc_block, atc_block_config, atc_block_input};
-use atc_c::interlocking::{atc_interlocking, atc_interlocking_config, atc_interlocking_input};
+use atc_c::interlocking::{
+    atc_interlocking, atc_interlocking_config, atc_interlocking_input, atc_large_interlocking,
+    atc_large_interlocking_config, atc_large_interlocking_input,
+};
 use atc_c::pattern::atc_pattern_input;
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input};
 use atc_c::telegram::{atc_deframer, atc_deframer_input, atc_frame, atc_telegram};
 use atc_c::{atc_status, border};
+use atc_kernel::interlocking::{CircuitSet, RouteSet, SegmentSet};
 use atc_oracle::conform::random::Random;
 
-use crate::arrays::Arrays;
+use crate::arrays::{Arrays, InC};
 use crate::call::{self, Ask, Start, Step};
 use crate::station;
 
@@ -251,7 +255,7 @@ fn attack_ask<I: Copy, O: Copy + PartialEq + Debug>(
 }
 
 /// A plan whose arrays are cut, spoiled, missing or said to be longer than there is room for.
-fn wild_plan(random: &mut Random, config: &mut Place, arrays: &mut Arrays, right: &Arrays) {
+fn wild_plan<Z: InC>(random: &mut Random, config: &mut Place, arrays: &mut Arrays<Z>, right: &Arrays<Z>) {
     arrays.clone_from(right);
     if random.one_in(2) {
         let route = random.below(arrays.routes.len());
@@ -263,9 +267,9 @@ fn wild_plan(random: &mut Random, config: &mut Place, arrays: &mut Arrays, right
             2 => one.heading = wild,
             3 => one.speed_code = wild,
             4 => one.cab_signalled = wild,
-            5 => one.conflicts ^= random.number(),
-            6 => one.from = wild,
-            _ => one.entry = random.number(),
+            5 => one.conflicts = Z::routes(RouteSet::nth(random.below(RouteSet::<Z>::MOST))),
+            6 => one.from = Z::segments(SegmentSet::nth(random.below(SegmentSet::<Z>::MOST))),
+            _ => one.entry = Z::circuits(CircuitSet::nth(random.below(CircuitSet::<Z>::MOST))),
         }
     } else {
         // Cut, and as long as it says.
@@ -281,15 +285,16 @@ fn wild_plan(random: &mut Random, config: &mut Place, arrays: &mut Arrays, right
     }
     let mut given = arrays.config();
     // More than there is room for is never read.
-    let wild = *random.pick(&[65, 129, 1025, 1 << 20, usize::MAX / 2, usize::MAX]).unwrap_or(&0);
+    let most = CircuitSet::<Z>::MOST;
+    let wild = *random.pick(&[most + 1, 1025, 1 << 20, usize::MAX / 2, usize::MAX]).unwrap_or(&0);
     match random.below(16) {
         0 => given.circuit_count = wild,
         1 => given.point_count = wild,
         2 => given.segment_count = wild,
         3 => given.route_count = wild,
-        4 => given.element_count = wild.max(1025),
+        4 => given.element_count = wild.max(8193),
         5 => given.code_count = wild,
-        6 => given.segment_circuit_count = wild.max(129),
+        6 => given.segment_circuit_count = wild.max(1025),
         7 => given.routes = ptr::null(),
         8 => given.elements = given.elements.wrapping_byte_add(1),
         9 => given.lengths_m = given.lengths_m.wrapping_byte_add(1),
@@ -311,6 +316,10 @@ fn spoil_or_not(random: &mut Random, config: &mut Place) {
 /// One call after the other, on all machines.
 #[test]
 fn calls_that_no_program_should_make() {
+    station::on_a_large_stack(make_calls);
+}
+
+fn make_calls() {
     let asked = std::env::var("ATC_MALFORMED_CALLS").ok().and_then(|number| number.parse().ok());
     let calls: u64 = asked.unwrap_or(20_000);
     let mut random = Random::of(20_261_125, "malformed calls", 0);
@@ -355,6 +364,15 @@ fn calls_that_no_program_should_make() {
         right.config(),
         atc_interlocking_input::default()
     );
+    let (hundred, _) = station::hundred_routes();
+    let mut cut = hundred.clone();
+    let large: Target<atc_large_interlocking, atc_large_interlocking_config, _, _> = target!(
+        "large",
+        atc_large_interlocking_start,
+        atc_large_interlocking_step,
+        hundred.config(),
+        atc_large_interlocking_input::default()
+    );
     let pattern = atc_pattern_input { brake_mm_s2: 800, distance_m: 300, gradient_permille: -10 };
     let telegram = atc_telegram { kind: 1, ..atc_telegram::default() };
     let frame: atc_frame = call::ask(border::atc_telegram_encode, &telegram).1;
@@ -380,6 +398,7 @@ fn calls_that_no_program_should_make() {
     let permitted = attack!(permitted, &another);
     let deframer = attack!(deframer, &other);
     let interlocking = attack!(interlocking, &another);
+    let large = attack!(large, &another);
     for _ in 0..calls {
         let (random, tally) = (&mut random, &mut tally);
         match random.below(40) {
@@ -391,12 +410,21 @@ fn calls_that_no_program_should_make() {
             32..=33 => attack_ask(("pattern", border::atc_pattern, &pattern), random, tally),
             34..=35 => attack_ask(("encode", border::atc_telegram_encode, &telegram), random, tally),
             36..=37 => attack_ask(("decode", border::atc_telegram_decode, &frame), random, tally),
+            // A call takes some milliseconds.
+            38 if random.one_in(6) => {
+                large(random, tally, &mut |random, place| wild_plan(random, place, &mut cut, &hundred));
+            }
             38 => attack_ask(("text", status_text, &0), random, tally),
             _ => interlocking(random, tally, &mut |random, place| wild_plan(random, place, &mut arrays, &right)),
         }
     }
-    let ended: u64 = tally.0.values().sum();
-    assert_eq!(ended, calls);
+    ended(&tally, calls);
+}
+
+/// How the calls ended: every way that must be among them is.
+fn ended(tally: &Tally, calls: u64) {
+    let all: u64 = tally.0.values().sum();
+    assert_eq!(all, calls);
     for ((name, status), count) in &tally.0 {
         println!("{name:12} {status:?}: {count}");
     }
@@ -411,6 +439,9 @@ fn calls_that_no_program_should_make() {
     }
     for status in [atc_status::TooManyEntries, atc_status::BeyondArray, atc_status::Damaged, atc_status::Ok] {
         assert!(tally.0.contains_key(&("interlocking", status)), "no call of interlocking ended in {status:?}");
+    }
+    for status in [atc_status::TooManyEntries, atc_status::Damaged, atc_status::Ok] {
+        assert!(tally.0.contains_key(&("large", status)), "no call of a large station ended in {status:?}");
     }
 }
 

@@ -193,3 +193,49 @@ fn interlocking() {
     }
     assert_eq!(printed, said);
 }
+
+#[test]
+fn large_station() {
+    let Some(printed) = printed("large_station") else { return };
+    let circuits: Vec<_> = (0..100).map(|number| json!({"name": number.to_string(), "length_m": 200})).collect();
+    let route = |number: usize| {
+        let at = |number: usize| [number.to_string()];
+        json!({
+            "name": number.to_string(), "heading": "right", "entry": at(number), "approach": at(number),
+            "path": [{"circuits": at(number + 1), "points": {}}], "overlap": {"circuits": [], "points": {}},
+            "beyond": at(number + 2), "continuing": [], "conflicts": [], "from": [], "to": [],
+            "drive_cycles": 20, "release_cycles": 30, "stay_cycles": 10, "speed_code": 1,
+        })
+    };
+    let plan = json!({"plan": {
+        "station": "Row", "cycle_ms": 100, "clear_cycles": 2, "turn_cycles": 1, "speeds_km_h": [0, 45],
+        "braking_m": [0, 100], "circuits": circuits, "points": [], "segments": [],
+        "routes": (0..98).map(route).collect::<Vec<_>>(),
+    }});
+    let mut device = Oracle::start("interlocking", &plan);
+    let all: Vec<_> = (0..100).map(|number| number.to_string()).collect();
+    let mut said = String::new();
+    for cycle in 1..=8 {
+        let there = if cycle > 6 { json!(["80", "81"]) } else { json!(["80"]) };
+        let mut step = json!({"occupied": there, "detected": {}, "all_telegrams": true});
+        if cycle == 1 {
+            step["orders"] = json!({"unblock": all, "lift": all});
+        }
+        if cycle == 4 {
+            step["request"] = json!({"set": "80"});
+        }
+        let output = device.step(&step);
+        let words = ["idle", "provisional", "failed", "set", "in-use", "releasing"];
+        let phase = output["routes"].get("80").unwrap_or(&json!("idle")).clone();
+        let phase = words.iter().position(|word| phase == *word).expect("one of these");
+        let answer = u8::from(output["answer"] == "accepted");
+        let proceed = output["proceed"].as_array().expect("a list").len();
+        let telegram = &output["telegrams"]["80"];
+        let code = [0, 45].iter().position(|speed| telegram["speed_km_h"] == *speed).expect("one of these");
+        let stop = telegram["stop"].as_str().expect("a name");
+        let line = format!("answer {answer}, phase {phase}, proceed {proceed}, from 80 to {stop} at code {code}");
+        writeln!(said, "cycle {cycle}: {line}").expect("a text takes it");
+    }
+    assert_eq!(printed, said);
+    assert!(said.contains("from 80 to 81"), "{said}");
+}

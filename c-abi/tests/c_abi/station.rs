@@ -6,21 +6,28 @@ use atc_c::border;
 use atc_c::interlocking::{
     ATC_ANSWER_ACCEPTED, ATC_ANSWER_NONE, ATC_HEADING_NONE, ATC_PLACE_ROUTE, ATC_REQUEST_DRIVE_NORMAL,
     ATC_REQUEST_DRIVE_REVERSE, ATC_REQUEST_NONE, ATC_REQUEST_SET, ATC_REQUEST_TURN_AWAY, ATC_REQUEST_TURN_TOWARD,
-    ATC_REQUEST_WITHDRAW, atc_interlocking, atc_interlocking_input, atc_interlocking_output, atc_movement, atc_place,
+    ATC_REQUEST_WITHDRAW, atc_interlocking, atc_interlocking_input, atc_large_interlocking, atc_place,
+    interlocking_input_of, interlocking_output_of, movement_of,
 };
 use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
-    Combined, Commands, Input, Layout, Memory, PointSet, Position, Request, Station, Travel,
+    Combined, Commands, Input, Large, LargeStation, Layout, Memory, Plan, PointSet, Position, Request, Station, Travel,
 };
+use atc_kernel::time::Ticks;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{Config, Interlocked, Step};
 
-use crate::arrays::{Arrays, heading};
+use crate::arrays::{Arrays, InC, heading};
 use crate::call;
 use crate::walks::{body, walked};
 
+/// C's input and output for a size of station.
+pub type InputOf<Z> = interlocking_input_of<<Z as InC>::Circuits, <Z as InC>::Points, <Z as InC>::Segments>;
+pub type OutputOf<const R: usize, Z> =
+    interlocking_output_of<<Z as InC>::Circuits, <Z as InC>::Points, <Z as InC>::Segments, R>;
+
 /// An input of the kernel as C gives it.
-pub fn input(input: &Input) -> atc_interlocking_input {
+pub fn input<Z: InC>(input: &Input<Z>) -> InputOf<Z> {
     let (request, number) = match input.request {
         None => (ATC_REQUEST_NONE, 200),
         Some(Request::Set(route)) => (ATC_REQUEST_SET, route.number()),
@@ -30,29 +37,34 @@ pub fn input(input: &Input) -> atc_interlocking_input {
         Some(Request::Turn(segment, Travel::Toward)) => (ATC_REQUEST_TURN_TOWARD, segment.number()),
         Some(Request::Turn(segment, Travel::Away)) => (ATC_REQUEST_TURN_AWAY, segment.number()),
     };
-    atc_interlocking_input {
-        occupied: input.occupied.bits(),
-        block: input.orders.block.bits(),
-        unblock: input.orders.unblock.bits(),
-        restrict_circuits: input.orders.restrict.bits(),
-        lift: input.orders.lift.bits(),
-        detected_normal: input.detected.normal.bits(),
-        detected_reverse: input.detected.reverse.bits(),
+    interlocking_input_of {
+        occupied: Z::circuits(input.occupied),
+        block: Z::circuits(input.orders.block),
+        unblock: Z::circuits(input.orders.unblock),
+        restrict_circuits: Z::circuits(input.orders.restrict),
+        lift: Z::circuits(input.orders.lift),
+        detected_normal: Z::points(input.detected.normal),
+        detected_reverse: Z::points(input.detected.reverse),
         request,
         number,
         restrict_code: input.orders.speed.0,
-        consent: input.consent.bits(),
+        consent: Z::segments(input.consent),
     }
 }
 
 /// Holds what C puts out against what the kernel commands.
-pub fn compare(said: &atc_interlocking_output, memory: &Memory<64, 8>, commands: &Commands<64>) {
+pub fn compare<const R: usize, const S: usize, Z: InC>(
+    said: &OutputOf<R, Z>,
+    memory: &Memory<R, S, Z>,
+    commands: &Commands<R, Z>,
+) {
     let output = &commands.interlocking;
-    assert_eq!(said.proceed, output.proceed.bits());
-    assert_eq!(said.confirmed, output.confirmed.bits());
-    assert_eq!((said.drive_normal, said.drive_reverse), (output.drives.normal.bits(), output.drives.reverse.bits()));
-    assert_eq!(said.permits, output.permits.bits());
-    assert_eq!(said.occupied, output.table.read(memory.cycle).expect("the table is of this cycle").occupied.bits());
+    let occupied = output.table.read(memory.cycle).expect("the table is of this cycle").occupied;
+    assert_eq!(said.proceed, Z::routes(output.proceed));
+    assert_eq!((said.confirmed, said.occupied), (Z::circuits(output.confirmed), Z::circuits(occupied)));
+    assert_eq!(said.drive_normal, Z::points(output.drives.normal));
+    assert_eq!(said.drive_reverse, Z::points(output.drives.reverse));
+    assert_eq!(said.permits, Z::segments(output.permits));
     let answer = match output.answer {
         None => ATC_ANSWER_NONE,
         Some(Ok(())) => ATC_ANSWER_ACCEPTED,
@@ -62,8 +74,8 @@ pub fn compare(said: &atc_interlocking_output, memory: &Memory<64, 8>, commands:
     assert_eq!(said.answer, answer);
     assert_eq!(said.phases, memory.interlocking.routes.map(|route| route.phase as u8));
     for (telegram, movement) in said.telegrams.iter().zip(commands.telegrams) {
-        let expected = movement.map_or(atc_movement::default(), |movement| atc_movement {
-            hold: movement.hold.bits(),
+        let expected = movement.map_or(movement_of::default(), |movement| movement_of {
+            hold: Z::circuits(movement.hold),
             sent: 1,
             stop: movement.stop.number(),
             heading: movement.heading.map_or(ATC_HEADING_NONE, heading),
@@ -75,6 +87,10 @@ pub fn compare(said: &atc_interlocking_output, memory: &Memory<64, 8>, commands:
 
 pub fn start(arrays: &Arrays) -> Result<Box<atc_interlocking>, atc_status> {
     call::start(border::atc_interlocking_start, &arrays.config())
+}
+
+pub fn start_large(arrays: &Arrays<Large>) -> Result<Box<atc_large_interlocking>, atc_status> {
+    call::start(border::atc_large_interlocking_start, &arrays.config())
 }
 
 fn place(arrays: &Arrays) -> (atc_status, atc_place) {
@@ -126,6 +142,63 @@ pub fn passing_loop() -> (Arrays, Box<Station>) {
     let described = atc_layout::Description::from_toml("passing-loop.toml", text).expect("it is a layout");
     let compiled = described.compile().expect("it keeps every rule");
     (Arrays::of(&compiled.plan, &compiled.names), compiled.layout())
+}
+
+/// The arrays of a large station, which keep every rule, and its layout. It has no time after a start.
+pub fn hundred_routes() -> (Arrays<Large>, Box<LargeStation>) {
+    let text = include_str!("../../../layouts/station-100.toml");
+    let described = atc_layout::Description::from_toml("station-100.toml", text).expect("it is a layout");
+    let compiled = described.compile_to::<256, 32, 128, 32, Large>().expect("it keeps every rule");
+    let plan = Box::new(Plan { start: Ticks(0), ..*compiled.plan });
+    (Arrays::of(&plan, &compiled.names), Box::new(Layout::new(*plan).expect("it keeps every rule")))
+}
+
+/// What a large station's plan breaks comes out as that of a small one does.
+#[test]
+fn broken_rules_of_a_large_station() {
+    on_a_large_stack(|| {
+        type Break = (fn(&mut Arrays<Large>), atc_status, (u32, u32));
+        let (right, _) = hundred_routes();
+        let place = |arrays: &Arrays<Large>| call::ask(border::atc_large_interlocking_check_plan, &arrays.config());
+        assert_eq!(place(&right), (atc_status::Ok, atc_place::default()));
+        let cases: [Break; 8] = [
+            (|plan| plan.routes[99].drive_cycles = 0, atc_status::PlanNoTime, (ATC_PLACE_ROUTE, 99)),
+            (|plan| plan.routes[70].path_length = 33, atc_status::PlanPathTooLong, (ATC_PLACE_ROUTE, 70)),
+            (|plan| plan.routes[70].entry.words[3] = 1 << 63, atc_status::UnknownCircuit, (ATC_PLACE_ROUTE, 70)),
+            (|plan| plan.routes[70].conflicts.words[2] = 1, atc_status::UnknownRoute, (ATC_PLACE_ROUTE, 70)),
+            (|plan| plan.routes[70].from.words[3] = 128, atc_status::UnknownSegment, (ATC_PLACE_ROUTE, 70)),
+            (|plan| plan.routes[70].overlap.normal.words[3] = 1 << 31, atc_status::UnknownPoint, (ATC_PLACE_ROUTE, 70)),
+            (|plan| plan.routes.resize(257, plan.routes[0]), atc_status::TooManyEntries, (0, 0)),
+            (|plan| plan.elements.resize(8193, plan.elements[0]), atc_status::TooManyEntries, (0, 0)),
+        ];
+        for (number, (break_it, status, at)) in cases.into_iter().enumerate() {
+            let mut plan = right.clone();
+            break_it(&mut plan);
+            let (found, place) = place(&plan);
+            assert_eq!((found, (place.kind, place.first)), (status, at), "case {number}");
+            assert_eq!(start_large(&plan).err(), Some(status), "case {number}");
+        }
+    });
+}
+
+/// A state of the one size is none of the other.
+#[test]
+fn a_state_has_its_size() {
+    on_a_large_stack(|| {
+        let mut large = start_large(&hundred_routes().0).expect("it keeps every rule");
+        // SAFETY: a large state has more bytes than a small one, and the alignment of both is the same.
+        let small = unsafe { &mut *(&raw mut *large).cast::<atc_interlocking>() };
+        let (status, said) = call::step(border::atc_interlocking_step, small, &atc_interlocking_input::default());
+        assert_eq!((status, said.occupied), (atc_status::NotStarted, u64::MAX));
+    });
+}
+
+/// A large plan has 0.9 MB, and is copied some times on its way through a build without optimisation.
+pub fn on_a_large_stack(run: impl FnOnce() + Send) {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, run);
+        thread.expect("a thread can be had").join().expect("it has said what was wrong");
+    });
 }
 
 /// Every broken rule comes out under its own status, and at its place.

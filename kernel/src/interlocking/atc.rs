@@ -108,8 +108,7 @@ fn on_line<const R: usize, const P: usize, const N: usize, const S: usize, Z: Si
     //= spec/interlocking.md#atc-13-out-to-the-line
     //# From the throat, plain line MUST be granted only behind a route to that line: one whose grant reaches the throat, or one that the train in the throat has entered in order and whose points there are sound.
     let throat = segment.throat.only_if(away && to.has_number(number));
-    let begins = segment.all().or(throat).contains(here) && !here.is_empty();
-    if !begins || !(toward || away) {
+    if !(toward || away) || here.is_empty() || !segment.all().or(throat).contains(here) {
         return Grant::NONE;
     }
     let closed = contents.occupied.or(contents.blocked);

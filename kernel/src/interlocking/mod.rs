@@ -146,7 +146,9 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         let shut = point::meeting(self, state.works.blocked);
         let mut demand = Demand { wanted: alone, locked: ways.points.or(shut) };
         for (route, held) in plan.routes.iter().zip(&state.routes) {
-            demand = demand.with(route, *held);
+            if held.is_asked::<Z>() {
+                demand = demand.with(route, *held);
+            }
         }
         let drives = demand.drives(detected, under);
         let (points, firm) = state.points.step(N, plan.settle, detected, drives);
@@ -162,11 +164,13 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size> La
         // Their strokes may begin, or go on.
         let mut moving = PointSet::ALL.without(firm.points());
         for (route, held) in plan.routes.iter().zip(&mut state.routes) {
-            let ready = held.phase == Phase::Provisional && signal::ready(route, *held, view);
-            *held = held.reserve(route, occupied, ready);
-            moving = moving.or(held.positions(route).points());
-            let kept = held.circuits(route).or(held.beside(route));
-            circuits = circuits.or(kept).or(held.before_signal(route, occupied));
+            if held.is_asked::<Z>() {
+                let ready = held.phase == Phase::Provisional && signal::ready(route, *held, view);
+                *held = held.reserve(route, occupied, ready);
+                moving = moving.or(held.positions(route).points());
+                let kept = held.circuits(route).or(held.beside(route));
+                circuits = circuits.or(kept).or(held.before_signal(route, occupied));
+            }
         }
         circuits = circuits.or(point::detectors(self, moving));
         if !starting {

@@ -76,6 +76,14 @@ impl RouteState {
         !matches!(self.phase, Phase::Idle)
     }
 
+    /// Whether a cycle looks at what the route holds and grants: at a large station only if it is held. Of an idle route that is nothing, and it stays idle.
+    #[inline]
+    pub const fn is_asked<Z: Size>(&self) -> bool {
+        //= spec/interlocking.md#lay-5-idle-routes
+        //# In a cycle what is held, kept, granted and driven MUST be asked of every route that is held.
+        !Z::RESTS || self.is_held()
+    }
+
     /// Whether the route's points are locked: it is held, and not only provisionally.
     pub const fn locks(&self) -> bool {
         !matches!(self.phase, Phase::Idle | Phase::Provisional)

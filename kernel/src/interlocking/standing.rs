@@ -39,17 +39,19 @@ impl<const R: usize, Z: Size> Standing<R, Z> {
         let mut held = CircuitSet::EMPTY;
         let mut limits = restrictions.and(plan.line);
         for ((route, state), body) in plan.routes.iter().zip(routes).zip(&mut bodies) {
-            let path = state.path(route).circuits;
-            held = held.or(path);
-            //= spec/interlocking.md#atc-17-shared-berth
-            //# The limit of a berth MUST NOT be above the speed of the calling-on route that holds it.
-            let berth = state.overlap(route).circuits.only_if(route.calling_on);
-            limits = limits.and_at_most(route.speed, path.or(berth));
-            let within = path.and(occupied);
-            let entering = state.tail == 0 && !within.is_empty();
-            let arrived = within.meets(route.last());
-            let beyond = state.overlap(route).circuits.and(occupied);
-            *body = within.or(route.entry.and(occupied).only_if(entering)).or(beyond.only_if(arrived));
+            if state.is_asked::<Z>() {
+                let path = state.path(route).circuits;
+                held = held.or(path);
+                //= spec/interlocking.md#atc-17-shared-berth
+                //# The limit of a berth MUST NOT be above the speed of the calling-on route that holds it.
+                let berth = state.overlap(route).circuits.only_if(route.calling_on);
+                limits = limits.and_at_most(route.speed, path.or(berth));
+                let within = path.and(occupied);
+                let entering = state.tail == 0 && !within.is_empty();
+                let arrived = within.meets(route.last());
+                let beyond = state.overlap(route).circuits.and(occupied);
+                *body = within.or(route.entry.and(occupied).only_if(entering)).or(beyond.only_if(arrived));
+            }
         }
         for route in &plan.routes {
             limits = limits.and_at_most(route.speed, route.held_from(0).circuits.without(held));

@@ -105,6 +105,7 @@ pub const ALL: &[Harness] = &[
     layout::t_lay_2::HARNESS,
     sets::t_lay_3::HARNESS,
     sets::t_lay_3_check::HARNESS,
+    sets::t_lay_3_idle::HARNESS,
     sets::t_lay_3_used::HARNESS,
     train::t_ilk_train::HARNESS,
     train::t_ilk_train_release::HARNESS,

@@ -1,10 +1,11 @@
 //! Sets of large stations (T-LAY-3): the code of the kernel is the same for both sizes, but for the bits of a set. Here is what that
 //! code counts on, of every operation, for one number that stands for all.
 
-use crate::engine::any_byte;
+use super::any::{any_circuits, any_route, any_route_state};
+use crate::engine::{any_byte, any_flag};
 use atc_kernel::interlocking::{
-    CircuitId, CircuitSet, Contents, Epoch, Grant, Large, PointId, PointSet, SegmentId, SegmentSet, Size, SpeedLimits,
-    Standing, Table,
+    CircuitId, CircuitSet, Contents, Element, Epoch, Grant, Large, Phase, PointId, PointSet, SegmentId, SegmentSet,
+    Size, Small, SpeedLimits, Standing, Table,
 };
 
 /// What a set says of a number, without the kernel's own reading of it.
@@ -140,6 +141,43 @@ harness! {
         e.cover(Cover::Full as u32, length == 32 && found.is_some());
         e.cover(Cover::More as u32, length > 32 && found.is_some());
         e.cover(Cover::Empty as u32, used.is_empty());
+    }
+}
+
+harness! {
+    /// A large station does not look at what an idle route holds and grants: that is nothing, and it stays idle.
+    t_lay_3_idle(e)
+    theorem "T-LAY-3";
+    requirements ["LAY-5"];
+    assumptions [];
+    bound "1 route of up to 4 circuits, 32 circuits, 16 points";
+    cases 1;
+    unwind 65 = 1 + crate::interlocking::LONGEST;
+    claims {
+        Nothing: "an idle route in a valid state holds no place of its path, no overlap and nothing on the way to its signal, and wants and locks no point",
+        Stays: "it stays as it is, whether what it needs is ready or not",
+        Held: "and a route that holds anything is looked at, in a station of either size",
+    }
+    covers {
+        There: "an idle route over a circuit that is occupied",
+        Held: "a route that is held",
+    }
+    {
+        let route = any_route::<E, 4>(e, 0);
+        let state = any_route_state(e);
+        let occupied = any_circuits(e, "occupied (bits)", 0..=15);
+        let ready = any_flag(e, "what it needs is ready (odd: yes)");
+        let idle = state.is_valid(&route) && !state.is_asked::<Large>();
+        let holds = state.path(&route).or(state.overlap(&route));
+        let wants = state.locks() || state.phase == Phase::Provisional;
+        let nothing = holds == Element::NONE && state.before_signal(&route, occupied).is_empty() && !wants;
+        e.claim(Claim::Nothing as u32, !idle || nothing);
+        let stays = !idle || state.follow(&route, occupied).reserve(&route, occupied, ready) == state;
+        e.claim(Claim::Stays as u32, stays);
+        let asked = state.is_asked::<Large>() && state.is_asked::<Small>();
+        e.claim(Claim::Held as u32, state.phase == Phase::Idle || asked);
+        e.cover(Cover::There as u32, idle && route.exists() && route.circuit_at(0).meets(occupied));
+        e.cover(Cover::Held as u32, state.is_valid(&route) && asked);
     }
 }
 
