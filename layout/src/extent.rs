@@ -1,4 +1,4 @@
-//! How large a station is.
+//! How large a station is, and the room that a large one needs while it is made.
 
 use crate::form::Station;
 
@@ -40,4 +40,19 @@ impl Extent {
     pub const fn is_large(self) -> bool {
         self.circuits > 64 || self.points > 32 || self.segments > 8 || self.routes > 64 || self.longest > 16
     }
+}
+
+/// The stack on which a large station is made: its layout has nearly a megabyte, and is moved some times.
+const STACK: usize = 64 << 20;
+
+/// Runs what moves large stations about, on a stack with room for them.
+///
+/// # Errors
+/// There is no thread for it, or it ended badly.
+pub fn with_room<T: Send>(run: impl FnOnce() -> T + Send) -> Result<T, String> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
+        let thread = thread.map_err(|error| format!("a large station needs a thread of its own: {error}"))?;
+        thread.join().map_err(|_| "a large station cannot be opened here".to_owned())
+    })
 }

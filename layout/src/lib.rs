@@ -44,7 +44,7 @@ pub mod witness;
 pub use at::At;
 pub use compile::{Compiled, Names, Sound};
 pub use description::{Description, read};
-pub use extent::Extent;
+pub use extent::{Extent, with_room};
 pub use problem::{Errors, LineColumn, Problem, Source};
 pub use rule::Rule;
 pub use values::{Braking, Overlaps, Speeds, Times};

@@ -3,7 +3,7 @@
 
 use atc_kernel::aspect::TimesMs;
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::Plan;
+use atc_kernel::interlocking::{Plan, Size};
 use atc_kernel::pattern::Deceleration;
 use atc_kernel::permitted::Settings;
 use atc_kernel::time::{MAX_TICKS, Millis, Ticks};
@@ -60,9 +60,9 @@ impl Defect {
     }
 
     /// Makes the plan of a station's device wrong; says whether it did.
-    pub(crate) fn spoil<const R: usize, const P: usize, const N: usize, const S: usize>(
+    pub(crate) fn spoil<const R: usize, const P: usize, const N: usize, const S: usize, Z: Size>(
         self,
-        plan: &mut Plan<R, P, N, S>,
+        plan: &mut Plan<R, P, N, S, Z>,
     ) -> bool {
         match self {
             Self::ClearsAtOnce => (plan.clear, plan.loss) = (1, 0),

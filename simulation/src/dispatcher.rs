@@ -6,11 +6,12 @@
 
 use std::collections::VecDeque;
 
-use atc_kernel::interlocking::{Refusal, Request, RouteId, RouteSet, SegmentId, Travel};
+use atc_kernel::interlocking::{Refusal, Request, RouteId, SegmentId, Travel};
 
 use crate::bound::Bound;
 use crate::event::What;
 use crate::line::Line;
+use crate::sizes::Routes;
 
 /// After how long a signal that does not show proceed is given up, in ms.
 const PATIENCE_MS: u64 = 20_000;
@@ -154,7 +155,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Looks at the trains, and decides; `told` hears of what happens. The trains whose driver changes ends are returned.
-    pub fn look(&mut self, now_ms: u64, seen: &[Seen], proceed: &[RouteSet], told: &mut dyn FnMut(What)) -> Vec<usize> {
+    pub fn look(&mut self, now_ms: u64, seen: &[Seen], proceed: &[Routes], told: &mut dyn FnMut(What)) -> Vec<usize> {
         let mut turned = Vec::new();
         for (train, seen) in seen.iter().enumerate() {
             self.follow(train, (now_ms, *seen), proceed, told, &mut turned);
@@ -172,7 +173,7 @@ impl<'a> Dispatcher<'a> {
         &mut self,
         train: usize,
         (now_ms, seen): (u64, Seen),
-        proceed: &[RouteSet],
+        proceed: &[Routes],
         told: &mut dyn FnMut(What),
         turned: &mut Vec<usize>,
     ) {
@@ -181,7 +182,7 @@ impl<'a> Dispatcher<'a> {
         if let Some(watch) = &mut agent.watch {
             if line.stations[watch.station].paths[watch.route].contains(&seen.front) {
                 agent.watch = None;
-            } else if proceed[watch.station].meets(RouteSet::nth(watch.route)) {
+            } else if proceed[watch.station].meets(Routes::nth(watch.route)) {
                 watch.since_ms = now_ms;
             } else if now_ms - watch.since_ms > PATIENCE_MS {
                 let (station, id) = (watch.station, route_id(watch.route));

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use atc_kernel::aspect::AspectId;
 use atc_kernel::block::{Block, Direction, Hold, MAX_SECTIONS, hold_for};
 use atc_kernel::distance::Metres;
-use atc_kernel::interlocking::{CircuitId, Layout, MAX_CODES, PerCircuit, SegmentId, Travel};
+use atc_kernel::interlocking::{CircuitId, Large, Layout, MAX_CODES, PerCircuit, SegmentId, Small, Travel};
 use atc_kernel::telegram::{Gradient, SectionId};
 use atc_kernel::time::{Cycle, Millis, Ticks};
 use atc_kernel::wayside::{Equipment, Facing, Fixed, Join, Session, SignalPlan};
-use atc_layout::{Compiled, Description};
+use atc_layout::{Compiled, Description, Extent, with_room};
 
 use crate::bound::Bound;
 use crate::counted::Counted;
@@ -17,6 +17,7 @@ use crate::defect::Defect;
 use crate::ground::{Device, Held, Speaking};
 use crate::line::Line;
 use crate::onboard::words;
+use crate::sizes::Wide;
 
 /// The longest that a passing train keeps a check-in on. A train that stands there is a fault.
 const PASS_MS: u32 = 10_000;
@@ -30,19 +31,27 @@ impl Line {
         // Devices with messages understand each other only.
         let equipment = if telegrams || !self.counted.is_empty() { Some(self.equipment(station)?) } else { None };
         let made = (&self.stations[station].description, defects, equipment.as_ref());
+        let large = Extent::of(&made.0.station).is_large();
         if let Some(counted) = counted {
-            return if counted.blocks.len() == 1 {
-                sized::<24, 12, 12, 4, 1>(made, Some(counted.join(self, station)?))
-            } else {
-                sized::<24, 12, 12, 4, 2>(made, Some(counted.join(self, station)?))
+            return match counted.blocks.len() {
+                // Each of these devices is compiled for itself.
+                _ if large => {
+                    Err("a counted line ends at a small station here: this one has more than 64 circuits or routes"
+                        .to_owned())
+                }
+                1 => sized::<24, 12, 12, 4, 1, Small>(made, Some(counted.join(self, station)?)),
+                _ => sized::<24, 12, 12, 4, 2, Small>(made, Some(counted.join(self, station)?)),
             };
         }
-        let few = sized::<8, 4, 2, 2, 0>(made, None).or_else(|_| sized::<24, 4, 10, 2, 0>(made, None));
-        few.or_else(|_| sized::<64, 16, 32, 8, 0>(made, None))
+        if large {
+            return with_room(|| sized::<256, 32, 128, 32, 0, Large>(made, None))?;
+        }
+        let few = sized::<8, 4, 2, 2, 0, Small>(made, None).or_else(|_| sized::<24, 4, 10, 2, 0, Small>(made, None));
+        few.or_else(|_| sized::<64, 16, 32, 8, 0, Small>(made, None))
     }
 
     /// What a station's device has besides its layout, where trains run on telegrams. A circuit has one number in all stations.
-    fn equipment(&self, station: usize) -> Result<Equipment<0>, String> {
+    fn equipment(&self, station: usize) -> Result<Equipment<0, Large>, String> {
         let words = words(&self.speeds_kmh)?;
         let highest = u8::try_from(words.aspects.speeds().len() - 1).ok().and_then(AspectId::new);
         let curve = highest.ok_or("more speeds than ranks")?;
@@ -104,11 +113,14 @@ impl Counted {
     }
 }
 
-fn sized<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize>(
-    (description, defects, equipment): (&Description, &[Defect], Option<&Equipment<0>>),
+/// A layout, what is wrong in it, and what a whole device has besides.
+type Made<'a> = (&'a Description, &'a [Defect], Option<&'a Equipment<0, Large>>);
+
+fn sized<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize, Z: Wide>(
+    (description, defects, equipment): Made<'_>,
     counted: Option<Join<B>>,
 ) -> Result<Box<dyn Device>, String> {
-    let compiled: Compiled<R, P, N, S> = description.compile_to().map_err(|errors| errors.to_string())?;
+    let compiled: Compiled<R, P, N, S, Z> = description.compile_to().map_err(|errors| errors.to_string())?;
     let mut plan = compiled.plan;
     let layout = if defects.iter().filter(|defect| defect.spoil(&mut plan)).count() > 0 {
         Layout::with_what_proofs_need(*plan)
@@ -116,9 +128,11 @@ fn sized<const R: usize, const P: usize, const N: usize, const S: usize, const B
         Layout::new(*plan)
     };
     let layout = layout.map_err(|broken| compiled.names.broken(broken, &plan))?;
-    let layout = Arc::new(layout);
-    let Some(equipment) = equipment else { return Ok(Box::new(Held::new(layout))) };
+    let (layout, circuits) = (Arc::new(layout), compiled.names.circuits.len());
+    let Some(equipment) = equipment else { return Ok(Box::new(Held::new(layout, circuits))) };
     let Equipment { signals, life, session, .. } = *equipment;
-    let speaking = Speaking::new(layout, Equipment { counted, signals, life, session });
+    let SignalPlan { circuits: fixed, speeds, aspects, codes } = signals;
+    let signals = SignalPlan { circuits: PerCircuit::from_fn(|number| fixed[number]), speeds, aspects, codes };
+    let speaking = Speaking::new(layout, circuits, Equipment { counted, signals, life, session });
     Ok(Box::new(speaking.map_err(|broken| format!("{}: {broken:?}", compiled.names.station))?))
 }

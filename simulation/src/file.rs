@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use atc_kernel::block::MAX_SECTIONS;
-use atc_layout::{Compiled, Description, border};
+use atc_layout::{Description, Sound, border, with_room};
 use serde::{Deserialize, Serialize};
 
 use crate::bound::Bound;
@@ -128,25 +128,25 @@ impl Line {
             (None, 0 | 1) => return Err("a line has two stations or more: name each in [[station]]".to_owned()),
             (None, _) => {}
         }
-        let compiled: Vec<Compiled> = layouts
+        let sound: Vec<Sound> = layouts
             .iter()
-            .map(|layout| layout.compile().map_err(|errors| errors.to_string()))
+            .map(|layout| with_room(|| layout.check())?.map_err(|errors| errors.to_string()))
             .collect::<Result<_, _>>()?;
-        let pairs = pairs(&layouts, &compiled)?;
-        let models: Vec<_> = compiled.iter().map(|one| (one.names.station.as_str(), &one.model)).collect();
+        let pairs = pairs(&layouts, &sound)?;
+        let models: Vec<_> = sound.iter().map(|one| (one.names.station.as_str(), &one.model)).collect();
         let (track, links) = join(&models, &pairs)?;
-        let first = &compiled[0].model.values;
-        for one in &compiled {
+        let first = &sound[0].model.values;
+        for one in &sound {
             let values = &one.model.values;
             if values.cycle_ms != first.cycle_ms || values.speeds_kmh != first.speeds_kmh {
-                let names = (&compiled[0].names.station, &one.names.station);
+                let names = (&sound[0].names.station, &one.names.station);
                 return Err(format!(
                     "{} and {} differ in cycle_ms or in speeds_kmh: give both the same",
                     names.0, names.1
                 ));
             }
         }
-        let values = |of: fn(&atc_layout::model::Values) -> u32| compiled.iter().map(move |one| of(&one.model.values));
+        let values = |of: fn(&atc_layout::model::Values) -> u32| sound.iter().map(move |one| of(&one.model.values));
         let line = Self {
             name: file.name.clone(),
             dynamics: file.trains,
@@ -160,12 +160,12 @@ impl Line {
             residual_ms: values(|values| values.residual_ms.value).max().unwrap_or(0),
             limits: Vec::new(),
             stations: Vec::new(),
-            ways: links.iter().map(|link| ways(link, &compiled)).collect(),
+            ways: links.iter().map(|link| ways(link, &sound)).collect(),
             counted: Vec::new(),
             links,
             track,
         };
-        let mut line = line.checked()?.with_stations(layouts, compiled)?;
+        let mut line = line.checked()?.with_stations(layouts, sound)?;
         line.counted = file.counted.iter().map(|one| counted(&line, one)).collect::<Result<_, _>>()?;
         check(&line)?;
         Ok(line)
@@ -184,15 +184,15 @@ impl Line {
         Ok(self)
     }
 
-    fn with_stations(mut self, layouts: Vec<Description>, compiled: Vec<Compiled>) -> Result<Self, String> {
-        for (number, (description, compiled)) in layouts.into_iter().zip(compiled).enumerate() {
-            let model = &compiled.model;
+    fn with_stations(mut self, layouts: Vec<Description>, sound: Vec<Sound>) -> Result<Self, String> {
+        for (number, (description, sound)) in layouts.into_iter().zip(sound).enumerate() {
+            let model = &sound.model;
             let needs = model.values.longest_train.map_or(f64::INFINITY, |longest| f64::from(longest.0));
             let brake = f64::from(description.station.braking.deceleration_mm_s2.value) / 1000.0;
             if self.dynamics.length_m > needs || self.dynamics.service < brake {
                 return Err(format!(
                     "{} counts on trains of at most {needs} m that brake with {brake} m/s²; [trains] has {} m and {} m/s²",
-                    compiled.names.station, self.dynamics.length_m, self.dynamics.service
+                    sound.names.station, self.dynamics.length_m, self.dynamics.service
                 ));
             }
             let global = |circuits: Vec<usize>| -> Vec<usize> {
@@ -213,11 +213,11 @@ impl Line {
                 if !lines[side.side()].is_empty() && !platforms.iter().any(through) {
                     return Err(format!(
                         "{}: no track is reached by one route from the line and left by one to the {side:?}",
-                        compiled.names.station
+                        sound.names.station
                     ));
                 }
             }
-            self.stations.push(Place { name: compiled.names.station.clone(), description, compiled, platforms, paths });
+            self.stations.push(Place { name: sound.names.station.clone(), description, sound, platforms, paths });
         }
         self.limits = self.limits();
         Ok(self)
@@ -232,7 +232,7 @@ fn counted(line: &Line, file: &CountedFile) -> Result<Counted, String> {
     let wrong = |what: String| format!("[[counted]] {}: {what}", file.line);
     let called = |link: usize| {
         let joined = &line.links[link];
-        line.stations[joined.west].compiled.model.segments[joined.segments[0]].line.as_deref() == Some(&file.line)
+        line.stations[joined.west].sound.model.segments[joined.segments[0]].line.as_deref() == Some(&file.line)
     };
     let link =
         (0..line.links.len()).find(|link| called(*link)).ok_or_else(|| wrong("no line has this name".to_owned()))?;
@@ -276,10 +276,10 @@ fn check(line: &Line) -> Result<(), String> {
 }
 
 /// The segments by which each station and the next are joined: one pair for each line that both name.
-fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<Pair>, String> {
+fn pairs(layouts: &[Description], sound: &[Sound]) -> Result<Vec<Pair>, String> {
     let mut pairs = Vec::new();
     for west in 0..layouts.len().saturating_sub(1) {
-        let (one, other) = (&compiled[west].model, &compiled[west + 1].model);
+        let (one, other) = (&sound[west].model, &sound[west + 1].model);
         border::compare((&layouts[west], one), (&layouts[west + 1], other)).map_err(|errors| errors.to_string())?;
         let before = pairs.len();
         for (number, segment) in one.segments.iter().enumerate() {
@@ -287,7 +287,7 @@ fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<Pair>, St
             pairs.extend(there.map(|there| Pair { west, segments: [number, there] }));
         }
         if !(1..=2).contains(&(pairs.len() - before)) {
-            let names = (&compiled[west].names.station, &compiled[west + 1].names.station);
+            let names = (&sound[west].names.station, &sound[west + 1].names.station);
             let common = pairs.len() - before;
             return Err(format!("{} and {} name {common} lines in common; 1 or 2 are possible here", names.0, names.1));
         }
@@ -296,8 +296,8 @@ fn pairs(layouts: &[Description], compiled: &[Compiled]) -> Result<Vec<Pair>, St
 }
 
 /// Whether trains run to the west on a line, and to the east: there is a route out to it at one end, and one in from it at the other.
-fn ways(link: &Link, compiled: &[Compiled]) -> [bool; 2] {
-    let routes = |side: usize| &compiled[link.west + side].model.routes;
+fn ways(link: &Link, sound: &[Sound]) -> [bool; 2] {
+    let routes = |side: usize| &sound[link.west + side].model.routes;
     let run = |from: usize| {
         let out = routes(from).iter().any(|route| route.to == Some(link.segments[from]));
         out && routes(1 - from).iter().any(|route| route.from == Some(link.segments[1 - from]))

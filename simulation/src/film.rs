@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use atc_film::{Class, Clock, Distance, Film, Place, Plan, Stretch};
-use atc_kernel::interlocking::{CircuitSet, Heading, Movement, Phase, PointSet, Positions, RouteSet, SegmentSet};
+use atc_kernel::interlocking::{Heading, Large, Movement, Phase, Positions};
 use atc_kernel::supervision::Brake;
 use atc_layout::draw;
 
@@ -14,6 +14,7 @@ use crate::bound::Bound;
 use crate::event::What;
 use crate::ground::{PointState, View};
 use crate::line::Line;
+use crate::sizes::{Circuits, Points, Routes, Segments};
 use crate::track::Track;
 use crate::train::Train;
 use crate::world::World;
@@ -21,10 +22,10 @@ use crate::world::World;
 /// A station at one time.
 struct Office {
     view: View,
-    proceed: RouteSet,
-    drives: Positions,
-    permits: SegmentSet,
-    telegrams: Vec<Option<Movement>>,
+    proceed: Routes,
+    drives: Positions<Large>,
+    permits: Segments,
+    telegrams: Vec<Option<Movement<Large>>>,
 }
 
 /// A train at one time.
@@ -87,7 +88,7 @@ fn look(world: &World<'_>) -> Frame {
         proceed: station.reply.proceed,
         drives: station.reply.drives,
         permits: station.reply.permits,
-        telegrams: station.telegrams.iter().copied().collect(),
+        telegrams: station.telegrams.clone(),
     });
     Frame {
         reported: world.reported.clone(),
@@ -140,10 +141,10 @@ fn plans(film: &mut Film, line: &Line) -> Result<(), String> {
         for (own, global) in model.points.iter().zip(&site.points) {
             names.insert(format!("point {}", own.name), line.track.points[*global].name.clone());
         }
-        for signal in &station.compiled.names.signals {
+        for signal in &station.sound.names.signals {
             names.insert(format!("signal {signal}"), format!("{} {signal}", station.name));
         }
-        for segment in &station.compiled.names.segments {
+        for segment in &station.sound.names.segments {
             names.insert(format!("segment {segment}"), format!("{} {segment}", station.name));
         }
         let pieces = site.pieces.iter().map(|piece| u32::try_from(*piece).unwrap_or(u32::MAX)).collect();
@@ -176,8 +177,8 @@ fn circuits(film: &mut Film, line: &Line, frames: &[Frame]) {
         let seen: Vec<(usize, usize)> = (0..line.stations.len()).filter_map(|at| Some((at, of(at)?))).collect();
         let word = |is: bool, word: &'static str| if is { word } else { "" };
         film.channel(("circuit", name, "reported"), frames.iter().map(|now| word(now.reported[number], "occupied")));
-        let any = |now: &Frame, set: fn(&View) -> CircuitSet| {
-            seen.iter().any(|(station, own)| set(&now.offices[*station].view).meets(CircuitSet::nth(*own)))
+        let any = |now: &Frame, set: fn(&View) -> Circuits| {
+            seen.iter().any(|(station, own)| set(&now.offices[*station].view).meets(Circuits::nth(*own)))
         };
         film.channel(
             ("circuit", name, "counted"),
@@ -190,8 +191,8 @@ fn circuits(film: &mut Film, line: &Line, frames: &[Frame]) {
         let held = |now: &Frame| -> (String, &'static str) {
             let mut found = (String::new(), "");
             for (station, own) in &seen {
-                let it = CircuitSet::nth(*own);
-                let names = &line.stations[*station].compiled.names;
+                let it = Circuits::nth(*own);
+                let names = &line.stations[*station].sound.names;
                 for (route, (at, path, overlap)) in names.routes.iter().zip(&now.offices[*station].view.routes) {
                     if path.meets(it) {
                         return (format!("{} {route}", names.station), phase(*at));
@@ -210,7 +211,7 @@ fn circuits(film: &mut Film, line: &Line, frames: &[Frame]) {
                 Some((station, now.offices[*station].telegrams[*own].filter(Movement::is_open)?))
             });
             let Some((station, telegram)) = open else { return String::new() };
-            let stop = &line.stations[*station].compiled.names.circuits[usize::from(telegram.stop.number())];
+            let stop = &line.stations[*station].sound.names.circuits[usize::from(telegram.stop.number())];
             let way = match telegram.heading {
                 None => "",
                 Some(Heading::Left) => "◀ ",
@@ -225,9 +226,9 @@ fn circuits(film: &mut Film, line: &Line, frames: &[Frame]) {
 
 fn stations(film: &mut Film, line: &Line, frames: &[Frame]) {
     for (at, station) in line.stations.iter().enumerate() {
-        let names = &station.compiled.names;
+        let names = &station.sound.names;
         let full = |name: &String| format!("{} {name}", station.name);
-        let shows = |now: &Frame, route: usize| now.offices[at].proceed.meets(RouteSet::nth(route));
+        let shows = |now: &Frame, route: usize| now.offices[at].proceed.meets(Routes::nth(route));
         for (number, route) in names.routes.iter().enumerate() {
             let signal = &names.signals[number];
             let its = |now: &Frame| now.offices[at].view.routes.get(number).map_or("", |route| phase(route.0));
@@ -249,7 +250,7 @@ fn stations(film: &mut Film, line: &Line, frames: &[Frame]) {
                 Some(false) => "normal",
             };
             film.channel(("point", name, "detected"), frames.iter().map(lies));
-            let it = PointSet::nth(number);
+            let it = Points::nth(number);
             let driven =
                 |now: &Frame| match (now.offices[at].drives.normal.meets(it), now.offices[at].drives.reverse.meets(it))
                 {
@@ -260,7 +261,7 @@ fn stations(film: &mut Film, line: &Line, frames: &[Frame]) {
             film.channel(("point", name, "driven"), frames.iter().map(driven));
         }
         for (number, segment) in names.segments.iter().enumerate() {
-            let it = SegmentSet::nth(number);
+            let it = Segments::nth(number);
             let direction =
                 |now: &Frame| match (now.offices[at].view.toward.meets(it), now.offices[at].view.away.meets(it)) {
                     (true, _) => "toward",

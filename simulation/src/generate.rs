@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 /// The shape of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// How many tracks each station has, 1 to 8; there are two stations or more.
+    /// How many tracks each station has, 2 to 64 (from 17 on it is a large station); there are two stations or more.
     pub tracks: Vec<usize>,
     /// How many blocks each line between two stations has, 3 to 12: one less than there are stations.
     pub blocks: Vec<usize>,
@@ -73,8 +73,8 @@ impl Shape {
                 self.tracks.len(),
                 self.blocks.len()
             ))
-        } else if let Some(tracks) = self.tracks.iter().find(|tracks| !(2..=8).contains(*tracks)) {
-            Some(format!("a station of {tracks} tracks: 2 to 8 are possible"))
+        } else if let Some(tracks) = self.tracks.iter().find(|tracks| !(2..=64).contains(*tracks)) {
+            Some(format!("a station of {tracks} tracks: 2 to 64 are possible"))
         } else {
             let blocks = self.blocks.iter().find(|blocks| !(3..=12).contains(*blocks));
             blocks.map(|blocks| format!("a line of {blocks} blocks: 3 to 12 are possible"))
@@ -123,15 +123,18 @@ impl Shape {
                     if one.arrives() {
                         let near = one.near();
                         writeln!(out, "[[route]]\nname = \"{side}-{track}\"\nsignal = \"{side}\"")?;
+                        let throat = over(side, track, tracks);
                         writeln!(
                             out,
-                            "entry = \"{near}\"\npath = [\"{side}T\", \"{track}{first}\", \"{track}{last}\"]"
+                            "entry = \"{near}\"\npath = [{}, \"{track}{first}\", \"{track}{last}\"]",
+                            throat.join(", ")
                         )?;
                         writeln!(out, "short_overlap = \"{SHORT}\"")?;
                     }
                     if one.departs() {
                         writeln!(out, "[[route]]\nname = \"{track}-{side}\"\nsignal = \"{track}{side}\"")?;
-                        writeln!(out, "entry = \"{track}{first}\"\npath = [\"{side}T\"]")?;
+                        let throat: Vec<_> = over(side, track, tracks).into_iter().rev().collect();
+                        writeln!(out, "entry = \"{track}{first}\"\npath = [{}]", throat.join(", "))?;
                         if self.double {
                             writeln!(out, "to = \"{}\"", one.segment())?;
                         }
@@ -212,27 +215,82 @@ impl OneTrack {
     }
 }
 
-/// The points between the line and the tracks, one behind the other, all in one circuit. Where two lines meet, that on which trains arrive is the
-/// straight one.
+/// The most tracks that one circuit of a throat leads to: it may have 12 points, and where two lines meet is one more.
+const TRACKS: usize = 12;
+
+/// The groups of tracks of a throat: of more than [`TRACKS`] each has a circuit of its own, so that all tracks are as far from the line.
+fn groups(tracks: usize) -> Vec<std::ops::RangeInclusive<usize>> {
+    (1..=tracks).step_by(TRACKS).map(|first| first..=tracks.min(first + TRACKS - 1)).collect()
+}
+
+/// The circuits of a throat that lead to a track, from the line on, as strings of TOML.
+fn over(side: char, track: usize, tracks: usize) -> Vec<String> {
+    let groups = groups(tracks);
+    let own = groups.iter().position(|group| group.contains(&track)).filter(|_| groups.len() > 1);
+    let own = own.map(|group| format!("\"{side}T{}\"", group + 1));
+    std::iter::once(format!("\"{side}T\"")).chain(own).collect()
+}
+
+/// The points between the line and the tracks, in one circuit; of many tracks each group has one more. Where two lines meet, that on which trains
+/// arrive is the straight one.
 fn throat(out: &mut String, side: char, tracks: usize, lines: &[String]) -> std::fmt::Result {
-    writeln!(out, "[[circuit]]\nname = \"{side}T\"\nlength_m = 60")?;
-    let mut point = |number: usize, toe: &str, normal: &str, reverse: &str| {
-        writeln!(out, "[[point]]\nname = \"{side}P{number}\"\ncircuit = \"{side}T\"\ntoe = \"{toe}\"")?;
-        writeln!(out, "normal = \"{normal}\"\nreverse = \"{reverse}\"")?;
-        writeln!(out, "normal_unprotected = \"{UNPROTECTED}\"\nreverse_unprotected = \"{UNPROTECTED}\"")
-    };
+    let groups = groups(tracks);
+    let joints = |tracks: std::ops::RangeInclusive<usize>| tracks.map(|track| format!("{side}{track}")).collect();
+    let circuit = format!("{side}T");
+    writeln!(out, "[[circuit]]\nname = \"{circuit}\"\nlength_m = 60")?;
     let lead = match lines {
         [arrives, departs] => {
             let lead = format!("{side}c0");
-            point(0, &lead, arrives, departs)?;
+            point(out, (side, 0), &circuit, [&lead, arrives, departs])?;
             lead
         }
         _ => lines.concat(),
     };
-    for number in 1..tracks {
-        let toe = if number == 1 { lead.clone() } else { format!("{side}c{number}") };
-        let reverse = if number + 1 == tracks { format!("{side}{tracks}") } else { format!("{side}c{}", number + 1) };
-        point(number, &toe, &format!("{side}{number}"), &reverse)?;
+    let [all] = &groups[..] else {
+        let leads: Vec<String> = (1..=groups.len()).map(|group| format!("{side}g{group}")).collect();
+        ladder(out, (side, 1), &circuit, (&lead, &leads))?;
+        let mut first = groups.len();
+        for (number, (group, lead)) in groups.into_iter().zip(&leads).enumerate() {
+            let circuit = format!("{circuit}{}", number + 1);
+            writeln!(out, "[[circuit]]\nname = \"{circuit}\"\nlength_m = 60")?;
+            let joints: Vec<String> = joints(group);
+            ladder(out, (side, first), &circuit, (lead, &joints))?;
+            first += joints.len() - 1;
+        }
+        return Ok(());
+    };
+    ladder(out, (side, 1), &circuit, (&lead, &joints(all.clone())))
+}
+
+/// Points one behind the other, numbered from `first`, from a lead to each of the joints.
+fn ladder(
+    out: &mut String,
+    (side, first): (char, usize),
+    circuit: &str,
+    (lead, joints): (&str, &[String]),
+) -> std::fmt::Result {
+    let Some((last, others)) = joints.split_last() else { return Ok(()) };
+    for (place, joint) in others.iter().enumerate() {
+        let number = first + place;
+        let toe = if place == 0 { lead.to_owned() } else { format!("{side}c{number}") };
+        let more = format!("{side}c{}", number + 1);
+        point(out, (side, number), circuit, [&toe, joint, if place + 1 == others.len() { last } else { &more }])?;
     }
-    Ok(())
+    if !others.is_empty() {
+        return Ok(());
+    }
+    // To one joint no point leads: the circuit is a track.
+    let (left, right) = if side == 'W' { (lead, last.as_str()) } else { (last.as_str(), lead) };
+    writeln!(out, "left = \"{left}\"\nright = \"{right}\"")
+}
+
+fn point(
+    out: &mut String,
+    (side, number): (char, usize),
+    circuit: &str,
+    [toe, normal, reverse]: [&str; 3],
+) -> std::fmt::Result {
+    writeln!(out, "[[point]]\nname = \"{side}P{number}\"\ncircuit = \"{circuit}\"\ntoe = \"{toe}\"")?;
+    writeln!(out, "normal = \"{normal}\"\nreverse = \"{reverse}\"")?;
+    writeln!(out, "normal_unprotected = \"{UNPROTECTED}\"\nreverse_unprotected = \"{UNPROTECTED}\"")
 }

@@ -6,35 +6,36 @@ use std::sync::Arc;
 
 use atc_kernel::Machine as _;
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Heading, Input, Layout, Memory, Movement, Orders, PerCircuit, Phase, PointSet, Positions,
-    Refusal, Request, RouteSet, SegmentSet,
+    CircuitSet, Combined, Heading, Input, Large, Layout, Memory, Movement, Orders, PerCircuit, Phase, Positions,
+    Refusal, Request, Small,
 };
 use atc_kernel::wayside::{Equipment, Framed, Message as Said, Session, Transmission, Wayside, WaysideError};
 use atc_kernel::wayside::{Input as WaysideInput, State as WaysideState};
 
 use crate::counted::{Detections, Disagreeing, MAX_BLOCKS, SILENT};
 use crate::motion::Lie;
+use crate::sizes::{Circuits, Points, Routes, Segments, Wide, narrow, wide_movement, wide_positions};
 use crate::track::Track;
 
 /// What a station's device puts out in one cycle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Reply {
     /// The signals at proceed, by route.
-    pub proceed: RouteSet,
+    pub proceed: Routes,
     /// The points that are driven.
-    pub drives: Positions,
+    pub drives: Positions<Large>,
     /// The segments where the neighbour may send.
-    pub permits: SegmentSet,
+    pub permits: Segments,
     /// What became of the request.
     pub answer: Option<Result<(), Refusal>>,
-    /// The telegram of each circuit.
-    pub telegrams: PerCircuit<Option<Movement>>,
+    /// The telegram of each circuit; of one beyond the list nothing is sent.
+    pub telegrams: Vec<Option<Movement<Large>>>,
     /// The frames and codes of each circuit; none without a whole device.
-    pub transmissions: PerCircuit<Option<Transmission>>,
+    pub transmissions: Vec<Option<Transmission>>,
     /// What is told to the neighbour at each segment; none without a whole device.
-    pub messages: [Option<Said>; MAX_SEGMENTS],
+    pub messages: Vec<Option<Said>>,
     /// The circuits that count as occupied because of the counted line alone.
-    pub counted: CircuitSet,
+    pub counted: Circuits,
     /// Whether each block of the counted line agrees with its detectors.
     pub agree: [bool; MAX_BLOCKS],
 }
@@ -42,28 +43,25 @@ pub struct Reply {
 impl Reply {
     /// Stop, and silence.
     const SAFE: Self = Self {
-        proceed: RouteSet::EMPTY,
+        proceed: Routes::EMPTY,
         drives: Positions::NONE,
-        permits: SegmentSet::EMPTY,
+        permits: Segments::EMPTY,
         answer: None,
-        telegrams: PerCircuit::NONE,
-        transmissions: PerCircuit::NONE,
-        messages: [None; MAX_SEGMENTS],
-        counted: CircuitSet::EMPTY,
+        telegrams: Vec::new(),
+        transmissions: Vec::new(),
+        messages: Vec::new(),
+        counted: Circuits::EMPTY,
         agree: [false; MAX_BLOCKS],
     };
 }
 
-/// The most segments of a station here.
-const MAX_SEGMENTS: usize = 8;
-
 /// What a whole device hears besides what is detected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Heard {
     /// The message of the neighbour at each segment, if one came.
-    pub messages: [Option<Said>; MAX_SEGMENTS],
+    pub messages: Vec<Option<Said>>,
     /// The transmitters that have taken the frames of the last cycle.
-    pub framed: Framed,
+    pub taken: Circuits,
     /// The checks and detectors of the counted line.
     pub blocks: Detections,
 }
@@ -72,21 +70,21 @@ pub struct Heard {
 #[derive(Clone, Debug, Default)]
 pub struct View {
     /// The circuits that count as occupied.
-    pub occupied: CircuitSet,
+    pub occupied: Circuits,
     /// The blocked circuits.
-    pub blocked: CircuitSet,
+    pub blocked: Circuits,
     /// The phase of each route, and what it still holds of its path and of its overlap.
-    pub routes: Vec<(Phase, CircuitSet, CircuitSet)>,
+    pub routes: Vec<(Phase, Circuits, Circuits)>,
     /// The segments where the neighbour may send.
-    pub toward: SegmentSet,
+    pub toward: Segments,
     /// The segments where this station sends.
-    pub away: SegmentSet,
+    pub away: Segments,
 }
 
 /// A device of any size.
 pub trait Device: Send + Sync {
     /// One cycle.
-    fn step(&mut self, input: Input, heard: Heard) -> Reply;
+    fn step(&mut self, input: Input<Large>, heard: Heard) -> Reply;
     /// Starts it anew.
     fn restart(&mut self);
     /// What it remembers.
@@ -103,29 +101,30 @@ impl Clone for Box<dyn Device> {
 
 /// The kernel's device for one layout.
 #[derive(Clone)]
-pub struct Held<const R: usize, const P: usize, const N: usize, const S: usize> {
-    layout: Arc<Layout<R, P, N, S>>,
-    memory: Memory<R, S>,
+pub struct Held<const R: usize, const P: usize, const N: usize, const S: usize, Z: Wide = Small> {
+    layout: Arc<Layout<R, P, N, S, Z>>,
+    circuits: usize,
+    memory: Memory<R, S, Z>,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Held<R, P, N, S> {
-    /// The device, just started.
-    pub const fn new(layout: Arc<Layout<R, P, N, S>>) -> Self {
-        Self { layout, memory: Memory::INITIAL }
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Wide> Held<R, P, N, S, Z> {
+    /// The device of a station with so many circuits, just started.
+    pub const fn new(layout: Arc<Layout<R, P, N, S, Z>>, circuits: usize) -> Self {
+        Self { layout, circuits, memory: Memory::INITIAL }
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for Held<R, P, N, S> {
-    fn step(&mut self, input: Input, _: Heard) -> Reply {
-        let (memory, commands) = Combined(&self.layout).step(self.memory, input);
+impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: Wide> Device for Held<R, P, N, S, Z> {
+    fn step(&mut self, input: Input<Large>, _: Heard) -> Reply {
+        let (memory, commands) = Combined(&self.layout).step(self.memory, narrow(input));
         self.memory = memory;
         let output = commands.interlocking;
         Reply {
-            proceed: output.proceed,
-            drives: output.drives,
-            permits: output.permits,
+            proceed: Z::wide_routes(output.proceed),
+            drives: wide_positions(output.drives),
+            permits: Z::wide_segments(output.permits),
             answer: output.answer,
-            telegrams: commands.telegrams,
+            telegrams: told(self.circuits, &commands.telegrams),
             ..Reply::SAFE
         }
     }
@@ -145,27 +144,34 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize> Device for 
 
 /// The kernel's whole device for one layout, with its transmitters, and a counted line of `B` blocks, or none.
 #[derive(Clone)]
-pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> {
-    layout: Arc<Layout<R, P, N, S>>,
-    equipment: Equipment<B>,
-    state: Option<WaysideState<B, R, S>>,
+pub struct Speaking<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize, Z: Wide = Small> {
+    layout: Arc<Layout<R, P, N, S, Z>>,
+    circuits: usize,
+    equipment: Equipment<B, Z>,
+    state: Option<WaysideState<B, R, S, Z>>,
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> Speaking<R, P, N, S, B> {
-    /// The device, just started.
+impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize, Z: Wide>
+    Speaking<R, P, N, S, B, Z>
+{
+    /// The device of a station with so many circuits, just started.
     ///
     /// # Errors
     /// The rule that the equipment breaks.
-    pub fn new(layout: Arc<Layout<R, P, N, S>>, equipment: Equipment<B>) -> Result<Self, WaysideError> {
+    pub fn new(
+        layout: Arc<Layout<R, P, N, S, Z>>,
+        circuits: usize,
+        equipment: Equipment<B, Z>,
+    ) -> Result<Self, WaysideError> {
         Wayside::new(&layout, &equipment)?;
-        Ok(Self { layout, equipment, state: None })
+        Ok(Self { layout, circuits, equipment, state: None })
     }
 }
 
-impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize> Device
-    for Speaking<R, P, N, S, B>
+impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: usize, Z: Wide> Device
+    for Speaking<R, P, N, S, B, Z>
 {
-    fn step(&mut self, input: Input, heard: Heard) -> Reply {
+    fn step(&mut self, input: Input<Large>, heard: Heard) -> Reply {
         // It was checked when the device was made.
         let Ok(wayside) = Wayside::new(&self.layout, &self.equipment) else { return Reply::SAFE };
         let state = self.state.unwrap_or_else(|| wayside.initial());
@@ -173,13 +179,15 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: us
         for (message, told) in messages.iter_mut().zip(heard.messages) {
             *message = told;
         }
-        let Input { occupied, detected, request, orders, .. } = input;
+        let Input { occupied, detected, request, orders, .. } = narrow::<Z>(input);
         let [nothing, ..] = SILENT;
         let mut blocks = [nothing; B];
         for (block, read) in blocks.iter_mut().zip(heard.blocks) {
             *block = read;
         }
-        let input = WaysideInput { blocks, occupied, detected, request, orders, messages, framed: heard.framed };
+        let taken = Z::narrow_circuits(heard.taken);
+        let framed = Framed { main: taken, sub: taken };
+        let input = WaysideInput { blocks, occupied, detected, request, orders, messages, framed };
         // The three parts of its step, so that a run can be judged by what the train of each circuit is told.
         let (mut state, reading) = wayside.read(state, input);
         let counted = reading.input.occupied.without(occupied);
@@ -187,23 +195,19 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: us
         state.device = memory;
         let (state, output) = wayside.send(state, &reading, &commands);
         self.state = Some(state);
-        let mut messages = [None; MAX_SEGMENTS];
-        for (message, told) in messages.iter_mut().zip(output.messages) {
-            *message = told;
-        }
         let mut agree = [false; MAX_BLOCKS];
         for (agree, block) in agree.iter_mut().zip(output.line.iter().flat_map(|line| &line.blocks)) {
             *agree = block.agree;
         }
         Reply {
-            proceed: output.proceed,
-            drives: output.drives,
-            permits: commands.interlocking.permits,
+            proceed: Z::wide_routes(output.proceed),
+            drives: wide_positions(output.drives),
+            permits: Z::wide_segments(commands.interlocking.permits),
             answer: output.answer,
-            telegrams: commands.telegrams,
-            transmissions: output.transmissions,
-            messages,
-            counted,
+            telegrams: told(self.circuits, &commands.telegrams),
+            transmissions: output.transmissions.iter().copied().take(self.circuits).collect(),
+            messages: output.messages.to_vec(),
+            counted: Z::wide_circuits(counted),
             agree,
         }
     }
@@ -222,10 +226,15 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, const B: us
     }
 }
 
+/// The telegrams of the circuits that there are.
+fn told<Z: Wide>(circuits: usize, telegrams: &PerCircuit<Option<Movement<Z>>, Z>) -> Vec<Option<Movement<Large>>> {
+    telegrams.iter().take(circuits).map(|telegram| telegram.map(wide_movement)).collect()
+}
+
 /// What a device with this memory shows.
-fn viewed<const R: usize, const P: usize, const N: usize, const S: usize>(
-    layout: &Layout<R, P, N, S>,
-    memory: &Memory<R, S>,
+fn viewed<const R: usize, const P: usize, const N: usize, const S: usize, Z: Wide>(
+    layout: &Layout<R, P, N, S, Z>,
+    memory: &Memory<R, S, Z>,
 ) -> View {
     let (plan, state) = (layout.plan(), &memory.interlocking);
     let mut occupied = CircuitSet::EMPTY;
@@ -236,9 +245,16 @@ fn viewed<const R: usize, const P: usize, const N: usize, const S: usize>(
         .routes
         .iter()
         .zip(&state.routes)
-        .map(|(route, state)| (state.phase, state.path(route).circuits, state.overlap(route).circuits));
+        .map(|(route, state)| (state.phase, state.path(route).circuits, state.overlap(route).circuits))
+        .map(|(phase, path, overlap)| (phase, Z::wide_circuits(path), Z::wide_circuits(overlap)));
     let (toward, away) = (state.directions.toward, state.directions.away);
-    View { occupied, blocked: state.works.blocked, routes: routes.collect(), toward, away }
+    View {
+        occupied: Z::wide_circuits(occupied),
+        blocked: Z::wide_circuits(state.works.blocked),
+        routes: routes.collect(),
+        toward: Z::wide_segments(toward),
+        away: Z::wide_segments(away),
+    }
 }
 
 /// A point as it lies.
@@ -282,11 +298,11 @@ struct Message {
 pub struct Station {
     device: Box<dyn Device>,
     /// What is sent in the circuits now.
-    pub telegrams: PerCircuit<Option<Movement>>,
+    pub telegrams: Vec<Option<Movement<Large>>>,
     /// What the transmitters send now.
-    pub air: PerCircuit<Option<Transmission>>,
+    pub air: Vec<Option<Transmission>>,
     /// The transmitters that have taken the frames of the last cycle.
-    taken: CircuitSet,
+    taken: Circuits,
     /// What the device said last.
     pub reply: Reply,
     consents: Vec<Consent>,
@@ -297,13 +313,13 @@ pub struct Station {
 }
 
 impl Station {
-    /// A station whose device has just started, with so many segments.
-    pub fn new(device: Box<dyn Device>, segments: usize) -> Self {
+    /// A station whose device has just started, with so many circuits and segments.
+    pub fn new(device: Box<dyn Device>, circuits: usize, segments: usize) -> Self {
         Self {
             device,
-            telegrams: PerCircuit::NONE,
-            air: PerCircuit::NONE,
-            taken: CircuitSet::EMPTY,
+            telegrams: vec![None; circuits],
+            air: vec![None; circuits],
+            taken: Circuits::EMPTY,
             reply: Reply::SAFE,
             consents: vec![Consent::default(); segments],
             inbox: VecDeque::new(),
@@ -313,11 +329,11 @@ impl Station {
     }
 
     /// The transmitters, but for those in `stuck`, take the frames for both directions of travel, and send them in turn.
-    pub fn take(&mut self, stuck: CircuitSet) {
+    pub fn take(&mut self, stuck: Circuits) {
         for (number, air) in self.air.iter_mut().enumerate() {
-            let it = CircuitSet::nth(number);
+            let it = Circuits::nth(number);
             if !stuck.meets(it) {
-                *air = self.reply.transmissions[number];
+                *air = self.reply.transmissions.get(number).copied().flatten();
                 self.taken = self.taken.or(it);
             }
         }
@@ -344,18 +360,17 @@ impl Station {
     pub fn cycle(
         &mut self,
         (now_ms, life_ms): (u64, u64),
-        (occupied, detected, blocks): (CircuitSet, Positions, Detections),
+        (occupied, detected, blocks): (Circuits, Positions<Large>, Detections),
         request: Option<Request>,
-        stuck: CircuitSet,
+        stuck: Circuits,
     ) {
-        for (number, telegram) in self.reply.telegrams.iter().enumerate() {
-            if !stuck.meets(CircuitSet::nth(number)) {
-                self.telegrams[number] = *telegram;
+        for (number, told) in self.telegrams.iter_mut().enumerate() {
+            if !stuck.meets(Circuits::nth(number)) {
+                *told = self.reply.telegrams.get(number).copied().flatten();
             }
         }
-        let framed = Framed { main: self.taken, sub: self.taken };
-        let mut heard = Heard { messages: [None; MAX_SEGMENTS], framed, blocks };
-        self.taken = CircuitSet::EMPTY;
+        let mut heard = Heard { messages: vec![None; self.consents.len()], taken: self.taken, blocks };
+        self.taken = Circuits::EMPTY;
         while self.inbox.front().is_some_and(|message| message.arrives_ms <= now_ms) {
             let Some(message) = self.inbox.pop_front() else { break };
             if let Some(told) = heard.messages.get_mut(message.segment) {
@@ -367,21 +382,21 @@ impl Station {
                 *consent = Consent { sent_ms: message.sent_ms, received_ms: now_ms, given: message.given };
             }
         }
-        let mut consent = SegmentSet::EMPTY;
+        let mut consent = Segments::EMPTY;
         for (number, last) in self.consents.iter().enumerate() {
-            consent = consent.or(SegmentSet::nth(number).only_if(last.given && now_ms - last.received_ms <= life_ms));
+            consent = consent.or(Segments::nth(number).only_if(last.given && now_ms - last.received_ms <= life_ms));
         }
         let mut orders = Orders::default();
         if !self.unblocked {
-            orders.unblock = CircuitSet::ALL;
-            orders.lift = CircuitSet::ALL;
+            orders.unblock = Circuits::ALL;
+            orders.lift = Circuits::ALL;
             self.unblocked = true;
         }
         self.reply = self.device.step(Input { occupied, detected, request, orders, consent }, heard);
     }
 
     /// The code that a train hears whose front is in the circuit of this number and faces so; and what it is told.
-    pub fn code(&self, number: usize, faces: Option<Heading>) -> (Option<u8>, Option<Movement>) {
+    pub fn code(&self, number: usize, faces: Option<Heading>) -> (Option<u8>, Option<Movement<Large>>) {
         match self.telegrams[number] {
             Some(movement) if movement.heading.is_none() => (Some(0), Some(movement)),
             // The code of a telegram comes from the end towards which it is for: the train's own axles keep it from the other end.
@@ -396,13 +411,13 @@ pub fn drive(
     track: &Track,
     site: usize,
     points: &mut [PointState],
-    drives: Positions,
+    drives: Positions<Large>,
     (cycle_ms, late_ms): (u32, &dyn Fn(usize) -> u32),
     began: &mut dyn FnMut(usize),
-) -> Positions {
+) -> Positions<Large> {
     let mut detected = Positions::NONE;
     for (number, global) in track.sites[site].points.iter().enumerate() {
-        let it = PointSet::nth(number);
+        let it = Points::nth(number);
         let state = &mut points[*global];
         if let Some(left) = state.moves_ms {
             state.moves_ms = left.checked_sub(cycle_ms).filter(|left| *left > 0);

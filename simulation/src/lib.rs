@@ -53,6 +53,7 @@ pub mod rare;
 pub mod record;
 mod rolling;
 mod run;
+pub mod sizes;
 pub mod splitting;
 pub mod track;
 pub mod train;

@@ -1,7 +1,7 @@
 //! A line: the stations in their order, joined by the lines between them.
 
 use atc_kernel::interlocking::Heading;
-use atc_layout::{At, Compiled, Description};
+use atc_layout::{At, Description, Sound};
 
 use crate::counted::Counted;
 use crate::motion::{Dynamics, Leg};
@@ -29,8 +29,8 @@ pub struct Place {
     pub name: String,
     /// Its layout.
     pub description: Description,
-    /// The same, compiled.
-    pub compiled: Compiled,
+    /// The same, held against every rule.
+    pub sound: Sound,
     /// Its tracks.
     pub platforms: Vec<Platform>,
     /// For each route the circuits of its path on the ground.

@@ -1,8 +1,8 @@
 //! What a run looked like, second by second: for pictures.
 
-use atc_kernel::interlocking::RouteSet;
 use atc_kernel::supervision::Brake;
 
+use crate::sizes::Routes;
 use crate::world::World;
 
 /// A train at one time.
@@ -79,7 +79,7 @@ impl Record {
         let mut place = 0;
         for (station, at) in world.stations.iter().enumerate() {
             for route in 0..world.line.stations[station].paths.len() {
-                let shows = at.reply.proceed.meets(RouteSet::nth(route));
+                let shows = at.reply.proceed.meets(Routes::nth(route));
                 span(&mut self.proceed, &mut open.1, (place, (station, route)), shows, now_s);
                 place += 1;
             }

@@ -1,7 +1,6 @@
 //! A cycle of a train: what it hears, what its device makes of it, and how it moves.
 
 use atc_kernel::heading::Heading;
-use atc_kernel::interlocking::CircuitSet;
 use atc_kernel::speed::RawKmhTenths;
 use atc_kernel::supervision::Brake;
 use atc_kernel::wayside::Transmission;
@@ -12,6 +11,7 @@ use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::motion::Crossed;
 use crate::onboard::{FRAME_MS, Met, Signal};
+use crate::sizes::Circuits;
 use crate::world::World;
 
 /// The speed as it is measured: tenths of km/h, to nearest.
@@ -44,7 +44,7 @@ impl World<'_> {
         train.told_ms[circuit] = now;
         if let Some((station, movement)) = told {
             for (local, circuit) in track.sites[station].circuits.iter().enumerate() {
-                if movement.hold.meets(CircuitSet::nth(local)) {
+                if movement.hold.meets(Circuits::nth(local)) {
                     train.told_ms[*circuit] = now;
                 }
             }

@@ -1,13 +1,12 @@
 //! A run of the whole line, a cycle at a time: the ground's devices every `cycle_ms`, the trains' every `train_cycle_ms`.
 
-use atc_kernel::interlocking::{CircuitSet, Positions, RouteSet, SegmentSet};
-
 use crate::counting;
 use crate::dispatcher::Seen;
 use crate::event::What;
 use crate::fault::{Fault, Kind};
 use crate::ground::drive;
 use crate::onboard::FRAME_MS;
+use crate::sizes::{Circuits, Routes, Segments};
 use crate::train::Train;
 use crate::world::World;
 
@@ -140,13 +139,12 @@ impl World<'_> {
         for (station, request) in requests.into_iter().enumerate() {
             let drives = self.stations[station].reply.drives;
             let cycle = (line.cycle_ms, &late as &dyn Fn(usize) -> u32);
-            let detected: Positions =
-                drive(track, station, &mut self.points, drives, cycle, &mut |point| began.push(point));
-            let mut occupied = CircuitSet::EMPTY;
-            let mut frozen = CircuitSet::EMPTY;
+            let detected = drive(track, station, &mut self.points, drives, cycle, &mut |point| began.push(point));
+            let mut occupied = Circuits::EMPTY;
+            let mut frozen = Circuits::EMPTY;
             for (number, circuit) in track.sites[station].circuits.iter().enumerate() {
-                occupied = occupied.or(CircuitSet::nth(number).only_if(reported[*circuit]));
-                frozen = frozen.or(CircuitSet::nth(number).only_if(stuck.contains(circuit)));
+                occupied = occupied.or(Circuits::nth(number).only_if(reported[*circuit]));
+                frozen = frozen.or(Circuits::nth(number).only_if(stuck.contains(circuit)));
             }
             let times = (self.now_ms, u64::from(line.consent_life_ms()));
             let (agree, mut since) = (self.stations[station].reply.agree, self.stations[station].disagreeing);
@@ -156,13 +154,13 @@ impl World<'_> {
             let answer = self.stations[station].reply.answer;
             if let Some(route) = self.dispatcher.answered(self.now_ms, station, answer) {
                 let place = &line.stations[station];
-                told.push(What::Set { station: place.name.clone(), route: place.compiled.names.routes[route].clone() });
+                told.push(What::Set { station: place.name.clone(), route: place.sound.names.routes[route].clone() });
             }
             self.signals(station, &mut told);
         }
         for (station, site) in self.stations.iter().zip(&track.sites) {
             for (number, circuit) in site.circuits.iter().enumerate() {
-                reported[*circuit] |= station.reply.counted.meets(CircuitSet::nth(number));
+                reported[*circuit] |= station.reply.counted.meets(Circuits::nth(number));
             }
         }
         self.reported = reported;
@@ -184,9 +182,9 @@ impl World<'_> {
         let stuck: Vec<usize> =
             self.faults(Kind::RepeatedCode, f64::from(FRAME_MS)).map(|fault| fault.which % circuits).collect();
         for (station, site) in self.stations.iter_mut().zip(&self.line.track.sites) {
-            let mut frozen = CircuitSet::EMPTY;
+            let mut frozen = Circuits::EMPTY;
             for (number, circuit) in site.circuits.iter().enumerate() {
-                frozen = frozen.or(CircuitSet::nth(number).only_if(stuck.contains(circuit)));
+                frozen = frozen.or(Circuits::nth(number).only_if(stuck.contains(circuit)));
             }
             station.take(frozen);
         }
@@ -198,9 +196,9 @@ impl World<'_> {
         if before == now {
             return;
         }
-        let names = &self.line.stations[station].compiled.names;
+        let names = &self.line.stations[station].sound.names;
         for (number, route) in names.routes.iter().enumerate() {
-            let it = RouteSet::nth(number);
+            let it = Routes::nth(number);
             let at = || (self.line.stations[station].name.clone(), names.signals[number].clone(), route.clone());
             let (station, signal, route) = match (before.meets(it), now.meets(it)) {
                 (true, true) | (false, false) => continue,
@@ -227,10 +225,10 @@ impl World<'_> {
                 let delay = delays.find(|fault| fault.which % stations == receiver).map(|fault| fault.much);
                 drop(delays);
                 let permits = self.stations[sender].reply.permits;
-                let given = permits.meets(SegmentSet::nth(joined.segments[from]));
+                let given = permits.meets(Segments::nth(joined.segments[from]));
                 if !lost {
                     let now = self.now_ms;
-                    let said = self.stations[sender].reply.messages[joined.segments[from]];
+                    let said = self.stations[sender].reply.messages.get(joined.segments[from]).copied().flatten();
                     let delay = u64::from(delay.unwrap_or(0));
                     self.stations[receiver].post(now, delay, joined.segments[to], (given, said));
                 }

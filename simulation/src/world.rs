@@ -1,6 +1,5 @@
 //! A line at work: its stations, points and trains, what happened, and what has failed.
 
-use atc_kernel::interlocking::RouteSet;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -14,6 +13,7 @@ use crate::ground::{PointState, Station};
 use crate::line::Line;
 use crate::motion::Body;
 use crate::onboard::{Device, Operate, Signal};
+use crate::sizes::Routes;
 use crate::train::Train;
 
 /// What a run is made of, besides the line.
@@ -85,7 +85,7 @@ pub struct World<'a> {
     /// For how long each circuit with a train has not been reported, in ms.
     pub unheard_ms: Vec<u32>,
     pub(crate) setting: Setting,
-    pub(crate) proceed: Vec<RouteSet>,
+    pub(crate) proceed: Vec<Routes>,
     /// The kinds of its faults.
     pub(crate) kinds: Vec<Kind>,
     /// The longest of its faults, in ms.
@@ -122,7 +122,8 @@ impl<'a> World<'a> {
         for (number, place) in line.stations.iter().enumerate() {
             stations.push(Station::new(
                 line.device(number, setting.signal != Signal::Codes, &setting.defects)?,
-                place.compiled.model.segments.len(),
+                place.sound.names.circuits.len(),
+                place.sound.model.segments.len(),
             ));
         }
         let local = line.track.sites.iter().map(|site| {
@@ -143,7 +144,7 @@ impl<'a> World<'a> {
             on_circuit: vec![0; line.track.circuits.len()],
             on_piece: vec![0; line.track.pieces.len()],
             dispatcher: Dispatcher::new(line, &places),
-            proceed: vec![RouteSet::EMPTY; stations.len()],
+            proceed: vec![Routes::EMPTY; stations.len()],
             stations,
             points,
             device,

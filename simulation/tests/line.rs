@@ -110,7 +110,7 @@ fn what_is_wrong_with_a_line_is_said() {
         ("name = ".to_owned(), "line.toml"),
         (made.replace("[3]", "[3, 4]"), "give one number for each line between two"),
         (made.replace("[3]", "[2]"), "a line of 2 blocks: 3 to 12 are possible"),
-        (made.replace("[2, 2]", "[2, 9]"), "a station of 9 tracks: 2 to 8 are possible"),
+        (made.replace("[2, 2]", "[2, 65]"), "a station of 65 tracks: 2 to 64 are possible"),
         (made.replace("[2, 2]", "[2]").replace("[3]", "[]"), "1 stations: a line has 2 to 12"),
         (format!("{made}[trains]\nservice = 0.5\n"), "brake with 0.8 m/s²; [trains] has 160 m and 0.5 m/s²"),
         (format!("{made}[trains]\nlength_m = 201\n"), "trains of at most 200 m"),

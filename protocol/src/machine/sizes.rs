@@ -1,9 +1,7 @@
 //! A machine on a layout of either size: a station that is too large for the one is opened as the other.
 
 use super::contract::Machine;
-
-/// The stack on which a large station is opened: its layout has nearly a megabyte, and is moved some times.
-const STACK: usize = 64 << 20;
+pub use atc_layout::with_room;
 
 /// The routes of a large station.
 pub const ROUTES: usize = 256;
@@ -13,18 +11,6 @@ pub const PLACES: usize = 32;
 pub const POINTS: usize = 128;
 /// The segments of a large station.
 pub const SEGMENTS: usize = 32;
-
-/// Runs what moves large stations about, on a stack with room for them.
-///
-/// # Errors
-/// There is no thread for it, or it ended badly.
-pub fn with_room<T: Send>(run: impl FnOnce() -> T + Send) -> Result<T, String> {
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, run);
-        let thread = thread.map_err(|error| format!("a large station needs a thread of its own: {error}"))?;
-        thread.join().map_err(|_| "a large station cannot be opened here".to_owned())
-    })
-}
 
 /// A configuration with a layout.
 pub trait Stationed {
