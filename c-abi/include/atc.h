@@ -108,6 +108,18 @@
 /// The receiver hears nothing that it could decide on.
 #define ATC_RECEPTION_NOTHING 2
 
+/// The size of an on-board device in bytes.
+#define ATC_TRAIN_SIZE 584
+
+/// The alignment of an on-board device in bytes.
+#define ATC_TRAIN_ALIGN 8
+
+/// The most pairs of codes: 8 codes of the main carrier, each with 8 of the sub carrier.
+#define ATC_MAX_CODE_PAIRS 64
+
+/// At how many distances an attenuation table has values.
+#define ATC_TABLE_KNOTS 17
+
 /// The size of an interlocking in bytes.
 #define ATC_INTERLOCKING_SIZE 32072
 
@@ -401,6 +413,32 @@ typedef enum atc_status {
   ATC_STATUS_FRAME_CHECK = 72,
   /// The bits are no frame: the check fits, and the information is of no telegram.
   ATC_STATUS_FRAME_CONTENT = 73,
+  /// An on-board device has no pair of codes.
+  ATC_STATUS_NO_CODES = 80,
+  /// A carrier has more than 8 different codes, or there are more than 64 pairs.
+  ATC_STATUS_TOO_MANY_CODES = 81,
+  /// The band of a code reaches down to 0, or beyond the highest number.
+  ATC_STATUS_CODE_OUT_OF_RANGE = 82,
+  /// The bands of two codes of a carrier touch.
+  ATC_STATUS_CODE_BANDS_TOUCH = 83,
+  /// A pair of codes comes twice.
+  ATC_STATUS_CODE_PAIR_TWICE = 84,
+  /// A pair of codes names a speed that is not in the table of speeds.
+  ATC_STATUS_UNKNOWN_CODE_SPEED = 85,
+  /// A speed of the line is above the highest plausible one.
+  ATC_STATUS_IMPLAUSIBLE_SPEED = 86,
+  /// The spacing of an attenuation table is out of its range.
+  ATC_STATUS_BAD_SPACING = 87,
+  /// The lowest difference of an attenuation table is above the highest.
+  ATC_STATUS_TABLE_CROSSED = 88,
+  /// In no span of an attenuation table both curves rise.
+  ATC_STATUS_TABLE_NOWHERE_RISING = 89,
+  /// The tolerance of a level is negative.
+  ATC_STATUS_BAD_TOLERANCE = 90,
+  /// The least correction is above the most.
+  ATC_STATUS_BAD_CORRECTION = 91,
+  /// The least movement is above the most.
+  ATC_STATUS_BAD_MOVEMENT = 92,
   /// A path or a segment has more places than there is room for: 16, in a large station 32.
   ATC_STATUS_PLAN_PATH_TOO_LONG = 100,
   /// A time of the plan is 0.
@@ -738,6 +776,133 @@ typedef struct atc_deframer_input {
   /// `ATC_RECEPTION_ZERO`, `ATC_RECEPTION_ONE` or `ATC_RECEPTION_NOTHING`.
   uint32_t reception;
 } atc_deframer_input;
+
+/// A pair of codes, and the speed that it names.
+typedef struct atc_code_pair {
+  /// The code frequency of the main carrier in thousandths of a hertz.
+  uint32_t main_millihertz;
+  /// The code frequency of the sub carrier in thousandths of a hertz.
+  uint32_t sub_millihertz;
+  /// The speed in tenths of km/h: one of the line's.
+  uint16_t speed;
+} atc_code_pair;
+
+/// How the train finds its position by two signals that the rail attenuates differently. Levels are in hundredths of a decibel.
+typedef struct atc_position_config {
+  /// The lowest difference, first level less second, at each of the 17 distances, 0 first.
+  int16_t lowest[17];
+  /// The highest difference there: not below the lowest.
+  int16_t highest[17];
+  /// By how much each level may be off, 0 or more.
+  int16_t tolerance;
+  /// The lowest level that is no noise.
+  int16_t floor;
+  /// The least that is added to the difference.
+  int16_t correction_least;
+  /// The most that is added to it: not below the least.
+  int16_t correction_most;
+  /// From one distance to the next it is 2 to this power decimetres: 4 to 11 (1.6 m to 204.8 m).
+  uint8_t spacing_exponent;
+} atc_position_config;
+
+/// The parameters of the on-board device: those of its parts. There is one table of speeds, that of `permitted`.
+typedef struct atc_train_config {
+  /// The cycle, the line's speeds, the brake, the lives of telegrams and the counters.
+  struct atc_permitted_config permitted;
+  /// T1: an aspect heard for so long is accepted. Rounded up to cycles.
+  uint32_t operate_ms;
+  /// T2: a lost aspect stands so long as if it were heard. Rounded down to cycles.
+  uint32_t recovery_ms;
+  /// T3: and after that so long, if nothing contradicts it. Rounded down to cycles.
+  uint32_t mask_ms;
+  /// T4: the longest interruption after which T5 takes the place of T1. Rounded down to cycles.
+  uint32_t interruption_ms;
+  /// T5: the operate time after a short interruption, below T1. Rounded up to cycles.
+  uint32_t shortened_operate_ms;
+  /// By how much a measured code frequency may be off, in thousandths of a hertz.
+  uint32_t code_tolerance_millihertz;
+  /// How many pairs of codes there are: 1 to `ATC_MAX_CODE_PAIRS`.
+  uint32_t code_count;
+  /// The pairs of codes; of each carrier up to 8 different ones. From `code_count` on not looked at.
+  struct atc_code_pair codes[64];
+  /// The highest plausible speed, and the margin of the release.
+  struct atc_supervision_config supervision;
+  /// The position. Not looked at if `has_position` is 0.
+  struct atc_position_config position;
+  /// 1: the train measures its position. 0: it does not; every distance begins at the exit of its section.
+  uint8_t has_position;
+} atc_train_config;
+
+/// An on-board device with its state. Its bytes are the library's; it may be moved and copied as a whole.
+typedef struct atc_train {
+  /// Not to be read or written.
+  uint64_t opaque[73];
+} atc_train;
+
+/// What antennas, odometer, speed generator and balises give in one cycle. All zeros: nothing is heard or known.
+typedef struct atc_train_input {
+  /// The code frequency of the main carrier in thousandths of a hertz. Not looked at if `has_main_code` is 0.
+  uint32_t main_code_millihertz;
+  /// The code frequency of the sub carrier in thousandths of a hertz. Not looked at if `has_sub_code` is 0.
+  uint32_t sub_code_millihertz;
+  /// The kind of line that begins here: `ATC_LINE_UNCHANGED`, `ATC_LINE_ANALOG` or `ATC_LINE_DIGITAL`.
+  uint32_t line;
+  /// The measured speed in tenths of km/h; any number is an input. Not looked at if `has_speed` is 0.
+  int32_t speed;
+  /// The frame of the main carrier whose last bit came in this cycle. Not looked at if `has_main_frame` is 0.
+  struct atc_frame main_frame;
+  /// The frame of the sub carrier whose last bit came in this cycle. Not looked at if `has_sub_frame` is 0.
+  struct atc_frame sub_frame;
+  /// The level of the signal that the rail attenuates less, in hundredths of a decibel. Not looked at if `has_first` is 0.
+  int16_t first;
+  /// The level of the signal that the rail attenuates more, in hundredths of a decibel. Not looked at if `has_second` is 0.
+  int16_t second;
+  /// The least that the train moved towards the exit since the last cycle, in mm. Not looked at if `has_moved` is 0.
+  int16_t moved_least_mm;
+  /// The most that it moved: not below the least. Not looked at if `has_moved` is 0.
+  int16_t moved_most_mm;
+  /// The direction of travel in which the train faces: `ATC_HEADING_LEFT`, `ATC_HEADING_RIGHT`, or `ATC_HEADING_NONE` if that
+  /// is not known; then no telegram is used.
+  uint8_t facing;
+  /// 1: there is a code on the main carrier. 0: there is none.
+  uint8_t has_main_code;
+  /// 1: there is a code on the sub carrier. 0: there is none.
+  uint8_t has_sub_code;
+  /// 1: a frame of the main carrier was completed. 0: none was.
+  uint8_t has_main_frame;
+  /// 1: a frame of the sub carrier was completed. 0: none was.
+  uint8_t has_sub_frame;
+  /// 1: the first signal is heard. 0: it is not.
+  uint8_t has_first;
+  /// 1: the second signal is heard. 0: it is not.
+  uint8_t has_second;
+  /// 1: the odometer says something. 0: the train may have moved as far as can be said.
+  uint8_t has_moved;
+  /// 1: there is a measured speed. 0: there is none, and that is the emergency brake.
+  uint8_t has_speed;
+} atc_train_input;
+
+/// One logic cycle's output. The safe one displays and permits nothing, knows no position, and commands the emergency brake.
+typedef struct atc_train_output {
+  /// The brake command from the end of the cycle on: one of the `ATC_BRAKE_` constants.
+  uint32_t brake;
+  /// What the permission rests on: one of the `ATC_BASIS_` constants.
+  uint32_t basis;
+  /// The least distance of the front to the exit of the section whose signal is heard, in mm; 0 if it is not known.
+  uint32_t nearest_mm;
+  /// The greatest distance; 0 if it is not known.
+  uint32_t farthest_mm;
+  /// The speed of the displayed aspect in tenths of km/h; 0 if none is displayed.
+  uint16_t display;
+  /// The permitted speed in tenths of km/h; 0 is a stop by the service brake, or nothing is permitted.
+  uint16_t permitted;
+  /// 1: an aspect is displayed. 0: none is.
+  uint8_t has_display;
+  /// 1: there is a permitted speed. 0: there is none, and that is the emergency brake.
+  uint8_t has_permitted;
+  /// 1: the position is known. 0: it is not.
+  uint8_t has_position;
+} atc_train_output;
 
 /// A stretch of plain line to a neighbouring station.
 typedef struct atc_segment {
@@ -1290,6 +1455,34 @@ enum atc_status atc_deframer_start(void *state, size_t size);
 enum atc_status atc_deframer_step(struct atc_deframer *state,
                                   const struct atc_deframer_input *input,
                                   struct atc_telegram *telegram);
+
+/// The size of an on-board device in bytes: `ATC_TRAIN_SIZE`.
+size_t atc_train_size(void);
+
+/// The alignment of an on-board device in bytes: `ATC_TRAIN_ALIGN`.
+size_t atc_train_align(void);
+
+/// Starts an on-board device in the `size` bytes at `state`, which must be aligned: nothing is heard or known, and the emergency
+/// brake is on.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// Of the caller:
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+enum atc_status atc_train_start(void *state,
+                                size_t size,
+                                const struct atc_train_config *config);
+
+/// One logic cycle of an on-board device: reads what the antennas give, and puts out the display, the permitted speed, the position
+/// and the brake.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// Of the caller:
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+enum atc_status atc_train_step(struct atc_train *state,
+                               const struct atc_train_input *input,
+                               struct atc_train_output *output);
 
 /// The size of an interlocking in bytes: `ATC_INTERLOCKING_SIZE`.
 size_t atc_interlocking_size(void);

@@ -100,14 +100,19 @@ pub(crate) fn take_table(from: &mut Reader<'_>) -> Option<AspectTable> {
 /// The kernel's parameters of a configuration.
 pub(crate) fn parameters(config: &atc_aspect_config) -> Result<(AspectTable, Times), atc_status> {
     let table = table(config.speeds, config.aspect_count)?;
-    let times = TimesMs {
+    let given = TimesMs {
         operate: Millis(config.operate_ms),
         recovery: Millis(config.recovery_ms),
         mask: Millis(config.mask_ms),
         interruption: Millis(config.interruption_ms),
         shortened_operate: Millis(config.shortened_operate_ms),
     };
-    let times = Times::from_millis(Millis(config.cycle_ms), times).map_err(|error| match error {
+    Ok((table, times(config.cycle_ms, given)?))
+}
+
+/// The times in cycles of `cycle_ms`.
+pub(crate) fn times(cycle_ms: u32, given: TimesMs) -> Result<Times, atc_status> {
+    Times::from_millis(Millis(cycle_ms), given).map_err(|error| match error {
         TimesError::NoCycle => atc_status::NoCycle,
         TimesError::NoOperateTime => atc_status::NoOperateTime,
         TimesError::NoRecoveryTime => atc_status::NoRecoveryTime,
@@ -116,8 +121,22 @@ pub(crate) fn parameters(config: &atc_aspect_config) -> Result<(AspectTable, Tim
         TimesError::OperateTooLong | TimesError::RecoveryAndMaskTooLong | TimesError::InterruptionTooLong => {
             atc_status::TimeTooLong
         }
-    })?;
-    Ok((table, times))
+    })
+}
+
+pub(crate) fn put_times(times: Times, to: &mut Writer<'_>) {
+    to.u16(times.operate().0);
+    to.u16(times.recovery().0);
+    to.u16(times.expiry().0);
+    to.u16(times.interruption().0);
+    to.u16(times.shortened_operate().0);
+}
+
+pub(crate) fn take_times(from: &mut Reader<'_>) -> Option<Times> {
+    let [operate, recovery, expiry] = [from.u16()?, from.u16()?, from.u16()?];
+    let [interruption, shortened] = [Ticks(from.u16()?), Ticks(from.u16()?)];
+    let mask = Ticks(expiry.checked_sub(recovery)?);
+    Times::from_ticks(Ticks(operate), Ticks(recovery), mask, interruption, shortened).ok()
 }
 
 /// Whether only aspects of the table are in `bits`.
@@ -139,19 +158,12 @@ impl Machine for Aspect {
     }
 
     fn put_parameters((table, times): &Self::Parameters, to: &mut Writer<'_>) {
-        to.u16(times.operate().0);
-        to.u16(times.recovery().0);
-        to.u16(times.expiry().0);
-        to.u16(times.interruption().0);
-        to.u16(times.shortened_operate().0);
+        put_times(*times, to);
         put_table(table, to);
     }
 
     fn take_parameters(from: &mut Reader<'_>) -> Option<Self::Parameters> {
-        let [operate, recovery, expiry] = [from.u16()?, from.u16()?, from.u16()?];
-        let [interruption, shortened] = [Ticks(from.u16()?), Ticks(from.u16()?)];
-        let mask = Ticks(expiry.checked_sub(recovery)?);
-        let times = Times::from_ticks(Ticks(operate), Ticks(recovery), mask, interruption, shortened).ok()?;
+        let times = take_times(from)?;
         Some((take_table(from)?, times))
     }
 

@@ -23,6 +23,7 @@ use crate::supervision::{
     self, Supervised, atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output,
 };
 use crate::telegram::{self, Deframing, atc_deframer, atc_deframer_input, atc_frame, atc_telegram};
+use crate::train::{self, OnBoard, atc_train, atc_train_config, atc_train_input, atc_train_output};
 
 /// The plan of an interlocking.
 ///
@@ -351,6 +352,52 @@ pub unsafe extern "C" fn atc_deframer_step(
 ) -> atc_status {
     // SAFETY: the caller keeps the contract.
     unsafe { step::<Deframing, _>(state, input, telegram) }
+}
+
+/// The size of an on-board device in bytes: `ATC_TRAIN_SIZE`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_train_size() -> usize {
+    size_of::<atc_train>()
+}
+
+/// The alignment of an on-board device in bytes: `ATC_TRAIN_ALIGN`.
+#[unsafe(no_mangle)]
+pub extern "C" fn atc_train_align() -> usize {
+    align_of::<atc_train>()
+}
+
+/// Starts an on-board device in the `size` bytes at `state`, which must be aligned: nothing is heard or known, and the emergency
+/// brake is on.
+///
+/// If anything is wrong, the memory holds no state afterwards, and a step refuses it.
+///
+/// # Safety
+/// `state` leads to `size` bytes of the caller's, `config` to a configuration. Nobody else uses them during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_train_start(
+    state: *mut c_void,
+    size: usize,
+    config: *const atc_train_config,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { start::<OnBoard, atc_train>(state, size, || train::parameters(&read(config)?)) }
+}
+
+/// One logic cycle of an on-board device: reads what the antennas give, and puts out the display, the permitted speed, the position
+/// and the brake.
+///
+/// If anything is wrong, the state is as before and the output is the safe one.
+///
+/// # Safety
+/// The pointers lead to what they say, of the caller's. Nobody else uses it during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn atc_train_step(
+    state: *mut atc_train,
+    input: *const atc_train_input,
+    output: *mut atc_train_output,
+) -> atc_status {
+    // SAFETY: the caller keeps the contract.
+    unsafe { step::<OnBoard, _>(state, input, output) }
 }
 
 /// The size of an interlocking in bytes: `ATC_INTERLOCKING_SIZE`.

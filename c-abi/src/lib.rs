@@ -32,6 +32,7 @@ mod pointer;
 pub mod status;
 pub mod supervision;
 pub mod telegram;
+pub mod train;
 
 pub use memory::ATC_VERSION;
 pub use status::atc_status;

@@ -147,6 +147,10 @@ impl Writer<'_> {
         self.put(number.to_le_bytes());
     }
 
+    pub(crate) fn i16(&mut self, number: i16) {
+        self.put(number.to_le_bytes());
+    }
+
     pub(crate) fn u32(&mut self, number: u32) {
         self.put(number.to_le_bytes());
     }
@@ -185,6 +189,10 @@ impl Reader<'_> {
 
     pub(crate) fn u16(&mut self) -> Option<u16> {
         self.take().map(u16::from_le_bytes)
+    }
+
+    pub(crate) fn i16(&mut self) -> Option<i16> {
+        self.take().map(i16::from_le_bytes)
     }
 
     pub(crate) fn u32(&mut self) -> Option<u32> {

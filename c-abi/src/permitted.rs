@@ -149,7 +149,7 @@ pub(crate) fn parameters(config: &atc_permitted_config) -> Result<Permitted, atc
     })
 }
 
-const fn output(permission: Permission) -> atc_permitted_output {
+pub(crate) const fn output(permission: Permission) -> atc_permitted_output {
     let basis = match permission.basis {
         Basis::Nothing => ATC_BASIS_NOTHING,
         Basis::Analog => ATC_BASIS_ANALOG,
@@ -160,6 +160,16 @@ const fn output(permission: Permission) -> atc_permitted_output {
     match permission.speed {
         Some(speed) => atc_permitted_output { basis, speed: speed.0, has_speed: 1 },
         None => atc_permitted_output { basis, speed: 0, has_speed: 0 },
+    }
+}
+
+/// The kind of line that begins here, if the train is told of one.
+pub(crate) const fn line(line: u32) -> Result<Option<LineKind>, atc_status> {
+    match line {
+        ATC_LINE_UNCHANGED => Ok(None),
+        ATC_LINE_ANALOG => Ok(Some(LineKind::Analog)),
+        ATC_LINE_DIGITAL => Ok(Some(LineKind::Digital)),
+        _ => Err(atc_status::UnknownChoice),
     }
 }
 
@@ -302,12 +312,7 @@ impl Machine for Permitting {
         input: &atc_permitted_input,
     ) -> Result<(State, atc_permitted_output), atc_status> {
         let heard = Heard {
-            line: match input.line {
-                ATC_LINE_UNCHANGED => None,
-                ATC_LINE_ANALOG => Some(LineKind::Analog),
-                ATC_LINE_DIGITAL => Some(LineKind::Digital),
-                _ => return Err(atc_status::UnknownChoice),
-            },
+            line: line(input.line)?,
             analog: flag(input.has_analog)?.then_some(KmhTenths(input.analog)),
             main: if flag(input.has_main)? { Some(main(&input.main_data)?) } else { None },
             sub: if flag(input.has_sub)? { Some(sub(&input.sub_data)?) } else { None },

@@ -21,6 +21,7 @@ use crate::pattern::{atc_pattern_input, atc_pattern_output};
 use crate::permitted::{atc_permitted_config, atc_permitted_input, atc_permitted_output};
 use crate::supervision::{atc_supervision_config, atc_supervision_input, atc_supervision_output};
 use crate::telegram::{atc_deframer_input, atc_frame, atc_telegram};
+use crate::train::{atc_train_config, atc_train_input, atc_train_output};
 
 /// Plain data of C.
 ///
@@ -39,6 +40,7 @@ plain!(u8 u16 u64 atc_aspect_config atc_aspect_input atc_aspect_output);
 plain!(atc_supervision_config atc_supervision_input atc_supervision_output);
 plain!(atc_block_config atc_block_input atc_block_output atc_pattern_input atc_pattern_output);
 plain!(atc_permitted_config atc_permitted_input atc_permitted_output atc_telegram atc_frame atc_deframer_input);
+plain!(atc_train_config atc_train_input atc_train_output);
 plain!(atc_element atc_route atc_segment atc_place);
 plain!(atc_interlocking_config atc_interlocking_input atc_interlocking_output);
 plain!(atc_set256 atc_large_element atc_large_route atc_large_segment);

@@ -122,6 +122,33 @@ pub enum atc_status {
     /// The bits are no frame: the check fits, and the information is of no telegram.
     FrameContent = 73,
 
+    /// An on-board device has no pair of codes.
+    NoCodes = 80,
+    /// A carrier has more than 8 different codes, or there are more than 64 pairs.
+    TooManyCodes = 81,
+    /// The band of a code reaches down to 0, or beyond the highest number.
+    CodeOutOfRange = 82,
+    /// The bands of two codes of a carrier touch.
+    CodeBandsTouch = 83,
+    /// A pair of codes comes twice.
+    CodePairTwice = 84,
+    /// A pair of codes names a speed that is not in the table of speeds.
+    UnknownCodeSpeed = 85,
+    /// A speed of the line is above the highest plausible one.
+    ImplausibleSpeed = 86,
+    /// The spacing of an attenuation table is out of its range.
+    BadSpacing = 87,
+    /// The lowest difference of an attenuation table is above the highest.
+    TableCrossed = 88,
+    /// In no span of an attenuation table both curves rise.
+    TableNowhereRising = 89,
+    /// The tolerance of a level is negative.
+    BadTolerance = 90,
+    /// The least correction is above the most.
+    BadCorrection = 91,
+    /// The least movement is above the most.
+    BadMovement = 92,
+
     /// A path or a segment has more places than there is room for: 16, in a large station 32.
     PlanPathTooLong = 100,
     /// A time of the plan is 0.
@@ -239,6 +266,22 @@ impl atc_status {
         (Self::FrameGuard, c"no frame: a guard bit is 1"),
         (Self::FrameCheck, c"no frame: the check does not fit the information"),
         (Self::FrameContent, c"no frame: the check fits, and the information is of no telegram"),
+        (Self::NoCodes, c"there is no pair of codes; code_count must be 1 to 64"),
+        (Self::TooManyCodes, c"a carrier has more than 8 different codes, or there are more than 64 pairs"),
+        (Self::CodeOutOfRange, c"a code, with the tolerance, must be above 0 and at most 4294967295 thousandths of Hz"),
+        (Self::CodeBandsTouch, c"two codes of a carrier must be more than twice the tolerance apart"),
+        (Self::CodePairTwice, c"a pair of codes comes twice; it may name one speed"),
+        (Self::UnknownCodeSpeed, c"a pair of codes names a speed that is not in permitted.speeds"),
+        (
+            Self::ImplausibleSpeed,
+            c"a speed of the line is above supervision.maximum; a train at that speed would be stopped",
+        ),
+        (Self::BadSpacing, c"spacing_exponent must be 4 to 11"),
+        (Self::TableCrossed, c"the lowest difference of the attenuation table is above the highest at a distance"),
+        (Self::TableNowhereRising, c"in no span of the attenuation table both curves rise: no distance could be found"),
+        (Self::BadTolerance, c"the tolerance of a level is negative; it must be 0 or more"),
+        (Self::BadCorrection, c"correction_least is above correction_most; it must not be"),
+        (Self::BadMovement, c"moved_least_mm is above moved_most_mm; it must not be"),
         (Self::PlanPathTooLong, c"a path or a segment has more than 16 places, or more than 32 in a large station"),
         (Self::PlanNoTime, c"clear, turn, drive, release and stay must be one cycle or more"),
         (Self::PlanClearShort, c"clear_cycles must be above loss_cycles, and twice that at least"),

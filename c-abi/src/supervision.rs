@@ -69,7 +69,7 @@ pub(crate) fn parameters(config: &atc_supervision_config) -> Result<Supervision,
     })
 }
 
-const fn number(brake: Brake) -> u32 {
+pub(crate) const fn number(brake: Brake) -> u32 {
     match brake {
         Brake::Release => ATC_BRAKE_RELEASE,
         Brake::Service => ATC_BRAKE_SERVICE,

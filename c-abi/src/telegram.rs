@@ -186,7 +186,8 @@ pub(crate) fn encode(asked: &atc_telegram) -> Result<atc_frame, atc_status> {
     Ok(atc_frame { bits })
 }
 
-pub(crate) fn decode(frame: &atc_frame) -> Result<atc_telegram, atc_status> {
+/// The bits of a frame, the first one that is sent as the highest.
+pub(crate) fn bits(frame: &atc_frame) -> Result<u128, atc_status> {
     let mut bits = 0;
     for bit in frame.bits {
         if bit > 1 {
@@ -194,7 +195,11 @@ pub(crate) fn decode(frame: &atc_frame) -> Result<atc_telegram, atc_status> {
         }
         bits = bits << 1 | u128::from(bit);
     }
-    telegram::decode(Frame::from_bits(bits)).map(|found| telegram(&found)).map_err(|error| match error {
+    Ok(bits)
+}
+
+pub(crate) fn decode(frame: &atc_frame) -> Result<atc_telegram, atc_status> {
+    telegram::decode(Frame::from_bits(bits(frame)?)).map(|found| telegram(&found)).map_err(|error| match error {
         FrameError::Synchronisation => atc_status::FrameSynchronisation,
         FrameError::Guard => atc_status::FrameGuard,
         FrameError::Check => atc_status::FrameCheck,

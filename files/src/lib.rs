@@ -52,7 +52,7 @@ pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> io::Result<()> 
         // As for any new folder: the umask takes away what it takes away.
         builder.permissions(fs::Permissions::from_mode(0o777));
     }
-    let new = builder.tempdir_in(beside)?;
+    let new = builder.tempdir_in(beside).map_err(|error| no_room(beside, &error))?;
     for (name, bytes) in files {
         fs::write(new.path().join(name), bytes)?;
     }
@@ -60,6 +60,14 @@ pub fn write_folder(path: &Path, files: &[(String, Vec<u8>)]) -> io::Result<()> 
         fs::remove_dir(path)?;
     }
     fs::rename(new.path(), path)
+}
+
+/// The new one that is written first cannot be made: its name says nothing to anybody.
+fn no_room(folder: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(
+        error.kind(),
+        format!("nothing new can be made in the folder {}: {}", folder.display(), error.kind()),
+    )
 }
 
 fn through(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -78,7 +86,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let any = || fs::Permissions::from_mode(0o666);
         builder.permissions(fs::metadata(path).map_or_else(|_| any(), |old| old.permissions()));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder).map_err(|error| no_room(folder, &error))?;
     file.write_all(bytes)?;
     file.persist(path).map(drop).map_err(|error| error.error)
 }
@@ -88,6 +96,16 @@ mod tests {
     use std::fs;
 
     use super::{write, write_folder};
+
+    /// What is missing is said of the folder, and not of a file that nobody has named.
+    #[test]
+    fn a_folder_that_is_not_there() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let error = write(&folder.path().join("none/file"), b"text").expect_err("there is no such folder");
+        let said = error.to_string();
+        assert!(said.contains("nothing new can be made in the folder") && said.contains("none"), "{said}");
+        assert!(said.ends_with("entity not found") && !said.contains(".tmp"), "{said}");
+    }
 
     #[test]
     fn a_folder_is_written_whole_or_not_at_all() {

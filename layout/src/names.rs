@@ -20,6 +20,9 @@ pub struct Names {
 impl Names {
     /// The names of `station`; a name that comes twice is a problem.
     pub fn of(station: &Station, problems: &mut Vec<Problem>) -> Self {
+        if station.name.trim().is_empty() {
+            problems.push(Problem::new(Rule::Range, &(0..0), "the station has an empty name", "give it one"));
+        }
         Self {
             circuits: number("circuit", station.circuits.iter().map(|circuit| &circuit.name), problems),
             points: number("point", station.points.iter().map(|point| &point.name), problems),

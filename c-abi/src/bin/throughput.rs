@@ -16,22 +16,28 @@ use atc_c::interlocking::{
 use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output};
-use atc_c::telegram::{atc_deframer, atc_deframer_input, atc_telegram};
+use atc_c::telegram::{atc_deframer, atc_deframer_input, atc_frame, atc_telegram};
+use atc_c::train::{
+    atc_code_pair, atc_position_config, atc_train, atc_train_config, atc_train_input, atc_train_output,
+};
 use atc_c::{atc_status, border};
 use atc_kernel::Machine;
 use atc_kernel::aspect::{Acceptance, AspectSet, AspectTable, Times, TimesMs};
 use atc_kernel::block::{self, Block, Hold, SectionSet};
+use atc_kernel::code::{CodeFrequencies, CodeTable, MAX_CODES, Millihertz};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::interlocking::{
-    Broken, CircuitSet, Combined, Input, LargeStation, Layout, Orders, Plan, Positions, Request, Route, RouteId,
-    SegmentSet, Size, SpeedCode, Station,
+    Broken, CircuitSet, Combined, Heading, Input, LargeStation, Layout, Orders, Plan, Positions, Request, Route,
+    RouteId, SegmentSet, Size, SpeedCode, Station,
 };
 use atc_kernel::pattern::{Deceleration, pattern};
-use atc_kernel::permitted::{Heard, Permitted, Settings};
+use atc_kernel::permitted::{Heard, LineKind, Permitted, Settings};
+use atc_kernel::position::Moved;
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
 use atc_kernel::supervision::{Speeds, Supervision};
-use atc_kernel::telegram::{Deframer, Gradient, Reception, Sequence};
+use atc_kernel::telegram::{self, Deframer, Gradient, Reception, Sequence};
 use atc_kernel::time::{Millis, Ticks};
+use atc_kernel::train::{Antennas, Carrier, Parts, Train};
 
 /// How long each side is measured.
 const TIME: Duration = Duration::from_millis(400);
@@ -114,6 +120,7 @@ fn main() {
     count();
     brake();
     permitted(speeds, table);
+    on_board(speeds, table);
     let step = |number: u64| (number / 7 + number / 3) % 2;
     // SAFETY: room for a deframer.
     let start =
@@ -217,7 +224,8 @@ fn brake() {
     );
 }
 
-fn permitted(speeds: [u16; 16], table: AspectTable) {
+/// The parameters of the permitted speed, of C and of the kernel.
+fn permitted_parameters(speeds: [u16; 16], table: AspectTable) -> (atc_permitted_config, Permitted) {
     let config = atc_permitted_config {
         cycle_ms: 10,
         fresh_ms: 2200,
@@ -233,6 +241,22 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
         window: 3,
         run: 1,
     };
+    let machine = Permitted::new(Settings {
+        speeds: table,
+        lowest: atc_kernel::aspect::AspectId::new(2).expect("at most 15"),
+        brake: Deceleration::brake(800).expect("in range"),
+        worst: Gradient(-35),
+        margin: Metres(10),
+        fresh: Ticks(220),
+        life: Ticks(500),
+        fixed_life: Ticks(1000),
+        sequence: Sequence::new(3, 1, Ticks(200)).expect("in range"),
+    });
+    (config, machine.expect("in range"))
+}
+
+fn permitted(speeds: [u16; 16], table: AspectTable) {
+    let (config, machine) = permitted_parameters(speeds, table);
     let main = |number: u64| atc_c::telegram::atc_main_telegram {
         section: 7,
         beyond_exit_m: 400,
@@ -250,21 +274,10 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
     };
     let start = starts!(atc_permitted_start, atc_permitted, config);
     let c = through::<atc_permitted, _, atc_permitted_output>(start, border::atc_permitted_step, input);
-    let machine = Permitted::new(Settings {
-        speeds: table,
-        lowest: atc_kernel::aspect::AspectId::new(2).expect("at most 15"),
-        brake: Deceleration::brake(800).expect("in range"),
-        worst: Gradient(-35),
-        margin: Metres(10),
-        fresh: Ticks(220),
-        life: Ticks(500),
-        fixed_life: Ticks(1000),
-        sequence: Sequence::new(3, 1, Ticks(200)).expect("in range"),
-    });
     row(
         "permitted",
         c,
-        beside(&machine.expect("in range"), |number| Heard {
+        beside(&machine, |number| Heard {
             line: None,
             analog: Some(KmhTenths(450)),
             main: (number % 53 == 0).then_some(atc_kernel::telegram::Main {
@@ -278,6 +291,91 @@ fn permitted(speeds: [u16; 16], table: AspectTable) {
             moved: Millimetres(50),
         }),
     );
+}
+
+/// A train that hears a pair of codes, and a frame each second.
+fn on_board(speeds: [u16; 16], table: AspectTable) {
+    let (permitted_config, permitted) = permitted_parameters(speeds, table);
+    let mut codes = [atc_code_pair::default(); 64];
+    codes[0] = atc_code_pair { main_millihertz: 22_000, sub_millihertz: 36_000, speed: 450 };
+    let config = atc_train_config {
+        permitted: permitted_config,
+        operate_ms: 300,
+        recovery_ms: 400,
+        mask_ms: 400,
+        interruption_ms: 800,
+        shortened_operate_ms: 100,
+        code_tolerance_millihertz: 500,
+        code_count: 1,
+        codes,
+        supervision: atc_supervision_config { maximum: 4000, margin: 5 },
+        position: atc_position_config::default(),
+        has_position: 0,
+    };
+    let frequencies = |code| CodeFrequencies::new(&[Millihertz(code)], Millihertz(500)).expect("in range");
+    let mut named = [[None; MAX_CODES]; MAX_CODES];
+    named[0][0] = Some(KmhTenths(450));
+    let times = TimesMs {
+        operate: Millis(300),
+        recovery: Millis(400),
+        mask: Millis(400),
+        interruption: Millis(800),
+        shortened_operate: Millis(100),
+    };
+    let train = Train::<16>::new(Parts {
+        codes: CodeTable::new(frequencies(22_000), frequencies(36_000), named).expect("it names a speed"),
+        acceptance: Acceptance { times: Times::from_millis(Millis(10), times).expect("in range") },
+        permitted,
+        supervision: Supervision::new(KmhTenths(4000), KmhTenths(5)).expect("in range"),
+        position: None,
+    });
+    let frame = |number: u64| {
+        let main = telegram::Main {
+            section: telegram::SectionId(8),
+            counter: telegram::Counter(narrow(number / 100)),
+            route: telegram::Route::OpenFor(Metres(400)),
+            speed: atc_kernel::aspect::AspectId::new(4).expect("at most 15"),
+        };
+        telegram::encode(telegram::Telegram::Main(main))
+    };
+    let bits = |number: u64| {
+        let bits = frame(number).bits();
+        atc_frame { bits: std::array::from_fn(|place| narrow(u64::from(bits >> (105 - place) & 1 == 1))) }
+    };
+    let input = |number: u64| atc_train_input {
+        main_code_millihertz: 22_100,
+        sub_code_millihertz: 35_900,
+        line: u32::from(number == 0) * 2,
+        speed: 400,
+        main_frame: bits(number),
+        sub_frame: atc_frame { bits: [0; 106] },
+        first: 0,
+        second: 0,
+        moved_least_mm: 110,
+        moved_most_mm: 120,
+        facing: ATC_HEADING_RIGHT,
+        has_main_code: 1,
+        has_sub_code: 1,
+        has_main_frame: (number % 100 == 0).into(),
+        has_sub_frame: 0,
+        has_first: 0,
+        has_second: 0,
+        has_moved: 1,
+        has_speed: 1,
+    };
+    let start = starts!(atc_train_start, atc_train, config);
+    let c = through::<atc_train, _, atc_train_output>(start, border::atc_train_step, input);
+    let antennas = |number: u64| Antennas {
+        main: Carrier { code: Some(Millihertz(22_100)), frame: (number % 100 == 0).then(|| frame(number)) },
+        sub: Carrier { code: Some(Millihertz(35_900)), frame: None },
+        first: None,
+        second: None,
+        moved: Moved::new(110, 120),
+        speed: Some(RawKmhTenths(400)),
+        line: (number == 0).then_some(LineKind::Digital),
+        facing: Some(Heading::Right),
+    };
+    row("on-board device", c, beside(&train.expect("the parts fit"), antennas));
 }
 
 /// How C starts and steps an interlocking of one size, and makes its sets of one number.
@@ -330,7 +428,9 @@ fn station<const R: usize, const P: usize, const N: usize, const S: usize, Z: Si
             speed: SpeedCode(1),
             ..Route::NONE
         };
-        route.path[0].circuits = CircuitSet::nth(number + 1);
+        for place in route.path.iter_mut().take(1) {
+            place.circuits = CircuitSet::nth(number + 1);
+        }
     }
     let layout = Box::new(layout(*plan).expect("it keeps every rule"));
 

@@ -1,5 +1,6 @@
 //! The arrays of a plan in the kernel's form, as a C program has them.
 
+use std::ops::{BitOrAssign, Shl};
 use std::ptr;
 
 use atc_c::interlocking::{
@@ -45,42 +46,37 @@ impl InC for Small {
     }
 }
 
-// Number by number, as a C program makes its sets: not by the kernel's own words.
+/// The words of a set, number by number, as a C program makes it: not by the kernel's own words.
+fn words<W>(width: usize, has: impl Fn(usize) -> bool) -> [W; 4]
+where
+    W: Copy + Default + From<u8> + BitOrAssign + Shl<usize, Output = W>,
+{
+    let mut words = [W::default(); 4];
+    for number in (0..4 * width).filter(|number| has(*number)) {
+        words[number / width] |= W::from(1) << (number % width);
+    }
+    words
+}
+
 impl InC for Large {
     type Circuits = atc_set256;
     type Points = atc_set128;
     type Segments = atc_set32;
 
     fn circuits(circuits: CircuitSet<Large>) -> atc_set256 {
-        let mut set = atc_set256::default();
-        for number in (0..256).filter(|number| circuits.has_number(*number)) {
-            set.words[number / 64] |= 1 << (number % 64);
-        }
-        set
+        atc_set256 { words: words(64, |number| circuits.has_number(number)) }
     }
 
     fn routes(routes: RouteSet<Large>) -> atc_set256 {
-        let mut set = atc_set256::default();
-        for number in (0..256).filter(|number| routes.has_number(*number)) {
-            set.words[number / 64] |= 1 << (number % 64);
-        }
-        set
+        atc_set256 { words: words(64, |number| routes.has_number(number)) }
     }
 
     fn points(points: PointSet<Large>) -> atc_set128 {
-        let mut set = atc_set128::default();
-        for number in (0..128).filter(|number| points.has_number(*number)) {
-            set.words[number / 32] |= 1 << (number % 32);
-        }
-        set
+        atc_set128 { words: words(32, |number| points.has_number(number)) }
     }
 
     fn segments(segments: SegmentSet<Large>) -> atc_set32 {
-        let mut set = atc_set32::default();
-        for number in (0..32).filter(|number| segments.has_number(*number)) {
-            set.words[number / 8] |= 1 << (number % 8);
-        }
-        set
+        atc_set32 { words: words(8, |number| segments.has_number(number)) }
     }
 }
 

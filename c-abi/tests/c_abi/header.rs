@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::tools::{self, Scratch};
 
 /// In this order the header has them.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "memory.rs",
     "status.rs",
     "aspect.rs",
@@ -15,6 +15,7 @@ const SOURCES: [&str; 10] = [
     "pattern.rs",
     "permitted.rs",
     "telegram.rs",
+    "train.rs",
     "interlocking/forms.rs",
     "border.rs",
 ];
@@ -77,7 +78,7 @@ fn the_header_is_up_to_date() {
 /// The sizes in the header are those of the structures, so that a C program can set memory aside without asking.
 #[test]
 fn the_sizes_are_right() {
-    use atc_c::{aspect, block, border, interlocking, permitted, supervision, telegram};
+    use atc_c::{aspect, block, border, interlocking, permitted, supervision, telegram, train};
     let said = [
         (aspect::ATC_ASPECT_SIZE, aspect::ATC_ASPECT_ALIGN, border::atc_aspect_size(), border::atc_aspect_align()),
         (
@@ -99,6 +100,7 @@ fn the_sizes_are_right() {
             border::atc_deframer_size(),
             border::atc_deframer_align(),
         ),
+        (train::ATC_TRAIN_SIZE, train::ATC_TRAIN_ALIGN, border::atc_train_size(), border::atc_train_align()),
         (
             interlocking::ATC_INTERLOCKING_SIZE,
             interlocking::ATC_INTERLOCKING_ALIGN,

@@ -16,26 +16,35 @@ use atc_c::pattern::{atc_pattern_input, atc_pattern_output};
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input, atc_permitted_output};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input, atc_supervision_output};
 use atc_c::telegram::{ATC_TELEGRAM_NONE, atc_main_telegram, atc_sub_telegram};
+use atc_c::train::{atc_code_pair, atc_train, atc_train_config, atc_train_input, atc_train_output};
 use atc_c::{atc_status, border};
 use atc_kernel::Machine;
 use atc_kernel::aspect::{Acceptance, AspectId, AspectSet, AspectTable, Display, Times, TimesMs};
 use atc_kernel::block::{self, Block, Fault, Hold, SectionSet, Status, TrainCount};
+use atc_kernel::code::{CodeFrequencies, Millihertz};
 use atc_kernel::distance::{Metres, Millimetres};
 use atc_kernel::interlocking::{
-    CircuitSet, Combined, Commands, Input, Large, Layout, Memory, Orders, PointId, Position, Positions, Request,
-    RouteId, SegmentId, SegmentSet, Size, Small, SpeedCode, Travel,
+    CircuitSet, Combined, Commands, Heading, Input, Large, Layout, Memory, Orders, PointId, Position, Positions,
+    Request, RouteId, SegmentId, SegmentSet, Size, Small, SpeedCode, Travel,
 };
 use atc_kernel::pattern::{Deceleration, pattern};
 use atc_kernel::permitted::{Heard, LineKind, Permission, Permitted, Settings};
+use atc_kernel::position::{Millibels, Moved};
 use atc_kernel::speed::{KmhTenths, RawKmhTenths};
 use atc_kernel::supervision::{Brake, Speeds, Supervision};
-use atc_kernel::telegram::{Counter, Deframer, Gradient, Length, Main, Route, SectionId, Sequence, Sub};
+use atc_kernel::telegram::{
+    Counter, Deframer, Gradient, Length, Main, Route, SectionId, Sequence, Sub, Telegram, encode,
+};
 use atc_kernel::time::{Cycle, Millis};
+use atc_kernel::train::{Antennas, Carrier, Train};
 use atc_oracle::conform::random::Random;
+use atc_protocol::machine::{position, train};
+use atc_protocol::{Decibels, Metres as Metre};
 
 use crate::arrays::{Arrays, InC};
 use crate::call;
 use crate::station;
+use crate::wire;
 
 /// Configurations of each machine, and steps with each.
 const CONFIGS: u64 = 400;
@@ -404,6 +413,149 @@ fn permitted_speed() {
     });
 }
 
+/// Whatever the antennas give: what C says is what the kernel says.
+#[test]
+fn on_board() {
+    let given = train::Config { position: Some(table()), ..train::Config::default() };
+    let device = given.train().expect("it is right");
+    let config = wire::train_config(&given).expect("it has room");
+    let mut state = call::start::<atc_train, _>(border::atc_train_start, &config).expect("it is right");
+    let mut draw = Draw(Random::of(20_261_129, "on board", 0));
+    let (mut memory, mut counter) = (device.initial(), 0_u8);
+    let codes = device.parts().codes;
+    let (mut permitted, mut located) = (0, 0);
+    for cycle in 0..6000_u32 {
+        let one_of = |draw: &mut Draw, codes: &CodeFrequencies, place: usize| {
+            let nominal = codes.nominal()[place % codes.nominal().len()].0;
+            let off: i64 = draw.number(&[0, 0, codes.tolerance().0.into(), -i64::from(codes.tolerance().0)]);
+            let code = u32::try_from(i64::from(nominal) + off).unwrap_or(0);
+            (!draw.0.one_in(40)).then_some(Millihertz(code))
+        };
+        let place = usize::try_from(cycle / 400).unwrap_or(0);
+        let section = SectionId(if draw.0.one_in(20) { 9 } else { 8 });
+        counter = counter.wrapping_add(1);
+        let main = Main {
+            section,
+            counter: Counter(counter),
+            route: Route::OpenFor(Metres(draw.fit(&[0, 400, 65_535]))),
+            speed: AspectId::new(draw.fit(&[1, 3, 5])).expect("at most 15"),
+        };
+        let frame = draw.0.one_in(8).then(|| encode(Telegram::Main(main)));
+        let level = |draw: &mut Draw, limit: i64| (!draw.0.one_in(10)).then(|| Millibels(draw.fit(&[limit, limit])));
+        let antennas = Antennas {
+            main: Carrier { code: one_of(&mut draw, codes.main(), place), frame },
+            sub: Carrier { code: one_of(&mut draw, codes.sub(), place), frame: None },
+            first: level(&mut draw, -2000),
+            second: level(&mut draw, -2300),
+            moved: (!draw.0.one_in(10)).then(|| Moved::new(0, draw.fit(&[0, 150, 200]))).flatten(),
+            speed: (!draw.0.one_in(200)).then(|| RawKmhTenths(draw.fit(&[0, 200, 450]))),
+            line: if cycle == 50 { Some(LineKind::Digital) } else { None },
+            facing: (!draw.0.one_in(1000)).then_some(Heading::Right),
+        };
+        let (next, cab) = device.step(memory, antennas);
+        memory = next;
+        let (status, said) = call::step(border::atc_train_step, &mut *state, &wire::antennas(&antennas));
+        assert_eq!(status, atc_status::Ok);
+        let (nearest, farthest) = cab.position.map_or((0, 0), |at| (at.nearest().0, at.farthest().0));
+        let expected = atc_train_output {
+            brake: number(cab.brake),
+            basis: cab.permission.basis as u32,
+            nearest_mm: nearest,
+            farthest_mm: farthest,
+            display: cab.display.map_or(0, |speed| speed.0),
+            permitted: cab.permission.speed.map_or(0, |speed| speed.0),
+            has_display: cab.display.is_some().into(),
+            has_permitted: cab.permission.speed.is_some().into(),
+            has_position: cab.position.is_some().into(),
+        };
+        assert_eq!(said, expected, "cycle {cycle}");
+        permitted += u32::from(said.has_permitted == 1);
+        located += u32::from(said.has_position == 1);
+    }
+    println!("on board: 6000 steps, {permitted} with a permission, {located} with a position");
+    assert!(permitted > 500 && located > 500, "{permitted} {located}");
+}
+
+/// A table that rises by a decibel and a half from one distance to the next.
+fn table() -> position::Config {
+    let curve = |first: i64| (0..17).map(|knot| Decibels(first + 150 * knot)).collect();
+    position::Config {
+        table: position::TableConfig { spacing_m: Metre(25_600), lowest_db: curve(0), highest_db: curve(100) },
+        tolerance_db: Decibels(10),
+        floor_db: Decibels(-6000),
+        correction_db: [Decibels(0), Decibels(0)],
+    }
+}
+
+/// Every rule that the parts of an on-board device break, alone or together, has its status.
+#[test]
+fn what_is_wrong_on_board() {
+    type Break = (fn(&mut atc_train_config), atc_status);
+    let given = train::Config { position: Some(table()), ..train::Config::default() };
+    let right = wire::train_config(&given).expect("it has room");
+    let start = |config: &atc_train_config| call::start::<atc_train, _>(border::atc_train_start, config).err();
+    assert_eq!(start(&right), None);
+    let cases: [Break; 19] = [
+        (|config| config.permitted.cycle_ms = 0, atc_status::NoCycle),
+        (|config| config.permitted.speed_count = 17, atc_status::TooManySpeeds),
+        (|config| config.operate_ms = 0, atc_status::NoOperateTime),
+        (|config| config.code_count = 0, atc_status::NoCodes),
+        (|config| config.code_count = 65, atc_status::TooManyCodes),
+        (|config| config.code_tolerance_millihertz = 1_000_000, atc_status::CodeOutOfRange),
+        (|config| config.codes[0].main_millihertz = u32::MAX, atc_status::CodeOutOfRange),
+        (|config| config.codes[1].main_millihertz = config.codes[0].main_millihertz + 1, atc_status::CodeBandsTouch),
+        (|config| config.codes[1] = config.codes[0], atc_status::CodePairTwice),
+        (|config| config.codes[0].speed = 1, atc_status::UnknownCodeSpeed),
+        (|config| config.supervision.maximum = 0, atc_status::NoMaximum),
+        (|config| config.supervision.maximum = 100, atc_status::ImplausibleSpeed),
+        (|config| config.has_position = 2, atc_status::BadFlag),
+        (|config| config.position.spacing_exponent = 12, atc_status::BadSpacing),
+        (|config| config.position.lowest[3] = i16::MAX, atc_status::TableCrossed),
+        (
+            |config| (config.position.lowest, config.position.highest) = ([0; 17], [0; 17]),
+            atc_status::TableNowhereRising,
+        ),
+        (|config| config.position.tolerance = -1, atc_status::BadTolerance),
+        (|config| config.position.correction_least = 1, atc_status::BadCorrection),
+        (
+            |config| {
+                config.code_count = 9;
+                for (pair, code) in config.codes.iter_mut().zip(1..=9) {
+                    *pair = atc_code_pair { main_millihertz: 10_000 * code, sub_millihertz: 10_000, speed: 450 };
+                }
+            },
+            atc_status::TooManyCodes,
+        ),
+    ];
+    for (number, (break_it, status)) in cases.into_iter().enumerate() {
+        let mut config = right;
+        break_it(&mut config);
+        assert_eq!(start(&config), Some(status), "case {number}");
+    }
+}
+
+/// What is wrong in one step is refused, and the device stands.
+#[test]
+fn what_is_wrong_in_a_step_on_board() {
+    type Break = (fn(&mut atc_train_input), atc_status);
+    let cases: [Break; 5] = [
+        (|input| (input.has_moved, input.moved_least_mm, input.moved_most_mm) = (1, 1, 0), atc_status::BadMovement),
+        (|input| (input.has_main_frame, input.main_frame.bits[7]) = (1, 2), atc_status::BadBit),
+        (|input| input.facing = 3, atc_status::UnknownChoice),
+        (|input| input.line = 3, atc_status::UnknownChoice),
+        (|input| input.has_speed = 2, atc_status::BadFlag),
+    ];
+    let config = wire::train_config(&train::Config::default()).expect("it has room");
+    let mut state = call::start::<atc_train, _>(border::atc_train_start, &config).expect("it is right");
+    for (number, (break_it, status)) in cases.into_iter().enumerate() {
+        let (mut input, before) = (wire::antennas(&wire::NOTHING_HEARD), state.opaque);
+        break_it(&mut input);
+        let (found, said) = call::step(border::atc_train_step, &mut *state, &input);
+        let safe = atc_train_output { brake: 2, ..atc_train_output::default() };
+        assert_eq!((found, said, state.opaque), (status, safe, before), "case {number}");
+    }
+}
+
 /// How many cycles a train waits at one signal.
 const PATIENCE: usize = 40;
 
@@ -509,6 +661,10 @@ fn the_safe_outputs_are_the_kernels() {
         unsafe { output.assume_init() }
     }
     assert_eq!(safe(border::atc_supervision_step).brake, number(Supervision::SAFE));
+    let cab = <Train<16> as Machine>::SAFE;
+    let expected = atc_train_output { brake: number(cab.brake), ..atc_train_output::default() };
+    assert_eq!(safe(border::atc_train_step), expected);
+    assert!(cab.display.is_none() && cab.permission.speed.is_none() && cab.position.is_none());
     assert_eq!(safe(border::atc_aspect_step).displayed == 1, Acceptance::<16>::SAFE.aspect().is_some());
     assert_eq!(safe(border::atc_block_step), counted(Block::SAFE));
     assert_eq!(safe(border::atc_permitted_step), may(Permitted::SAFE));

@@ -16,6 +16,7 @@ use atc_c::pattern::atc_pattern_input;
 use atc_c::permitted::{atc_permitted, atc_permitted_config, atc_permitted_input};
 use atc_c::supervision::{atc_supervision, atc_supervision_config, atc_supervision_input};
 use atc_c::telegram::{atc_deframer, atc_deframer_input, atc_frame, atc_telegram};
+use atc_c::train::atc_train;
 use atc_c::{atc_status, border};
 use atc_kernel::interlocking::{CircuitSet, RouteSet, SegmentSet};
 use atc_oracle::conform::random::Random;
@@ -23,6 +24,7 @@ use atc_oracle::conform::random::Random;
 use crate::arrays::{Arrays, InC};
 use crate::call::{self, Ask, Start, Step};
 use crate::station;
+use crate::wire;
 
 /// Words of guard on either side of a place.
 const GUARD: usize = 8;
@@ -313,6 +315,24 @@ fn spoil_or_not(random: &mut Random, config: &mut Place) {
     }
 }
 
+macro_rules! target {
+    ($name:literal, $start:ident, $step:ident, $config:expr, $input:expr) => {
+        Target { name: $name, start: border::$start, step: border::$step, config: $config, input: $input }
+    };
+}
+macro_rules! attack {
+    ($target:ident, $other:expr) => {{
+        let started = *call::start($target.start, &$target.config).expect("it is right");
+        let safe = $target.safe();
+        move |random: &mut Random, tally: &mut Tally, wild: &mut dyn FnMut(&mut Random, &mut Place)| {
+            if random.one_in(3) {
+                $target.attack_start(random, tally, &started, &mut |random, place| wild(random, place));
+            } else {
+                $target.attack_step(random, tally, &started, &safe, $other);
+            }
+        }
+    }};
+}
 /// One call after the other, on all machines.
 #[test]
 fn calls_that_no_program_should_make() {
@@ -327,11 +347,6 @@ fn make_calls() {
     let (right, _) = station::passing_loop();
     let mut arrays = right.clone();
 
-    macro_rules! target {
-        ($name:literal, $start:ident, $step:ident, $config:expr, $input:expr) => {
-            Target { name: $name, start: border::$start, step: border::$step, config: $config, input: $input }
-        };
-    }
     let aspect: Target<atc_aspect, _, _, _> =
         target!("aspect", atc_aspect_start, atc_aspect_step, aspect_config(), atc_aspect_input { detected: 5 });
     let supervision: Target<atc_supervision, _, _, _> = target!(
@@ -373,23 +388,17 @@ fn make_calls() {
         hundred.config(),
         atc_large_interlocking_input::default()
     );
+    let train: Target<atc_train, _, _, _> = target!(
+        "train",
+        atc_train_start,
+        atc_train_step,
+        wire::train_config(&atc_protocol::machine::train::Config::default()).expect("it has room"),
+        wire::antennas(&wire::NOTHING_HEARD)
+    );
     let pattern = atc_pattern_input { brake_mm_s2: 800, distance_m: 300, gradient_permille: -10 };
     let telegram = atc_telegram { kind: 1, ..atc_telegram::default() };
     let frame: atc_frame = call::ask(border::atc_telegram_encode, &telegram).1;
 
-    macro_rules! attack {
-        ($target:ident, $other:expr) => {{
-            let started = *call::start($target.start, &$target.config).expect("it is right");
-            let safe = $target.safe();
-            move |random: &mut Random, tally: &mut Tally, wild: &mut dyn FnMut(&mut Random, &mut Place)| {
-                if random.one_in(3) {
-                    $target.attack_start(random, tally, &started, &mut |random, place| wild(random, place));
-                } else {
-                    $target.attack_step(random, tally, &started, &safe, $other);
-                }
-            }
-        }};
-    }
     let other = call::start::<atc_block, _>(border::atc_block_start, &block_config()).expect("it is right").opaque;
     let another = call::start::<atc_aspect, _>(border::atc_aspect_start, &aspect_config()).expect("it is right").opaque;
     let aspect = attack!(aspect, &other);
@@ -397,6 +406,7 @@ fn make_calls() {
     let block = attack!(block, &another);
     let permitted = attack!(permitted, &another);
     let deframer = attack!(deframer, &other);
+    let train = attack!(train, &other);
     let interlocking = attack!(interlocking, &another);
     let large = attack!(large, &another);
     for _ in 0..calls {
@@ -405,7 +415,8 @@ fn make_calls() {
             0..=7 => aspect(random, tally, &mut spoil_or_not),
             8..=13 => supervision(random, tally, &mut spoil_or_not),
             14..=20 => block(random, tally, &mut spoil_or_not),
-            21..=27 => permitted(random, tally, &mut spoil_or_not),
+            21..=24 => permitted(random, tally, &mut spoil_or_not),
+            25..=27 => train(random, tally, &mut spoil_or_not),
             28..=31 => deframer(random, tally, &mut spoil_or_not),
             32..=33 => attack_ask(("pattern", border::atc_pattern, &pattern), random, tally),
             34..=35 => attack_ask(("encode", border::atc_telegram_encode, &telegram), random, tally),

@@ -87,6 +87,49 @@ fn aspect() {
 }
 
 #[test]
+fn train() {
+    let Some(printed) = printed("train") else { return };
+    let pair = |main: f64, sub: f64, speed: u16| json!({"main_hz": main, "sub_hz": sub, "speed_km_h": speed});
+    let config = json!({
+        "permitted": {
+            "cycle_ms": 10, "fresh_ms": 2200, "life_ms": 5000, "fixed_life_ms": 10_000, "memory_ms": 2000,
+            "speeds_km_h": [0, 45, 90], "brake_mm_s2": 800, "margin_m": 10, "lowest_limit_km_h": 45,
+            "worst_gradient_permille": -35, "window": 3, "run": 1,
+        },
+        "acceptance": {
+            "operate_ms": 300, "recovery_ms": 400, "mask_ms": 400, "interruption_ms": 800, "shortened_operate_ms": 100,
+        },
+        "codes": {"tolerance_hz": 0.5, "pairs": [pair(22.0, 31.5, 0), pair(26.0, 36.0, 45), pair(29.0, 39.0, 90)]},
+        "supervision": {"maximum_km_h": 400, "release_margin_km_h": 0},
+    });
+    let mut train = Oracle::start("train", &config);
+    let (mut said, mut before) = (String::new(), (Value::Null, Value::Null));
+    for cycle in 1..=200 {
+        let mut step = json!({"speed_km_h": 50, "facing": "right"});
+        if cycle == 1 {
+            step["line"] = json!("analog");
+        }
+        if cycle <= 100 {
+            step["main"] = json!({"code_hz": 26.1});
+            step["sub"] = json!({"code_hz": 35.9});
+        }
+        let mut output = train.step(&step);
+        let (display, brake) = (output["display_km_h"].take(), output["brake"].take());
+        let word = brake.as_str().expect("a brake is a word");
+        if cycle == 1 || (&display, &brake) != (&before.0, &before.1) {
+            match output["permitted_km_h"].as_f64() {
+                Some(speed) => writeln!(said, "cycle {cycle}: {speed:.1} km/h permitted, {word}"),
+                None => writeln!(said, "cycle {cycle}: nothing permitted, {word}"),
+            }
+            .expect("a text takes it");
+        }
+        before = (display, brake);
+    }
+    assert_eq!(printed, said);
+    assert!(said.lines().count() >= 3 && said.contains("45.0 km/h permitted, service"), "{said}");
+}
+
+#[test]
 fn block() {
     let Some(printed) = printed("block") else { return };
     let mut block = Oracle::start("block-count", &json!({"sections": 3, "max_trains": 3, "tail_hold_sections": 1}));

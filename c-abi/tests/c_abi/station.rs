@@ -1,6 +1,8 @@
 //! The interlocking behind the border beside the kernel's, on the walks of `oracle conform` and on plans that break
 //! a rule.
 
+use std::sync::OnceLock;
+
 use atc_c::atc_status;
 use atc_c::border;
 use atc_c::interlocking::{
@@ -14,6 +16,7 @@ use atc_kernel::interlocking::{
     Combined, Commands, Input, Large, LargeStation, Layout, Memory, Plan, PointSet, Position, Request, Station, Travel,
 };
 use atc_kernel::time::Ticks;
+use atc_layout::Names;
 use atc_protocol::machine::Machine;
 use atc_protocol::machine::interlocking::{Config, Interlocked, Step};
 
@@ -144,13 +147,20 @@ pub fn passing_loop() -> (Arrays, Box<Station>) {
     (Arrays::of(&compiled.plan, &compiled.names), compiled.layout())
 }
 
+/// The plan of a large station, and its names.
+type Hundred = (Box<Plan<256, 32, 128, 32, Large>>, Names);
+
 /// The arrays of a large station, which keep every rule, and its layout. It has no time after a start.
 pub fn hundred_routes() -> (Arrays<Large>, Box<LargeStation>) {
-    let text = include_str!("../../../layouts/station-100.toml");
-    let described = atc_layout::Description::from_toml("station-100.toml", text).expect("it is a layout");
-    let compiled = described.compile_to::<256, 32, 128, 32, Large>().expect("it keeps every rule");
-    let plan = Box::new(Plan { start: Ticks(0), ..*compiled.plan });
-    (Arrays::of(&plan, &compiled.names), Box::new(Layout::new(*plan).expect("it keeps every rule")))
+    // The file is read once for all tests.
+    static HUNDRED: OnceLock<Hundred> = OnceLock::new();
+    let (plan, names) = HUNDRED.get_or_init(|| {
+        let text = include_str!("../../../layouts/station-100.toml");
+        let described = atc_layout::Description::from_toml("station-100.toml", text).expect("it is a layout");
+        let compiled = described.compile_to::<256, 32, 128, 32, Large>().expect("it keeps every rule");
+        (Box::new(Plan { start: Ticks(0), ..*compiled.plan }), compiled.names)
+    });
+    (Arrays::of(plan, names), Box::new(Layout::new(**plan).expect("it keeps every rule")))
 }
 
 /// What a large station's plan breaks comes out as that of a small one does.

@@ -3,7 +3,7 @@
 
 use atc_oracle::conform::case::Expected;
 use atc_oracle::conform::walk::{Sizes, case};
-use atc_protocol::machine::{aspect, block, pattern, permitted, supervision, telegram};
+use atc_protocol::machine::{aspect, block, pattern, permitted, supervision, telegram, train};
 use serde_json::Value;
 
 use crate::wire::Spoken;
@@ -82,4 +82,9 @@ fn telegrams() {
 #[test]
 fn permitted_speeds() {
     walk::<permitted::Permitting>();
+}
+
+#[test]
+fn on_board_devices() {
+    walk::<train::OnBoard>();
 }

@@ -8,6 +8,7 @@ use atc_c::block::{
     ATC_BLOCK_UNVERIFIED, atc_block, atc_block_config, atc_block_input,
 };
 use atc_c::border;
+use atc_c::interlocking::ATC_HEADING_NONE;
 use atc_c::pattern::atc_pattern_input;
 use atc_c::permitted::{
     ATC_BASIS_ANALOG, ATC_BASIS_BOTH, ATC_BASIS_NOTHING, ATC_BASIS_PATTERN, ATC_BASIS_RUNNING_DOWN, ATC_LINE_ANALOG,
@@ -21,13 +22,20 @@ use atc_c::telegram::{
     ATC_RECEPTION_NOTHING, ATC_TELEGRAM_MAIN, ATC_TELEGRAM_NONE, ATC_TELEGRAM_SUB, atc_deframer, atc_deframer_input,
     atc_frame, atc_main_telegram, atc_sub_telegram, atc_telegram,
 };
+use atc_c::train::{
+    ATC_MAX_CODE_PAIRS, atc_code_pair, atc_position_config, atc_train, atc_train_config, atc_train_input,
+};
 use atc_kernel::block::SectionSet;
+use atc_kernel::position::Moved;
+use atc_kernel::telegram::Frame;
+use atc_kernel::train::{Antennas, Carrier};
 use atc_protocol::machine::permitted::{Basis, LineKind};
 use atc_protocol::machine::supervision::Brake;
-use atc_protocol::machine::{Machine, aspect, block, pattern, permitted, supervision, telegram};
+use atc_protocol::machine::{Machine, aspect, block, pattern, permitted, position, supervision, telegram, train};
 use atc_protocol::telegrams::{MainTelegram, SubTelegram, Telegram};
-use atc_protocol::{Kmh, Sections};
+use atc_protocol::{Decibels, Kmh, Metres, Sections};
 
+use crate::arrays::heading;
 use crate::call;
 
 /// A machine of the oracle, and the same behind the border.
@@ -102,9 +110,7 @@ impl Spoken for supervision::Supervised {
     type State = Box<atc_supervision>;
 
     fn start(config: &supervision::Config) -> Option<Result<Self::State, atc_status>> {
-        let maximum = u16::try_from(config.maximum_km_h.0).ok()?;
-        let margin = u16::try_from(config.release_margin_km_h.0).ok()?;
-        Some(call::start(border::atc_supervision_start, &atc_supervision_config { maximum, margin }))
+        Some(call::start(border::atc_supervision_start, &supervision_config(config)?))
     }
 
     /// The previous command is the machine's own.
@@ -120,13 +126,8 @@ impl Spoken for supervision::Supervised {
             has_measured: step.speed_km_h.is_some().into(),
             has_permitted: step.permitted_km_h.is_some().into(),
         };
-        let brake = match ok(call::step(border::atc_supervision_step, &mut **state, &input)).brake {
-            ATC_BRAKE_RELEASE => Brake::Release,
-            ATC_BRAKE_SERVICE => Brake::Service,
-            ATC_BRAKE_EMERGENCY => Brake::Emergency,
-            other => panic!("no brake command: {other}"),
-        };
-        supervision::Output { brake }
+        let said = ok(call::step(border::atc_supervision_step, &mut **state, &input));
+        supervision::Output { brake: brake_of(said.brake) }
     }
 }
 
@@ -306,38 +307,39 @@ impl Spoken for telegram::Codec {
     }
 }
 
+/// The parameters of the permitted speed as C has them; none if they have no room in it.
+fn permitted_config(config: &permitted::Config) -> Option<atc_permitted_config> {
+    let (speeds, speed_count) = table(&config.speeds_km_h)?;
+    let lowest = config.speeds_km_h.iter().position(|speed| *speed == config.lowest_limit_km_h);
+    Some(atc_permitted_config {
+        cycle_ms: config.cycle_ms,
+        fresh_ms: config.fresh_ms,
+        life_ms: config.life_ms,
+        fixed_life_ms: config.fixed_life_ms,
+        memory_ms: config.memory_ms,
+        speed_count,
+        speeds,
+        brake_mm_s2: u16::try_from(config.brake_mm_s2).ok()?,
+        margin_m: u16::try_from(config.margin_m).ok()?,
+        lowest_rank: lowest.and_then(|rank| u8::try_from(rank).ok()).unwrap_or(16),
+        worst_gradient_permille: i8::try_from(config.worst_gradient_permille).ok()?,
+        window: narrow(config.window),
+        run: narrow(config.run),
+    })
+}
+
 impl Spoken for permitted::Permitting {
     type State = Box<atc_permitted>;
 
     fn start(config: &permitted::Config) -> Option<Result<Self::State, atc_status>> {
-        let (speeds, speed_count) = table(&config.speeds_km_h)?;
-        let lowest = config.speeds_km_h.iter().position(|speed| *speed == config.lowest_limit_km_h);
-        let given = atc_permitted_config {
-            cycle_ms: config.cycle_ms,
-            fresh_ms: config.fresh_ms,
-            life_ms: config.life_ms,
-            fixed_life_ms: config.fixed_life_ms,
-            memory_ms: config.memory_ms,
-            speed_count,
-            speeds,
-            brake_mm_s2: u16::try_from(config.brake_mm_s2).ok()?,
-            margin_m: u16::try_from(config.margin_m).ok()?,
-            lowest_rank: lowest.and_then(|rank| u8::try_from(rank).ok()).unwrap_or(16),
-            worst_gradient_permille: i8::try_from(config.worst_gradient_permille).ok()?,
-            window: narrow(config.window),
-            run: narrow(config.run),
-        };
+        let given = permitted_config(config)?;
         Some(call::start(border::atc_permitted_start, &given))
     }
 
     fn say(state: &mut Self::State, step: &permitted::Step) -> permitted::Output {
         let heard = step.heard().expect("a walk has no other");
         let input = atc_permitted_input {
-            line: match step.line {
-                None => ATC_LINE_UNCHANGED,
-                Some(LineKind::Analog) => ATC_LINE_ANALOG,
-                Some(LineKind::Digital) => ATC_LINE_DIGITAL,
-            },
+            line: line_of(step.line),
             // Not looked at where there is none.
             to_exit_mm: heard.to_exit.map_or(123_456, |length| length.0),
             moved_mm: heard.moved.0,
@@ -353,15 +355,168 @@ impl Spoken for permitted::Permitting {
         assert!(said.has_speed == 1 || said.speed == 0);
         permitted::Output {
             speed_km_h: (said.has_speed == 1).then_some(Kmh(said.speed.into())),
-            basis: match said.basis {
-                ATC_BASIS_NOTHING => Basis::Nothing,
-                ATC_BASIS_ANALOG => Basis::Analog,
-                ATC_BASIS_PATTERN => Basis::Pattern,
-                ATC_BASIS_BOTH => Basis::Both,
-                ATC_BASIS_RUNNING_DOWN => Basis::RunningDown,
-                other => panic!("no basis: {other}"),
-            },
+            basis: basis_of(said.basis),
             state: None,
+        }
+    }
+}
+
+fn line_of(line: Option<LineKind>) -> u32 {
+    match line {
+        None => ATC_LINE_UNCHANGED,
+        Some(LineKind::Analog) => ATC_LINE_ANALOG,
+        Some(LineKind::Digital) => ATC_LINE_DIGITAL,
+    }
+}
+
+fn basis_of(basis: u32) -> Basis {
+    match basis {
+        ATC_BASIS_NOTHING => Basis::Nothing,
+        ATC_BASIS_ANALOG => Basis::Analog,
+        ATC_BASIS_PATTERN => Basis::Pattern,
+        ATC_BASIS_BOTH => Basis::Both,
+        ATC_BASIS_RUNNING_DOWN => Basis::RunningDown,
+        other => panic!("no basis: {other}"),
+    }
+}
+
+fn brake_of(brake: u32) -> Brake {
+    match brake {
+        ATC_BRAKE_RELEASE => Brake::Release,
+        ATC_BRAKE_SERVICE => Brake::Service,
+        ATC_BRAKE_EMERGENCY => Brake::Emergency,
+        other => panic!("no brake command: {other}"),
+    }
+}
+
+fn supervision_config(config: &supervision::Config) -> Option<atc_supervision_config> {
+    let maximum = u16::try_from(config.maximum_km_h.0).ok()?;
+    let margin = u16::try_from(config.release_margin_km_h.0).ok()?;
+    Some(atc_supervision_config { maximum, margin })
+}
+
+fn position_config(config: &position::Config) -> Option<atc_position_config> {
+    let level = |level: &Decibels| i16::try_from(level.0).ok();
+    let curve = |levels: &[Decibels]| levels.iter().map(level).collect::<Option<Vec<_>>>()?.try_into().ok();
+    let spacing = (0..32).find(|exponent| 100 << exponent == config.table.spacing_m.0);
+    let [least, most] = &config.correction_db;
+    Some(atc_position_config {
+        lowest: curve(&config.table.lowest_db)?,
+        highest: curve(&config.table.highest_db)?,
+        tolerance: level(&config.tolerance_db)?,
+        floor: level(&config.floor_db)?,
+        correction_least: level(least)?,
+        correction_most: level(most)?,
+        spacing_exponent: spacing?,
+    })
+}
+
+/// The parameters of the on-board device as C has them; none if they have no room in it.
+pub fn train_config(config: &train::Config) -> Option<atc_train_config> {
+    let mut codes = [atc_code_pair::default(); ATC_MAX_CODE_PAIRS];
+    for (place, pair) in config.codes.pairs.iter().enumerate() {
+        let given = atc_code_pair {
+            main_millihertz: u32::try_from(pair.main_hz.0).ok()?,
+            sub_millihertz: u32::try_from(pair.sub_hz.0).ok()?,
+            speed: u16::try_from(pair.speed_km_h.0).ok()?,
+        };
+        if let Some(kept) = codes.get_mut(place) {
+            *kept = given;
+        }
+    }
+    Some(atc_train_config {
+        permitted: permitted_config(&config.permitted)?,
+        operate_ms: config.acceptance.operate_ms,
+        recovery_ms: config.acceptance.recovery_ms,
+        mask_ms: config.acceptance.mask_ms,
+        interruption_ms: config.acceptance.interruption_ms,
+        shortened_operate_ms: config.acceptance.shortened_operate_ms,
+        code_tolerance_millihertz: u32::try_from(config.codes.tolerance_hz.0).ok()?,
+        code_count: u32::try_from(config.codes.pairs.len()).ok()?,
+        codes,
+        supervision: supervision_config(&config.supervision)?,
+        position: match &config.position {
+            Some(position) => position_config(position)?,
+            None => atc_position_config::default(),
+        },
+        has_position: config.position.is_some().into(),
+    })
+}
+
+/// A train to which nothing is said.
+pub const NOTHING_HEARD: Antennas = Antennas {
+    main: Carrier { code: None, frame: None },
+    sub: Carrier { code: None, frame: None },
+    first: None,
+    second: None,
+    moved: None,
+    speed: None,
+    line: None,
+    facing: None,
+};
+
+/// What the antennas give, as C has it.
+pub fn antennas(antennas: &Antennas) -> atc_train_input {
+    // Not looked at where there is none.
+    let frame = |frame: Option<Frame>| {
+        let bits = frame.map(Frame::bits);
+        atc_frame { bits: std::array::from_fn(|place| bits.map_or(7, |bits| u8::from(bits >> (105 - place) & 1 == 1))) }
+    };
+    let Antennas { main, sub, first, second, moved, speed, line, facing } = *antennas;
+    atc_train_input {
+        main_code_millihertz: main.code.map_or(17_000, |code| code.0),
+        sub_code_millihertz: sub.code.map_or(u32::MAX, |code| code.0),
+        line: line_of(line.map(|line| match line {
+            atc_kernel::permitted::LineKind::Analog => LineKind::Analog,
+            atc_kernel::permitted::LineKind::Digital => LineKind::Digital,
+        })),
+        speed: speed.map_or(-7, |speed| speed.0),
+        main_frame: frame(main.frame),
+        sub_frame: frame(sub.frame),
+        first: first.map_or(1, |level| level.0),
+        second: second.map_or(-1, |level| level.0),
+        moved_least_mm: moved.map_or(5, Moved::least),
+        moved_most_mm: moved.map_or(-5, Moved::most),
+        facing: facing.map_or(ATC_HEADING_NONE, heading),
+        has_main_code: main.code.is_some().into(),
+        has_sub_code: sub.code.is_some().into(),
+        has_main_frame: main.frame.is_some().into(),
+        has_sub_frame: sub.frame.is_some().into(),
+        has_first: first.is_some().into(),
+        has_second: second.is_some().into(),
+        has_moved: moved.is_some().into(),
+        has_speed: speed.is_some().into(),
+    }
+}
+
+impl Spoken for train::OnBoard {
+    type State = Box<atc_train>;
+
+    fn start(config: &train::Config) -> Option<Result<Self::State, atc_status>> {
+        // C has one channel; two that are compared say the same where neither loses its memory.
+        if config.channels.is_some_and(|channels| !(1..=2).contains(&channels)) {
+            return None;
+        }
+        Some(call::start(border::atc_train_start, &train_config(config)?))
+    }
+
+    fn in_words(step: train::Step) -> train::Step {
+        train::Step { lost: Vec::new(), ..step }
+    }
+
+    fn say(state: &mut Self::State, step: &train::Step) -> train::Output {
+        let given = antennas(&step.antennas().expect("a walk has no other"));
+        let said = ok(call::step(border::atc_train_step, &mut **state, &given));
+        assert!(said.has_display == 1 || said.display == 0);
+        assert!(said.has_permitted == 1 || said.permitted == 0);
+        assert!(said.has_position == 1 || (said.nearest_mm, said.farthest_mm) == (0, 0));
+        let metres = |mm: u32| Metres(mm.into());
+        train::Output {
+            display_km_h: (said.has_display == 1).then_some(Kmh(said.display.into())),
+            permitted_km_h: (said.has_permitted == 1).then_some(Kmh(said.permitted.into())),
+            basis: basis_of(said.basis),
+            position_m: (said.has_position == 1).then_some([metres(said.nearest_mm), metres(said.farthest_mm)]),
+            brake: brake_of(said.brake),
         }
     }
 }

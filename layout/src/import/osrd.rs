@@ -167,7 +167,7 @@ fn slowest(infra: &Infra, station: &mut Station, report: &mut Report) -> bool {
 
 fn name_of(source: &Source) -> String {
     let file = source.name.rsplit('/').next().unwrap_or_default();
-    file.split('.').next().unwrap_or_default().to_owned()
+    file.split('.').next().filter(|name| !name.trim().is_empty()).unwrap_or("OSRD").to_owned()
 }
 
 fn network(infra: &Infra, report: &mut Report, problems: &mut Vec<Problem>) -> Network {

@@ -112,7 +112,7 @@ impl<'a> Xml<'a> {
             .filter_map(|title| title.text())
             .map(|text| text.trim().to_owned())
             .find(|text| !text.is_empty());
-        point.or(title)
+        point.filter(|name| !name.trim().is_empty()).or(title)
     }
 
     /// What people call an element: its name, its designator, or its id; its id alone where another one of its kind is called the same.
