@@ -1076,7 +1076,8 @@ typedef struct atc_movement {
   uint8_t speed_code;
 } atc_movement;
 
-/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing.
+/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing; every
+/// circuit counts as occupied. Of circuits and routes beyond the plan nothing is said, but in the safe output.
 typedef struct atc_interlocking_output {
   /// The routes whose signals show proceed; all others show stop.
   uint64_t proceed;
@@ -1278,7 +1279,8 @@ typedef struct atc_large_movement {
   uint8_t speed_code;
 } atc_large_movement;
 
-/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing.
+/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing; every
+/// circuit counts as occupied. Of circuits and routes beyond the plan nothing is said, but in the safe output.
 typedef struct atc_large_interlocking_output {
   /// The routes whose signals show proceed; all others show stop.
   struct atc_set256 proceed;

@@ -64,8 +64,9 @@ pub(crate) fn start<M: Machine>(memory: &mut [u8], parameters: &M::Parameters) {
 
 /// Makes `memory` hold no state.
 pub(crate) fn forget(memory: &mut [u8]) {
-    if let Some(header) = memory.first_chunk_mut::<HEADER>() {
-        *header = [0; HEADER];
+    let most = HEADER.min(memory.len());
+    if let Some(header) = memory.get_mut(..most) {
+        header.fill(0);
     }
 }
 

@@ -133,6 +133,8 @@ pub unsafe fn start<M: Machine, T>(
         return status;
     }
     if size < size_of::<T>() {
+        // SAFETY: not null, and `size` bytes are by the contract of this function the caller's.
+        memory::forget(unsafe { slice::from_raw_parts_mut(state.cast::<u8>(), size) });
         return atc_status::TooSmall;
     }
     // Before the state's bytes are borrowed: the arrays of a configuration may lie among them.

@@ -294,7 +294,10 @@ impl atc_status {
         (Self::PlanContinuesElsewhere, c"a route that continues another must enter at that one's last circuit"),
         (Self::PlanTurnsBack, c"a route must go on in the direction of the route or the segment that it continues"),
         (Self::PlanThroatsDiffer, c"a route out to a segment must end at the segment's throat"),
-        (Self::PlanSegmentShared, c"a segment shares a circuit with a path, an overlap, a throat or a segment"),
+        (
+            Self::PlanSegmentShared,
+            c"a segment shares a circuit with a path, an overlap, what is beside them, a throat or another segment",
+        ),
         (Self::PlanPointInSegment, c"a circuit of a segment is a detector of a point; it must not be"),
         (Self::PlanNotOneCircuit, c"each place of a path, and of a segment, must be exactly one circuit"),
         (Self::PlanCircuitTwice, c"a circuit comes twice in a path or in a segment"),
@@ -304,7 +307,10 @@ impl atc_status {
         (Self::PlanApproachInPath, c"the approach has a circuit of the path or of the overlap; it must not"),
         (Self::PlanNothingBeyond, c"a circuit must lie beyond the end of a route, and not be its last one"),
         (Self::PlanConflictsWithItself, c"a route is declared to conflict with itself"),
-        (Self::PlanNotThere, c"a route names a route, a point or a segment that is not there"),
+        (
+            Self::PlanNotThere,
+            c"a route names a route, a point or a segment that is not there, or a path or a segment has no place",
+        ),
         (Self::PlanNoDetector, c"a point that a route needs must have a detector"),
         (Self::PlanNoLength, c"a circuit of a path or of a segment must have a length"),
         (Self::PlanCodeOutOfTable, c"the speed code of a route must be above 0 and have a braking distance"),

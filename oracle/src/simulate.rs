@@ -222,7 +222,11 @@ const SECONDS: u32 = 1_800;
 fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> Result<Setting, String> {
     let seconds = args.time.unwrap_or(SECONDS);
     let mut faults = Vec::new();
+    if seconds == 0 && !args.faults.is_empty() {
+        return Err("--time 0: a fault needs a time to begin; give 1 or more".to_owned());
+    }
     if let Some(each) = each {
+        several(each, seconds)?;
         if args.faults.is_empty() {
             return Err(format!("--each {each}: name the kinds of faults with --faults"));
         }
@@ -235,6 +239,17 @@ fn setting(args: &RunArgs, line: &Line, trains: usize, each: Option<usize>) -> R
         faults.push(Fault::drawn(*kind, extent(args), line, window, args.seed + number as u64));
     }
     Ok(Setting { faults, ..bare(args, trains) })
+}
+
+/// Whether so many faults may be drawn in a run of so many seconds.
+fn several(each: usize, seconds: u32) -> Result<(), String> {
+    if each == 0 {
+        return Err("--each 0: give 1 or more".to_owned());
+    }
+    if seconds <= 60 {
+        return Err(format!("--time {seconds}: faults begin after the first minute; a run needs more than 60 s"));
+    }
+    Ok(())
 }
 
 /// A run without faults.
@@ -289,7 +304,7 @@ fn unsafe_event(world: &World<'_>) -> Result<String, String> {
 
 fn one(args: &SimulateArgs, line: &Line, trains: usize) -> Result<Done, String> {
     let seconds = args.run.time.unwrap_or(SECONDS);
-    if args.profile >= trains {
+    if trains > 0 && args.profile >= trains {
         return Err(format!("--profile {}: the trains are 0 to {}", args.profile, trains.saturating_sub(1)));
     }
     let mut world = World::new(line, setting(&args.run, line, trains, args.each)?)?;
@@ -335,6 +350,10 @@ fn many(args: &SimulateArgs, line: &Line, (trains, runs): (usize, u64)) -> Resul
     };
     let causes = causes.into_iter().map(|cause| Cause { defects: [defects.clone(), cause.defects].concat(), ..cause });
     let seconds = args.run.time.unwrap_or(600);
+    if runs == 0 {
+        return Err("--campaign 0: give 1 run or more".to_owned());
+    }
+    several(args.each.unwrap_or(1), seconds)?;
     let campaign = campaign_of(&args.run, (runs, causes.collect(), args.each.unwrap_or(1)), (trains, seconds));
     let outcomes = campaign::run(line, &campaign, &|_| ())?;
     let mut done = Done::default();

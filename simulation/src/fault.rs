@@ -182,20 +182,23 @@ impl Fault {
         Self::draw(kind, extent, line, window, &mut Pcg64Mcg::seed_from_u64(seed))
     }
 
-    /// A fault of this kind at a random time between `from_ms` and `to_ms`.
+    /// A fault of this kind at a random time between `from_ms` and `to_ms`; at `from_ms` if there is none between.
     pub fn draw(kind: Kind, extent: Extent, line: &Line, (from_ms, to_ms): (f64, f64), random: &mut impl Rng) -> Self {
         let (least, most) = kind.lasts_ms(line, extent);
-        let lasts_ms = random.random_range(f64::from(least)..=f64::from(most));
+        let lasts_ms = random.random_range(f64::from(least.min(most))..=f64::from(most));
         let much = match kind {
             Kind::LatePoint => random.random_range(2_000..30_000),
-            Kind::DelayedTelegram if extent == Extent::Tolerated => random.random_range(100..=line.longest_delay_ms()),
+            Kind::DelayedTelegram if extent == Extent::Tolerated => {
+                let longest = line.longest_delay_ms();
+                random.random_range(longest.min(100)..=longest)
+            }
             Kind::DelayedTelegram => random.random_range(20_000..60_000),
             Kind::MisreadCode if extent == Extent::Beyond => 7,
             _ => random.random_range(0..8),
         };
         Self {
             kind,
-            from_ms: random.random_range(from_ms..to_ms),
+            from_ms: if from_ms < to_ms { random.random_range(from_ms..to_ms) } else { from_ms },
             lasts_ms,
             which: random.random_range(0..1 << 20),
             much,

@@ -59,6 +59,9 @@ pub struct Generated {
     pub double: bool,
 }
 
+/// The longest time from a brake command to its effect.
+const MOST_DELAY_MS: u32 = 2_000;
+
 impl Line {
     /// The line of a file.
     ///
@@ -173,9 +176,22 @@ impl Line {
 
     fn checked(self) -> Result<Self, String> {
         let moves = &self.dynamics;
-        let positive = [moves.length_m, moves.acceleration, moves.service, moves.emergency];
-        if positive.iter().any(|value| !(value.is_finite() && *value > 0.0)) {
-            return Err("[trains]: length_m, acceleration, service and emergency must be above 0".to_owned());
+        let ranges = [
+            ("length_m", moves.length_m, 1_000.0),
+            ("acceleration", moves.acceleration, 3.0),
+            ("service", moves.service, 5.0),
+            ("emergency", moves.emergency, 5.0),
+        ];
+        if let Some((name, value, most)) = ranges.iter().find(|(_, value, most)| !(*value > 0.0 && value <= most)) {
+            return Err(format!("[trains]: {name} is {value}; it must be above 0 and at most {most}"));
+        }
+        if moves.emergency < moves.service {
+            let (emergency, service) = (moves.emergency, moves.service);
+            return Err(format!("[trains]: emergency is {emergency}, below service, {service}; it must not be"));
+        }
+        if moves.brake_delay_ms > MOST_DELAY_MS {
+            let delay = moves.brake_delay_ms;
+            return Err(format!("[trains]: brake_delay_ms is {delay}; the stations count on {MOST_DELAY_MS} at most"));
         }
         if self.train_cycle_ms == 0 || !self.cycle_ms.is_multiple_of(self.train_cycle_ms) {
             let (train, ground) = (self.train_cycle_ms, self.cycle_ms);
@@ -205,6 +221,17 @@ impl Line {
             };
             let lines = [its(0), its(1)];
             let platforms = self.platforms(number, model, &lines, &paths);
+            let shared =
+                |one: &Platform, other: &Platform| one.circuits.iter().find(|it| other.circuits.contains(*it)).copied();
+            for (place, one) in platforms.iter().enumerate() {
+                if let Some(circuit) = platforms[..place].iter().find_map(|other| shared(one, other)) {
+                    return Err(format!(
+                        "{}: routes from either side end in {} after another plain circuit each; here all routes to a track end over \
+                         the same plain circuits",
+                        sound.names.station, self.track.circuits[circuit].name
+                    ));
+                }
+            }
             for side in [Bound::West, Bound::East] {
                 let through = |platform: &Platform| {
                     let from = if lines[side.other().side()].is_empty() { side } else { side.other() };

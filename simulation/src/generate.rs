@@ -218,9 +218,10 @@ impl OneTrack {
 /// The most tracks that one circuit of a throat leads to: it may have 12 points, and where two lines meet is one more.
 const TRACKS: usize = 12;
 
-/// The groups of tracks of a throat: of more than [`TRACKS`] each has a circuit of its own, so that all tracks are as far from the line.
+/// The groups of tracks of a throat, as even as can be: of several each has a circuit of its own, so that all tracks are as far from the line.
 fn groups(tracks: usize) -> Vec<std::ops::RangeInclusive<usize>> {
-    (1..=tracks).step_by(TRACKS).map(|first| first..=tracks.min(first + TRACKS - 1)).collect()
+    let count = tracks.div_ceil(TRACKS);
+    (0..count).map(|group| group * tracks / count + 1..=(group + 1) * tracks / count).collect()
 }
 
 /// The circuits of a throat that lead to a track, from the line on, as strings of TOML.
@@ -276,12 +277,7 @@ fn ladder(
         let more = format!("{side}c{}", number + 1);
         point(out, (side, number), circuit, [&toe, joint, if place + 1 == others.len() { last } else { &more }])?;
     }
-    if !others.is_empty() {
-        return Ok(());
-    }
-    // To one joint no point leads: the circuit is a track.
-    let (left, right) = if side == 'W' { (lead, last.as_str()) } else { (last.as_str(), lead) };
-    writeln!(out, "left = \"{left}\"\nright = \"{right}\"")
+    Ok(())
 }
 
 fn point(

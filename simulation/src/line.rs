@@ -155,7 +155,7 @@ impl Line {
 
     /// How long telegrams between stations may take: with their life they are no older than the ground counts on.
     pub const fn longest_delay_ms(&self) -> u32 {
-        self.consent_life_ms() - 2 * self.cycle_ms
+        self.consent_life_ms().saturating_sub(2 * self.cycle_ms)
     }
 
     /// The least brake that the stations count on, in m/s².

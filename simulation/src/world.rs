@@ -114,7 +114,7 @@ impl<'a> World<'a> {
         };
         let rival = of(rival)?;
         let points = line.track.points.iter().map(|point| {
-            let least = (point.throw_ms * 5 / 7).max(1);
+            let least = (point.throw_ms / 7 * 5).max(1).min(point.throw_ms);
             PointState { reverse: false, moves_ms: None, stroke_ms: random.random_range(least..=point.throw_ms) }
         });
         let points = points.collect();

@@ -86,3 +86,14 @@ fn a_large_device_runs_a_line_as_a_small_one() {
     assert_eq!(small, large);
     assert!(small.0 >= 6, "{} arrivals", small.0);
 }
+
+/// Of every number of tracks: each is one track, from either side, and a train stands on it alone.
+#[test]
+fn every_number_of_tracks() {
+    for tracks in [12, 13, 25, 37] {
+        let line = Line::generate("Tracks", &Shape::single(vec![2, tracks, 2], vec![3, 3])).expect("a line");
+        assert_eq!(line.stations[1].platforms.len(), tracks);
+        let world = World::new(&line, Setting { trains: line.room() - 1, ..Setting::default() }).expect("a world");
+        assert!(world.on_circuit.iter().all(|trains| *trains <= 1), "{tracks} tracks: two trains in one circuit");
+    }
+}

@@ -115,6 +115,12 @@ fn what_is_wrong_with_a_line_is_said() {
         (format!("{made}[trains]\nservice = 0.5\n"), "brake with 0.8 m/s²; [trains] has 160 m and 0.5 m/s²"),
         (format!("{made}[trains]\nlength_m = 201\n"), "trains of at most 200 m"),
         (format!("{made}[trains]\nacceleration = -1\n"), "must be above 0"),
+        (
+            format!("{made}[trains]\nacceleration = 1e20\n"),
+            "acceleration is 100000000000000000000; it must be above 0 and at most 3",
+        ),
+        (format!("{made}[trains]\nemergency = 0.8\n"), "emergency is 0.8, below service, 0.9"),
+        (format!("{made}[trains]\nbrake_delay_ms = 60000\n"), "the stations count on 2000 at most"),
         (format!("{made}[trains]\nspeed = 1\n"), "unknown field `speed`"),
         (made.replace("[generated]", "train_cycle_ms = 30\n[generated]"), "it must divide the 100 ms"),
         (made.replace("[generated]", "train_cycle_ms = 0\n[generated]"), "it must divide the 100 ms"),

@@ -353,7 +353,8 @@ pub struct movement_of<C> {
     pub speed_code: u8,
 }
 
-/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing.
+/// One logic cycle's output. The safe one shows no proceed, drives, permits and confirms nothing, and sends nothing; every
+/// circuit counts as occupied. Of circuits and routes beyond the plan nothing is said, but in the safe output.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct interlocking_output_of<C, P, S, const MOST: usize> {

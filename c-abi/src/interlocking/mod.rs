@@ -71,7 +71,7 @@ impl<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC> Mac
     ) -> Result<(Self::State, Self::Output), atc_status> {
         let input = plan.there.input(input)?;
         let (memory, commands) = Combined(&plan.layout).step(memory, input);
-        let output = output::output(&memory, &commands);
+        let output = output::output(plan.there, &memory, &commands);
         Ok((memory, output))
     }
 }

@@ -10,6 +10,7 @@ use super::forms::{
     ATC_PHASE_FAILED, ATC_PHASE_IDLE, ATC_PHASE_IN_USE, ATC_PHASE_PROVISIONAL, ATC_PHASE_RELEASING, ATC_PHASE_SET,
     interlocking_output_of, movement_of,
 };
+use super::input::There;
 use super::sets::{Bits, InC, Set as _};
 
 const fn heading(heading: Option<Heading>) -> u8 {
@@ -90,7 +91,9 @@ fn telegram<Z: InC>(movement: Option<Movement<Z>>) -> movement_of<Z::Circuits> {
     })
 }
 
+/// Of what is beyond the plan nothing is said: in the kernel a circuit that is not there is occupied and blocked for ever.
 pub(super) fn output<const R: usize, const S: usize, Z: InC>(
+    there: There<Z>,
     memory: &Memory<R, S, Z>,
     commands: &Commands<R, Z>,
 ) -> OutputOf<R, Z> {
@@ -98,13 +101,15 @@ pub(super) fn output<const R: usize, const S: usize, Z: InC>(
     let occupied = said.table.read(memory.cycle).map_or(CircuitSet::ALL, |contents| contents.occupied);
     interlocking_output_of {
         proceed: Z::Circuits::of(said.proceed),
-        confirmed: Z::Circuits::of(said.confirmed),
-        occupied: Z::Circuits::of(occupied),
+        confirmed: Z::Circuits::of(said.confirmed.and(there.circuits)),
+        occupied: Z::Circuits::of(occupied.and(there.circuits)),
         drive_normal: Z::Points::of(said.drives.normal),
         drive_reverse: Z::Points::of(said.drives.reverse),
         answer: answer(said.answer),
         permits: Z::Segments::of(said.permits),
         phases: memory.interlocking.routes.map(|route| phase(route.phase)),
-        telegrams: core::array::from_fn(|circuit| telegram(commands.telegrams[circuit])),
+        telegrams: core::array::from_fn(|circuit| {
+            telegram(if there.circuits.has_number(circuit) { commands.telegrams[circuit] } else { None })
+        }),
     }
 }

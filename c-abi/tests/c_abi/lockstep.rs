@@ -621,7 +621,7 @@ fn beside<const R: usize, const P: usize, const N: usize, const S: usize, Z: InC
         let (status, said) = step(&station::input(&read));
         assert_eq!(status, atc_status::Ok);
         granted += said.telegrams.iter().filter(|telegram| telegram.heading != ATC_HEADING_NONE).count();
-        station::compare(&said, &memory, &commands);
+        station::compare(there.0, &said, &memory, &commands);
     }
     println!(
         "interlocking, {} routes: {cycles} steps, {held} routes held and {granted} trains let go in them",
@@ -647,6 +647,20 @@ fn large_interlocking() {
         let step = border::atc_large_interlocking_step;
         beside((&arrays, &layout), 120, |input| call::step(step, &mut *state, input));
     });
+}
+
+/// A start that fails leaves no state, also where it is told of too little memory for one.
+#[test]
+fn a_failed_start_leaves_no_state() {
+    let config = wire::train_config(&train::Config::default()).expect("it has room");
+    for size in [1, 7, 8, 23, 24, size_of::<atc_train>() - 1] {
+        let mut state = call::start::<atc_train, _>(border::atc_train_start, &config).expect("it is right");
+        // SAFETY: `size` bytes of this function's, and a configuration.
+        let status = unsafe { border::atc_train_start((&raw mut *state).cast(), size, &raw const config) };
+        assert_eq!(status, atc_status::TooSmall);
+        let heard = wire::antennas(&wire::NOTHING_HEARD);
+        assert_eq!(call::step(border::atc_train_step, &mut *state, &heard).0, atc_status::NotStarted, "{size} bytes");
+    }
 }
 
 /// What a call that fails puts out is the kernel's own safe output.

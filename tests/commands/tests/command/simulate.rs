@@ -146,3 +146,25 @@ fn what_cannot_be_run_is_said_and_nothing_is_written() {
         assert!(!folder.path().join("out").exists());
     }
 }
+
+/// What cannot be drawn or counted is refused, with what would be right.
+#[test]
+fn numbers_that_cannot_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let line = example("three-stations.toml");
+    let cases: [(&[&str], &str); 5] = [
+        (&["--time", "0", "--faults", "shunt-loss"], "--time 0: a fault needs a time to begin; give 1 or more"),
+        (
+            &["--time", "60", "--faults", "shunt-loss", "--each", "1"],
+            "faults begin after the first minute; a run needs more than 60 s",
+        ),
+        (&["--faults", "shunt-loss", "--each", "0"], "--each 0: give 1 or more"),
+        (&["--campaign", "0"], "--campaign 0: give 1 run or more"),
+        (&["--trains", "0"], "0 trains: 1 to"),
+    ];
+    for (arguments, said) in cases {
+        let output = simulate(folder.path(), &[&[line.as_str()], arguments].concat());
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", text(&output.stderr));
+        assert!(text(&output.stderr).contains(said), "{arguments:?}: {}", text(&output.stderr));
+    }
+}
