@@ -104,7 +104,8 @@ mod tests {
         let error = write(&folder.path().join("none/file"), b"text").expect_err("there is no such folder");
         let said = error.to_string();
         assert!(said.contains("nothing new can be made in the folder") && said.contains("none"), "{said}");
-        assert!(said.ends_with("entity not found") && !said.contains(".tmp"), "{said}");
+        // Only the folder of this test has such a name.
+        assert!(said.ends_with("entity not found") && said.matches(".tmp").count() == 1, "{said}");
     }
 
     #[test]

@@ -10,15 +10,15 @@ use crate::track::Track;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Dynamics {
-    /// The length of every train, in m.
+    /// The length of every train, in m: above 0, at most 1,000.
     pub length_m: f64,
-    /// Traction, in m/s².
+    /// Traction, in m/s²: above 0, at most 3.
     pub acceleration: f64,
-    /// The service brake, in m/s².
+    /// The service brake, in m/s²: above 0, at most 5.
     pub service: f64,
-    /// The emergency brake, in m/s².
+    /// The emergency brake, in m/s²: not below the service brake, at most 5.
     pub emergency: f64,
-    /// From a brake command to its effect, in ms. Traction ends at once.
+    /// From a brake command to its effect, in ms: at most 2,000. Traction ends at once.
     pub brake_delay_ms: u32,
     /// How long a train stands at a station at least, in s.
     pub dwell_s: u32,
