@@ -59,7 +59,7 @@ pub struct Generated {
     pub double: bool,
 }
 
-/// The longest time from a brake command to its effect.
+/// The longest time from a brake command to its effect: no station's file says one, and with a minute trains run over the end of the track.
 const MOST_DELAY_MS: u32 = 2_000;
 
 impl Line {
@@ -191,7 +191,7 @@ impl Line {
         }
         if moves.brake_delay_ms > MOST_DELAY_MS {
             let delay = moves.brake_delay_ms;
-            return Err(format!("[trains]: brake_delay_ms is {delay}; the stations count on {MOST_DELAY_MS} at most"));
+            return Err(format!("[trains]: brake_delay_ms is {delay}; it must be at most {MOST_DELAY_MS}"));
         }
         if self.train_cycle_ms == 0 || !self.cycle_ms.is_multiple_of(self.train_cycle_ms) {
             let (train, ground) = (self.train_cycle_ms, self.cycle_ms);
@@ -226,8 +226,7 @@ impl Line {
             for (place, one) in platforms.iter().enumerate() {
                 if let Some(circuit) = platforms[..place].iter().find_map(|other| shared(one, other)) {
                     return Err(format!(
-                        "{}: routes from either side end in {} after another plain circuit each; here all routes to a track end over \
-                         the same plain circuits",
+                        "{}: {} is of two tracks; here the plain circuits at the end of each route to a track must be the same",
                         sound.names.station, self.track.circuits[circuit].name
                     ));
                 }

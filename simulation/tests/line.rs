@@ -97,6 +97,29 @@ fn stations_may_be_files_of_their_own() {
     assert_eq!(events(&line), events(&made.expect("a line")));
 }
 
+/// Behind a track lies one more plain circuit, over which trains from one side come: two trains would begin on one track.
+#[test]
+fn a_circuit_of_two_tracks_is_refused() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("two-tracks");
+    fs::create_dir_all(&folder).expect("a folder");
+    let mut text = "name = \"Files\"\n".to_owned();
+    for (number, (_, layout)) in Shape::loops(3, 4).stations().into_iter().enumerate() {
+        let more =
+            "[[circuit]]\nname = \"1X\"\nlength_m = 200\nleft = \"x1\"\nright = \"E1\"\n[[circuit]]\nname = \"1A\"";
+        let with = layout
+            .replace("left = \"m1\"\nright = \"E1\"", "left = \"m1\"\nright = \"x1\"")
+            .replace("[[circuit]]\nname = \"1A\"", more)
+            .replace("path = [\"ET\", \"1B\", \"1A\"]", "path = [\"ET\", \"1X\", \"1B\", \"1A\"]")
+            .replace("entry = \"1B\"\npath = [\"ET\"]", "entry = \"1B\"\npath = [\"1X\", \"ET\"]");
+        assert_ne!(with, layout);
+        fs::write(folder.join(format!("{number}.toml")), if number == 1 { with } else { layout }).expect("a file");
+        writeln!(text, "[[station]]\nlayout = \"{number}.toml\"").expect("a string");
+    }
+    fs::write(folder.join("line.toml"), text).expect("a file");
+    let error = Line::read(&folder.join("line.toml")).expect_err("a track of two lengths");
+    assert!(error.contains("Station 2 1A is of two tracks"), "{error}");
+}
+
 #[test]
 fn what_is_wrong_with_a_line_is_said() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wrong");
@@ -120,7 +143,7 @@ fn what_is_wrong_with_a_line_is_said() {
             "acceleration is 100000000000000000000; it must be above 0 and at most 3",
         ),
         (format!("{made}[trains]\nemergency = 0.8\n"), "emergency is 0.8, below service, 0.9"),
-        (format!("{made}[trains]\nbrake_delay_ms = 60000\n"), "the stations count on 2000 at most"),
+        (format!("{made}[trains]\nbrake_delay_ms = 60000\n"), "brake_delay_ms is 60000; it must be at most 2000"),
         (format!("{made}[trains]\nspeed = 1\n"), "unknown field `speed`"),
         (made.replace("[generated]", "train_cycle_ms = 30\n[generated]"), "it must divide the 100 ms"),
         (made.replace("[generated]", "train_cycle_ms = 0\n[generated]"), "it must divide the 100 ms"),

@@ -187,6 +187,14 @@ fn telegram() {
     assert_eq!(printed, said);
 }
 
+/// Whether the request was accepted, the phase of a route by its number in C, and how many signals show proceed.
+fn of_route(output: &Value, route: &str) -> (u8, usize, usize) {
+    let words = ["idle", "provisional", "failed", "set", "in-use", "releasing"];
+    let phase = output["routes"].get(route).unwrap_or(&json!("idle")).clone();
+    let phase = words.iter().position(|word| phase == *word).expect("one of these");
+    (u8::from(output["answer"] == "accepted"), phase, output["proceed"].as_array().expect("a list").len())
+}
+
 #[test]
 fn interlocking() {
     let Some(printed) = printed("interlocking") else { return };
@@ -217,11 +225,7 @@ fn interlocking() {
             step["request"] = json!({"set": "R"});
         }
         let output = device.step(&step);
-        let words = ["idle", "provisional", "failed", "set", "in-use", "releasing"];
-        let phase = output["routes"].get("R").unwrap_or(&json!("idle")).clone();
-        let phase = words.iter().position(|word| phase == *word).expect("one of these");
-        let answer = u8::from(output["answer"] == "accepted");
-        let proceed = output["proceed"].as_array().expect("a list").len();
+        let (answer, phase, proceed) = of_route(&output, "R");
         let drives = u8::from(output["drives"].get("P") == Some(&json!("normal")));
         let telegram = &output["telegrams"]["0"];
         let code = [0, 45, 90].iter().position(|speed| telegram["speed_km_h"] == *speed).expect("one of these");
@@ -268,11 +272,7 @@ fn large_station() {
             step["request"] = json!({"set": "80"});
         }
         let output = device.step(&step);
-        let words = ["idle", "provisional", "failed", "set", "in-use", "releasing"];
-        let phase = output["routes"].get("80").unwrap_or(&json!("idle")).clone();
-        let phase = words.iter().position(|word| phase == *word).expect("one of these");
-        let answer = u8::from(output["answer"] == "accepted");
-        let proceed = output["proceed"].as_array().expect("a list").len();
+        let (answer, phase, proceed) = of_route(&output, "80");
         let telegram = &output["telegrams"]["80"];
         let code = [0, 45].iter().position(|speed| telegram["speed_km_h"] == *speed).expect("one of these");
         let stop = telegram["stop"].as_str().expect("a name");
